@@ -4,12 +4,12 @@
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
 
+pub(crate) use super::entries::{forget_secret, labelled_entry, mono_entry, secret_entry};
+pub use super::entries::{settled_entry, text_entry};
 use super::{Theme, icons};
 use crate::analysis::quality::Verdict;
 use crate::app::Text;
 
-/// Inside a line of text, so that it is as high as a button.
-const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
 /// The least width of a dialog.
 const MODAL: f32 = 240.0;
 /// Width of the column of labels.
@@ -209,42 +209,6 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
     name(response, true, word).on_hover_text(word);
 }
 
-/// A one-line entry with a name for screen readers.
-pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
-    entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
-}
-
-/// A one-line entry for what is spelled exactly.
-pub(crate) fn mono_entry(
-    ui: &mut Ui,
-    theme: &Theme,
-    text: &mut String,
-    width: f32,
-    label: &str,
-    hint: &str,
-) -> Response {
-    entry_in(ui, text, width, label, hint, egui::FontId::monospace(theme.sizes.body).into())
-}
-
-fn entry_in(
-    ui: &mut Ui,
-    text: &mut String,
-    width: f32,
-    label: &str,
-    hint: &str,
-    font: egui::FontSelection,
-) -> Response {
-    let edit = egui::TextEdit::singleline(text).desired_width(width).hint_text(hint).margin(FIELD).font(font);
-    let response = ui.add(edit);
-    let value = text.clone();
-    response.widget_info(|| {
-        let mut info = WidgetInfo::text_edit(true, &value, &value, hint);
-        info.label = Some(label.to_owned());
-        info
-    });
-    response
-}
-
 /// A choice from a list, with a name for screen readers.
 pub(crate) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
@@ -299,20 +263,6 @@ pub(crate) fn options<T: PartialEq + Copy>(
     *value != before
 }
 
-/// A one-line entry for what is not to be seen: not on the screen, not by a screen reader, not by undoing.
-pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
-    let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);
-    let response = ui.add(edit);
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::PasswordInput, true, label));
-    response
-}
-
-/// Empties a secret entry, with all that could bring it back.
-pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
-    text.clear();
-    egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
-}
-
 /// Something is being done. It turns slowly enough to cost nothing.
 pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     const STEPS: f64 = 8.0;
@@ -326,19 +276,6 @@ pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
         ui.painter().circle_filled(place, 1.5, colour);
     }
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
-}
-
-/// A one-line entry behind its label, which is also its name for screen readers.
-pub(crate) fn labelled_entry(
-    ui: &mut Ui,
-    theme: &Theme,
-    what: impl Into<Text>,
-    text: &mut String,
-    width: f32,
-    hint: &str,
-) -> Response {
-    let word = theme.words(&what.into());
-    entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 
 /// A verdict on a signal: icon and colour.
@@ -410,33 +347,6 @@ pub(crate) fn split<C>(
             right(ui, &mut context);
         });
     });
-}
-
-/// A one-line entry that counts when it is left or Enter is pressed. `draft` holds what is typed until it counts, or until
-/// it can: what `take` refuses stays, with the reason below it.
-pub fn settled_entry(
-    ui: &mut Ui,
-    draft: &mut Option<(String, Option<crate::app::Text>)>,
-    shown: &str,
-    width: f32,
-    label: &str,
-    take: impl FnOnce(&str) -> Result<(), crate::app::Text>,
-) -> Response {
-    let (mut text, problem) = draft.take().unwrap_or_else(|| (shown.to_owned(), None));
-    let response = text_entry(ui, &mut text, width, label, "");
-    if response.has_focus() {
-        *draft = Some((text, problem));
-    } else if response.lost_focus() {
-        // What stood there before is right, whatever was typed in between.
-        if text != shown
-            && let Err(why) = take(&text)
-        {
-            *draft = Some((text, Some(why)));
-        }
-    } else if problem.is_some() {
-        *draft = Some((text, problem));
-    }
-    response
 }
 
 /// A dot: filled for a connection, hollow for none.

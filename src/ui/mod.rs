@@ -9,6 +9,7 @@ pub(crate) mod dialogs;
 mod docks;
 pub mod edit_bar;
 mod end;
+mod entries;
 mod header;
 pub mod icons;
 mod keys;
