@@ -197,7 +197,7 @@ mod tests {
     #[test]
     fn a_refusal_names_the_entry_and_the_range() {
         let refusal = within("connect.tcp_port", "91", 0.1, 90.0).unwrap_err();
-        assert_eq!(refusal.words(Language::English), "TCP port: \"91\" is no number from 0.1 to 90.");
+        assert_eq!(refusal.words(Language::English), "TCP port: \"91\" is not a number from 0.1 to 90.");
         assert!(refusal.words(Language::German).ends_with("keine Zahl von 0,1 bis 90."));
         assert_eq!(within("connect.tcp_port", "90", 0.1, 90.0), Ok(90.0));
         assert_eq!(within("connect.tcp_port", "  ", 0.1, 90.0).unwrap_err().id(), "entry.missing");

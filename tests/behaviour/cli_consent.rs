@@ -79,7 +79,7 @@ fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
     let ran = bench.run(&[&restore[..], &["--with-mounting"]].concat());
     assert_eq!(ran.json()["written"], json!(16));
     assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
-    assert!(ran.err.contains("Set up again") && ran.err.contains("field:0@0+16"), "{ran:?}");
+    assert!(ran.err.contains("Set these up again") && ran.err.contains("field:0@0+16"), "{ran:?}");
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
     // Onto its own encoder nothing is held back.
     source.host(&["40 4B 00 00 01 55 00"]);

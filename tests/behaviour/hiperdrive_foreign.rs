@@ -368,9 +368,9 @@ fn an_action_whose_result_is_bad_fails() {
     };
     // 2AB8: a fault (reference 3); its drive is led by nobody, so that it stays.
     let Some(faulty) = bench.target(&["--status=2AB8"]) else { return };
-    fails(&act(&faulty, "acknowledge"), &["drive 1", "still there"]);
+    fails(&act(&faulty, "acknowledge"), &["Drive 1 still has its fault"]);
     let Some(hub) = bench.target(&["--topology=hub4", "--drives=1,3", "--gone-after-reset=3"]) else { return };
-    fails(&act(&hub, "presence-test"), &["Drive 3", "not there any more"]);
+    fails(&act(&hub, "presence-test"), &["no longer finds drive 3"]);
     let Some(alone) = bench.target(&["--gone-after-reset=1"]) else { return };
     fails(&act(&alone, "presence-test"), &["found no drive"]);
     let Some(good) = bench.target(&["--topology=hub4", "--drives=1,3"]) else { return };

@@ -61,7 +61,7 @@ fn what_may_not_be_is_refused() {
         ("sim:", &["1000", "--speed", "0"], &["0 %", "1 %"]),
         ("sim:", &["1000", "--torque", "0"], &["0 %", "1 %"]),
         ("sim:?hub=4", &["1000"], &["152", "write hiperdrive 152 1"]),
-        ("sim:?hub=4&drives=1", &["1000", "--drive", "3"], &["No drive is connected at place 3"]),
+        ("sim:?hub=4&drives=1", &["1000", "--drive", "3"], &["No drive is connected at port 3"]),
     ] {
         bench.run(&[&["move", "hiperdrive"], arguments, &["--yes", "--link", link]].concat()).fails(1, words);
     }

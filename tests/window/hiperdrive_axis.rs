@@ -121,7 +121,7 @@ fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
         "{told}"
     );
     let report = unit(&desk).axis_report(Language::English).unwrap();
-    assert!(report.contains("The run was cancelled") && !report.contains("Nothing was written"), "{report}");
+    assert!(report.contains("The set-up was cancelled") && !report.contains("Nothing was written"), "{report}");
 }
 
 /// Issue 21.6 (d): 47 = −2 is about the adapter alone; scale and limits of the drive stay, and nobody is told otherwise.
@@ -293,7 +293,7 @@ fn the_end_is_saved_as_a_report() {
         studio.services.log.notices().any(|own| own.texts.iter().any(|text| text.id() == "report.saved"))
     });
     let text = std::fs::read_to_string(&path).unwrap();
-    assert!(text.contains("The drive has -2044.00 mm … 2044.00 mm."), "{text}");
+    assert!(text.contains("The drive's limits are -2044.00 mm … 2044.00 mm."), "{text}");
     assert_eq!(desk.told(Severity::Good).last(), Some(&"report.saved"));
 }
 
@@ -329,12 +329,18 @@ fn the_supply_of_a_hub_is_checked_over_a_refusal_and_a_lost_line() {
     assert_eq!(axis(&desk).end(), Some(End::Done));
     let report = unit(&desk).axis_report(Language::English).unwrap();
     let has = |part: &str| report.split_whitespace().collect::<Vec<_>>().join(" ").contains(part);
-    for part in
-        ["drive 3 (", "10. Power-cycle check: done", "The restart was read", "Everything that can be saved is saved"]
-    {
+    for part in [
+        "drive 3 (",
+        "10. Power-cycle check: done",
+        "The restart was detected",
+        "Everything that can be saved is saved",
+    ] {
         assert!(has(part), "{part}: {report}");
     }
-    assert!(!has("ended early") && !has("Other than saved") && !has("while the drive was not read"), "{report}");
+    assert!(
+        !has("ended early") && !has("differ from the saved values") && !has("while the drive was not read"),
+        "{report}"
+    );
     assert_eq!([352, 354, 356, 382].map(|own| read(&desk, own)), [1, 400, 256, 1000]);
     assert_eq!([152, 154, 156, 160].map(|own| read(&desk, own)), [0, 256, 1, 33_488_896]);
 }

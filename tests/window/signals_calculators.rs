@@ -78,7 +78,7 @@ fn absolute_and_analogue_are_brought_together_while_they_are_typed() {
     screen.retype("synchronise.phase", "0.98");
     assert!(screen.shows("10.98000"));
     screen.retype("synchronise.absolute", "32768");
-    assert!(screen.shows("\"32768\" is no position from 0 to 32767"));
+    assert!(screen.shows("\"32768\" is not a position from 0 to 32767"));
     screen.act(Action::SetLanguage(Language::German));
     screen.check_language();
     assert!(!screen.is_enabled("synchronise.read"), "no encoder is connected");

@@ -52,14 +52,14 @@ impl Screen {
 #[test]
 fn lamps_are_clicked_until_they_look_like_the_real_ones() {
     let mut screen = page("sim:", "page.diagnosis");
-    assert!(screen.shows("Exactly the requested drives are there, and well."));
+    assert!(screen.shows("The connected drives are exactly the requested ones. No drive has an error."));
     screen.press(Role::RadioButton, "Device: Bus adapter");
-    assert!(screen.shows("The drive is well."));
+    assert!(screen.shows("The drive has no error."));
     screen.press(Role::Button, "RS485: green");
     assert!(screen.shows("No supply.") && screen.shows("Check the control supply and its fuse."));
     screen.press(Role::RadioButton, "Device: Hub");
     screen.press(Role::RadioButton, "Switch S3: 3");
-    assert!(screen.shows("The drive is neither there nor requested.") && screen.shows("S3 is not at 0"));
+    assert!(screen.shows("The drive is neither connected nor requested.") && screen.shows("S3 is not at 0"));
     screen.press(Role::Button, "NS: green");
     screen.press(Role::Button, "NS: green, flashing");
     screen.press(Role::Button, "NS: red, flashing");
@@ -69,11 +69,13 @@ fn lamps_are_clicked_until_they_look_like_the_real_ones() {
 #[test]
 fn an_address_is_typed_looked_at_and_written() {
     let mut screen = page("sim:", "page.device");
-    assert!(screen.shows("asks a DHCP server") && !screen.is_enabled("hd_net.write"));
-    screen.press(Role::RadioButton, "Address comes from: what is stored");
+    assert!(screen.shows("from a DHCP server") && !screen.is_enabled("hd_net.write"));
+    screen.press(Role::RadioButton, "Address source: stored");
     screen.put("Address", "192.168.5.255");
-    screen.put("Mask", "255.255.255.0");
-    assert!(screen.shows("192.168.5.255 goes to all devices of the network.") && !screen.is_enabled("hd_net.write"));
+    screen.put("Subnet mask", "255.255.255.0");
+    assert!(
+        screen.shows("192.168.5.255 is the broadcast address of the network.") && !screen.is_enabled("hd_net.write")
+    );
     screen.put("Address", "192.168.5.20");
     screen.put("Gateway", "192.168.6.1");
     assert!(screen.shows("The gateway 192.168.6.1 is outside the network 192.168.5.0/24."));
@@ -124,19 +126,19 @@ fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
 #[test]
 fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     let mut screen = page("sim:", "page.parameters");
-    screen.press(Role::RadioButton, "Show: Scale");
+    screen.press(Role::RadioButton, "Show: Scaling");
     assert!(!screen.is_enabled("hd_scale.set"), "without a pitch there is no scale");
     screen.put("Spindle pitch", "four");
-    screen.entry("A step is").focus();
+    screen.entry("Step size").focus();
     screen.steps();
-    assert!(screen.shows("\"four\" is no length"));
+    assert!(screen.shows("\"four\" is not a valid length"));
     screen.put("Spindle pitch", "4");
-    screen.put("A step is", "0.0000001");
+    screen.put("Step size", "0.0000001");
     let own = screen.studio().hiperdrive().unwrap();
     assert_eq!(own.pitch(own.drive()).map(|own| own.nanometres), Some(4_000_000));
     screen.click("hd_scale.set");
     assert!(screen.studio().hiperdrive().unwrap().staged.differences().is_empty());
-    screen.put("A step is", "0.01");
+    screen.put("Step size", "0.01");
     screen.click("hd_scale.set");
     assert!(screen.shows("400 steps") && screen.shows("-2044.00 … 2044.00 mm"));
     let own = screen.studio().hiperdrive().unwrap();
@@ -182,7 +184,7 @@ fn parameters_are_typed_into_their_table() {
     begin(&mut screen, "166 Maximum speed");
     screen.put("166 Maximum speed", "9999");
     screen.key(Key::Enter);
-    assert!(screen.shows("it may be 5 to 350"));
+    assert!(screen.shows("Allowed: 5 to 350"));
     // Other lines: what is wrong goes along with its own.
     screen.press(Role::RadioButton, "Show: All");
     assert!(row(&screen, "105 Status word").is_some());
@@ -193,7 +195,7 @@ fn parameters_are_typed_into_their_table() {
         own.staged.differences().iter().map(|own| (own.number.get(), own.from, own.to)).collect::<Vec<_>>()
     };
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
-    assert!(!screen.shows("it may be 5 to 350"));
+    assert!(!screen.shows("Allowed: 5 to 350"));
     // What is only read cannot be typed over, and says so.
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) can only be read"));
@@ -204,7 +206,7 @@ fn parameters_are_typed_into_their_table() {
     assert_eq!(edits(&screen), [(166, Some(350), Some(300)), (172, Some(100), Some(50))]);
     begin(&mut screen, "172 Jog 1, speed");
     screen.put("172 Jog 1, speed", "100");
-    screen.press(Role::RadioButton, "Show: Scale");
+    screen.press(Role::RadioButton, "Show: Scaling");
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(screen.shows("Spindle pitch"));
     screen.press(Role::RadioButton, "Show: All");
@@ -269,7 +271,7 @@ fn nothing_in_a_step_moves_away_under_the_pointer() {
     assert!(!screen.is_enabled("hd_axis.recall"), "nothing is known to differ");
     advance(&mut screen, Step::Scale);
     // 655.36 mm in steps of 0.01 mm are the factory's 65536 steps a turn: there is nothing to write.
-    screen.put("Pitch (mm a turn)", "655.36");
+    screen.put("Pitch (mm per turn)", "655.36");
     assert!(!screen.is_enabled("hd_axis.write"));
     advance(&mut screen, Step::Confirm);
     screen.click("hd_axis.confirm");

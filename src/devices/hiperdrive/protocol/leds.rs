@@ -117,88 +117,101 @@ const fn bus(lamp: BusLamp, light: BusLight, meaning: &'static str, remedy: &'st
 /// RS485 of a bus adapter (manual 4.4).
 const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
-    drive(DriveLight::Alternating, "presence test", "wait until it has ended"),
+    drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
     drive(
         DriveLight::Red,
-        "communication error of the requested drive",
-        "check its cable and its supply, then write 0 to its parameter 197",
+        "communication error with the requested drive",
+        "check the drive's cable and supply, then write 0 to its parameter 197",
     ),
-    drive(DriveLight::RedGreen, "drive error", "read its errors, mend the cause, acknowledge"),
-    drive(DriveLight::GreenFlashing, "the drive is well, but not requested", "set its parameter 152 to 1 to move it"),
+    drive(DriveLight::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
+    drive(
+        DriveLight::GreenFlashing,
+        "the drive has no error but is not requested",
+        "to move the drive, set its parameter 152 to 1",
+    ),
     drive(
         DriveLight::RedGreenFlashing,
-        "the drive is not requested, and has an error",
-        "request it (parameter 152 = 1) and read its errors",
+        "the drive is not requested and has an error",
+        "request the drive (parameter 152 = 1), then read its errors",
     ),
-    drive(DriveLight::Green, "the drive is well", "nothing"),
+    drive(DriveLight::Green, "the drive has no error", "no action needed"),
 ];
 
 /// RS485 of a hub with switch S3 at 0: about all drives (manual 3.3).
 const DRIVES_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
-    drive(DriveLight::Alternating, "presence test", "wait until it has ended"),
+    drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
     drive(
         DriveLight::Red,
-        "communication error of a requested drive",
-        "turn S3 to each drive to see which; check its cable, then write 0 to its parameter 197",
+        "communication error with a requested drive",
+        "turn S3 to each drive to find the one affected. Check its cable, then write 0 to its parameter 197",
     ),
     drive(
         DriveLight::RedGreen,
-        "drive error of a requested drive",
-        "turn S3 to each drive to see which; read its errors, mend the cause, acknowledge",
+        "error of a requested drive",
+        "turn S3 to each drive to find the one affected. Read its errors, remove the cause, then acknowledge",
     ),
     drive(
         DriveLight::GreenFlashing,
-        "a drive is there that is not requested; all are well",
-        "set its parameter 152 to 1, or take it off",
+        "a connected drive is not requested. No drive has an error",
+        "set its parameter 152 to 1, or unplug it",
     ),
     drive(
         DriveLight::RedGreenFlashing,
         "a drive that is not requested has an error",
-        "request it (parameter 152 = 1) and read its errors, or take it off",
+        "request the drive (parameter 152 = 1) and read its errors, or unplug it",
     ),
-    drive(DriveLight::Green, "exactly the requested drives are there, and well", "nothing"),
+    drive(
+        DriveLight::Green,
+        "the connected drives are exactly the requested ones. No drive has an error",
+        "no action needed",
+    ),
 ];
 
 /// RS485 of a hub with switch S3 at a drive's number: about that drive (manual 3.3).
 const DRIVE_LEDS: [LedRow; 4] = [
-    drive(DriveLight::Off, "the drive is neither there nor requested", "nothing; plug it in to use it"),
-    drive(DriveLight::Red, "communication error", "check its cable, then write 0 to its parameter 197"),
-    drive(DriveLight::RedGreen, "drive error", "read its errors, mend the cause, acknowledge"),
-    drive(DriveLight::Green, "the drive is well", "nothing; turn S3 back to 0, or it does not move from the bus"),
+    drive(DriveLight::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
+    drive(DriveLight::Red, "communication error", "check the drive's cable, then write 0 to its parameter 197"),
+    drive(DriveLight::RedGreen, "drive error", "read the errors, remove the cause, then acknowledge"),
+    drive(DriveLight::Green, "the drive has no error", "turn S3 back to 0, or the bus cannot move the drive"),
 ];
 
 /// Both lamps of a port P1 or P2.
 pub const PORT_LEDS: [PortLedRow; 3] = [
-    port(PortLight::Off, "no link", "check the cable and what is at its other end"),
-    port(PortLight::Link, "linked, and nothing is sent", "nothing"),
-    port(PortLight::Active, "linked, and data are sent", "nothing"),
+    port(PortLight::Off, "no network link", "check the cable and the device at its other end"),
+    port(PortLight::Link, "network link, no data traffic", "no action needed"),
+    port(PortLight::Active, "network link, data traffic", "no action needed"),
 ];
 
 /// MS and NS.
 pub const BUS_LEDS: [BusLedRow; 12] = [
     bus(BusLamp::Module, BusLight::Off, "no supply", "check the control supply and its fuse"),
-    bus(BusLamp::Module, BusLight::Green, "the device works", "nothing"),
-    bus(BusLamp::Module, BusLight::GreenFlashing, "not configured", "open a connection to it"),
-    bus(BusLamp::Module, BusLight::RedFlashing, "a fault that can be mended", "read its errors, mend the cause"),
-    bus(BusLamp::Module, BusLight::Red, "a fault that cannot be mended", "switch it off and on; else have it repaired"),
-    bus(BusLamp::Module, BusLight::Alternating, "self-test", "wait until it has ended"),
+    bus(BusLamp::Module, BusLight::Green, "the device is operating", "no action needed"),
+    bus(BusLamp::Module, BusLight::GreenFlashing, "not configured", "open a connection to the device"),
+    bus(BusLamp::Module, BusLight::RedFlashing, "recoverable fault", "read the errors and remove the cause"),
     bus(
-        BusLamp::Network,
-        BusLight::Off,
-        "no address, or no supply",
-        "check the switches S1 and S2 and the DHCP server",
+        BusLamp::Module,
+        BusLight::Red,
+        "unrecoverable fault",
+        "switch the device off and on. If the fault remains, have it repaired",
     ),
-    bus(BusLamp::Network, BusLight::Green, "a connection is open", "nothing"),
-    bus(BusLamp::Network, BusLight::GreenFlashing, "no connection", "connect, or let the controller run"),
+    bus(BusLamp::Module, BusLight::Alternating, "self-test", "wait until it has finished"),
+    bus(BusLamp::Network, BusLight::Off, "no address or no supply", "check the switches S1 and S2 and the DHCP server"),
+    bus(BusLamp::Network, BusLight::Green, "a connection is open", "no action needed"),
+    bus(BusLamp::Network, BusLight::GreenFlashing, "no connection", "connect, or start the control (PLC)"),
     bus(
         BusLamp::Network,
         BusLight::RedFlashing,
-        "a connection timed out",
-        "check cables and switches, then open the connection anew",
+        "a connection has timed out",
+        "check the cables and network switches, then reopen the connection",
     ),
-    bus(BusLamp::Network, BusLight::Red, "another device has the same address", "give one of them another address"),
-    bus(BusLamp::Network, BusLight::Alternating, "self-test", "wait until it has ended"),
+    bus(
+        BusLamp::Network,
+        BusLight::Red,
+        "another device has the same address",
+        "assign a different address to one of them",
+    ),
+    bus(BusLamp::Network, BusLight::Alternating, "self-test", "wait until it has finished"),
 ];
 
 impl LedSubject {

@@ -148,11 +148,11 @@ mod tests {
     /// Issue 22.23: HIPERDRIVE manual, 3.1 (hub), 3.2 (S3 at 0 for motion over the bus) and 4.2 (bus adapter).
     #[test]
     fn the_card_says_what_the_manual_says() {
-        check_notes(&TEXTS, &WIRING, &["4 poles, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
-        check_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four wires only"]);
+        check_notes(&TEXTS, &WIRING, &["4-pin, D-coded", "1 TD+ white/green", "2 RD+ white/orange"]);
+        check_notes(&TEXTS, &WIRING, &["3 TD− green", "4 RD− orange", "four-wire cables only"]);
         check_notes(&TEXTS, &WIRING, &["1 GND drive", "2 +24 V drive", "3 GND adapter", "4 +24 V adapter", "J1"]);
-        check_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5 poles, A-coded)", "M6"]);
+        check_notes(&TEXTS, &WIRING, &["control 1 +24 V, 3 GND (5-pin, A-coded)", "M6"]);
         check_notes(&TEXTS, &WIRING, &["1 RS-485 + white", "2 RS-485 − green", "3 +24 V orange", "4 GND black"]);
-        check_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub has to be at 0"]);
+        check_notes(&TEXTS, &WIRING, &["5 +24 V red", "6 GND blue", "S3 of a hub must be at 0"]);
     }
 }

@@ -254,7 +254,7 @@ mod tests {
         let cases = [
             (
                 ChangeKind::Restore,
-                "Restoring the profile again completes it",
+                "Restore the profile again to complete the write",
                 "restoring the profile again completes it",
             ),
             (ChangeKind::Bytes, "stay edited", "Give the command again to complete it"),
@@ -264,7 +264,7 @@ mod tests {
             let cut =
                 |cycles| interruption(&cut_off(Error::Cancelled, cycles), path, 4, kind).pop().unwrap().terminal();
             assert!(words(2, kind).contains(part), "{}", words(2, kind));
-            assert!(words(0, kind).contains("nothing needs undoing"), "{}", words(0, kind));
+            assert!(words(0, kind).contains("Nothing was changed."), "{}", words(0, kind));
             assert!(cut(2).contains(terminal) && cut(2).contains("b.ron"), "{}", cut(2));
             assert!(cut(0).contains("Nothing was changed") && cut(0).contains("b.ron"), "{}", cut(0));
         }

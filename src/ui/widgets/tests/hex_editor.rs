@@ -159,7 +159,7 @@ fn hex_is_pasted_where_it_fits() {
     press(&mut harness, &[(CTRL, Key::End)]);
     harness.event(Event::Paste("01 02".to_owned()));
     harness.run();
-    harness.get_by_label_contains("Too long: 2 bytes, but from 0x1F on there is room for 1.");
+    harness.get_by_label_contains("2 bytes are too many: only 1 fit from 0x1F.");
     assert!(harness.state().edits.is_empty());
 }
 
@@ -198,7 +198,7 @@ fn tab_goes_through_both_columns_and_on() {
 #[test]
 fn what_is_read_only_says_why() {
     let mut harness = editor(32, Some(Text::new("widget.hex_nothing")));
-    let reason = "The clipboard holds no bytes.";
+    let reason = "The clipboard contains no bytes.";
     for key in [Key::Delete, Key::Backspace] {
         press(&mut harness, &[(NONE, key)]);
         harness.get_by_label_contains(reason);

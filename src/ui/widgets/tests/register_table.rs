@@ -130,7 +130,7 @@ fn the_arrows_go_over_headings_and_pass_bit_fields() {
     press(&mut harness, &[(NONE, Key::ArrowDown)]);
     assert_eq!(selected(&harness), "00:03 register 3: 03, 3, idle");
     press(&mut harness, &[(NONE, Key::ArrowDown)]);
-    assert_eq!(selected(&harness), "00:04 register 4: 04, 4, changed since the reading before");
+    assert_eq!(selected(&harness), "00:04 register 4: 04, 4, changed since the previous reading");
     press(&mut harness, &[(NONE, Key::ArrowUp), (NONE, Key::ArrowUp), (NONE, Key::ArrowLeft)]);
     assert!(harness.query_by_label("b1 flag 1").is_none(), "left folds what is unfolded");
     press(&mut harness, &[(NONE, Key::ArrowLeft)]);
@@ -152,7 +152,7 @@ fn a_value_is_typed_over_refused_and_taken() {
     assert_eq!(entry(&harness), Some("07".to_owned()));
     harness.event(Event::Text("zz".to_owned()));
     press(&mut harness, &[(NONE, Key::Enter)]);
-    assert_eq!(problem(&harness).as_deref(), Some("The clipboard holds no bytes."));
+    assert_eq!(problem(&harness).as_deref(), Some("The clipboard contains no bytes."));
     assert_eq!(entry(&harness), Some("zz".to_owned()), "what was typed stays");
     press(&mut harness, &[(CTRL, Key::A)]);
     harness.event(Event::Text("2a".to_owned()));

@@ -314,8 +314,8 @@ mod tests {
             };
             let found = last(None);
             let unknown = last(standing(&[DeviceMode::CALIBRATION], true, Activity::Nothing));
-            assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
-            assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
+            assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));
+            assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
             assert_eq!(weight(&unknown), weight(&found));
         }
     }

@@ -280,7 +280,7 @@ fn the_tables_of_errors_variants_lamps_and_switches() {
     assert_eq!((variant(9), variant(0), variant(0xFFFF)), (Some(("HDA30E", Family::Short)), None, None));
     let all = LedSubject::Drives.row(DriveLight::RedGreen).map(|row| row.meaning);
     let one = LedSubject::Drive.row(DriveLight::RedGreen).map(|row| row.meaning);
-    assert_eq!((all, one), (Some("drive error of a requested drive"), Some("drive error")));
+    assert_eq!((all, one), (Some("error of a requested drive"), Some("drive error")));
     assert!(LedSubject::Drive.row(DriveLight::Alternating).is_none());
     let twins =
         |row: &BusLedRow| BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count();

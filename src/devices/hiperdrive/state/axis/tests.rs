@@ -426,9 +426,9 @@ fn every_step_says_what_to_do_and_what_was_found() {
         }
     }
     let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
-    assert_eq!(found(Step::Scale), "The drive has 400/256: 400 steps a turn.");
-    assert_eq!(found(Step::Confirm), "The drive has -2044.00 mm … 2044.00 mm.", "those that were looked at");
-    assert_eq!(found(Step::Upper), "The drive has -10.00 mm … 20.00 mm.");
-    assert_eq!(found(Step::Jog), "Moved 5.00 mm up and 4.00 mm down. Clockwise counts up.");
-    assert_eq!(found(Step::Test), "Places reached: 3 of 3; at most 0.02 mm off target.");
+    assert_eq!(found(Step::Scale), "The drive's scaling is 400/256: 400 steps per turn.");
+    assert_eq!(found(Step::Confirm), "The drive's limits are -2044.00 mm … 2044.00 mm.", "those that were looked at");
+    assert_eq!(found(Step::Upper), "The drive's limits are -10.00 mm … 20.00 mm.");
+    assert_eq!(found(Step::Jog), "Moved 5.00 mm up, 4.00 mm down. The position increases clockwise.");
+    assert_eq!(found(Step::Test), "Positions reached: 3 of 3, at most 0.02 mm off target.");
 }

@@ -34,10 +34,10 @@ fn bad_input_has_its_sentence_and_its_remedy() {
     let out = OutOfRange { number: number(166), name: "maximum speed", value: 351, range: Range::Within(5, 350) };
     assert_eq!(
         english(&device(&Error::OutOfRange(out))),
-        "Parameter 166 (Maximum speed) cannot be 351: it may be 5 to 350. Give a value within that."
+        "Parameter 166 (Maximum speed) cannot be 351. Allowed: 5 to 350."
     );
     let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
-    assert!(english(&plan(&outside)).starts_with("Drive 1 stands at 5000, outside the limits 0 to 4000"));
+    assert!(english(&plan(&outside)).starts_with("Drive 1 is at 5000, outside the limits 0 to 4000"));
     let read_only = PlanError::ReadOnly { item: Item(number(107)) };
     assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) can only be read. Leave it as it is.");
     assert_eq!(

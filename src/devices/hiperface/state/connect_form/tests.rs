@@ -90,7 +90,7 @@ fn what_cannot_be_used_is_named_with_what_could() {
             "tcp:x:1",
             |f| f.tcp_port = "99999".to_owned(),
             "form.tcp_port",
-            "99999 is not possible. Enter a number from 1",
+            "99999 is not a TCP port. Enter a number from 1",
         ),
         ("tcp:x:1", |f| f.tcp_port = "0".to_owned(), "form.tcp_port", "65535"),
         ("replay:x", |f| f.file.clear(), "form.file_missing", "recording"),

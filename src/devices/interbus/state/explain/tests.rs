@@ -181,8 +181,8 @@ fn what_completes_a_write_comes_after_leading_back() {
             write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
         let (found, unknown) = (last(Left::AsFound), last(Left::Unknown(standing)));
-        assert_eq!(unknown.terminal(), format!("Lead the encoder back first. {}", found.terminal()));
-        assert!(unknown.words(German).starts_with("Zuerst den Geber zurückführen. "), "{unknown:?}");
+        assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));
+        assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
         assert_eq!(write::weight(&unknown), write::weight(&found));
     }
 }

@@ -152,7 +152,11 @@ fn a_restart_is_read_or_said() {
     assert!(!axis.survived() && axis.reached(Step::PowerCycle) == Reached::Failed);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     press(&mut axis, &mut seen, Button::Restarted);
-    assert!(axis.survived() && found(&axis, &seen).contains("confirmed by hand, not read"), "{}", found(&axis, &seen));
+    assert!(
+        axis.survived() && found(&axis, &seen).contains("confirmed by hand, not detected"),
+        "{}",
+        found(&axis, &seen)
+    );
     // It was marked, and still is: nobody can say anything else.
     let (mut axis, mut seen) = until_power();
     press(&mut axis, &mut seen, Button::Do);
@@ -163,7 +167,7 @@ fn a_restart_is_read_or_said() {
     axis.lose();
     seen.values.insert(182, 1000);
     axis.surveyed(&seen, false);
-    assert!(axis.survived() && found(&axis, &seen).contains("The restart was read"));
+    assert!(axis.survived() && found(&axis, &seen).contains("The restart was detected"));
     // Somebody else has changed it before: that proves it as well.
     let (mut axis, mut seen) = until_power();
     seen.values.insert(182, 500);
@@ -265,8 +269,8 @@ fn the_end_of_a_run_is_a_report() {
         "Axis set-up, 2026-11-23 06:00",
         "HIPERDRIVE HUB-4 · 16, drive 1",
         "serial number 77",
-        "Spindle pitch: 4.000 mm a turn",
-        "7. Upper limit: done\n   The drive has -10.00 mm … 20.00 mm.",
+        "Spindle pitch: 4.000 mm per turn",
+        "7. Upper limit: done\n   The drive's limits are -10.00 mm … 20.00 mm.",
         "Test moves at 10 % speed and 25 % torque.",
         "Lower limit: reached -10.01 mm (-0.01 mm off target)",
         "The virtual supply was switched off and on.",

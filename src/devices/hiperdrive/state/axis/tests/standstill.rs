@@ -55,7 +55,7 @@ fn a_position_that_jumps_at_a_standstill_is_another_reference() {
     read(&mut seen, 10_020, 128, STANDS);
     axis.look(&seen);
     let why = words::fallen(axis.fallen().unwrap()).words(Language::English);
-    assert!(why.contains("jumped at a standstill"), "{why}");
+    assert!(why.contains("jumped at standstill"), "{why}");
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
 }
 
