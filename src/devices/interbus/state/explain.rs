@@ -69,7 +69,7 @@ pub fn encoder(error: &Error) -> Text {
             .text("interbus.exception")
             .with_text("asked", gateway::asked(*asked))
             .with("code", format!("0x{:02X}", exception.code()))
-            .with("name", exception.name())
+            .with_text("name", gateway::exception_name(*exception))
             .with_text("cause", gateway::exception(*exception)),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::Illegal(refused) => TEXTS.text("interbus.illegal").with("word", word(refused.command.emit())),

@@ -18,6 +18,22 @@ pub(super) fn asked(asked: Asked) -> Text {
     }
 }
 
+/// The name of an exception.
+pub(super) fn exception_name(exception: Exception) -> Text {
+    TEXTS.text(match exception.code() {
+        0x01 => "ib_exception_name.function",
+        0x02 => "ib_exception_name.address",
+        0x03 => "ib_exception_name.value",
+        0x04 => "ib_exception_name.failure",
+        0x05 => "ib_exception_name.acknowledge",
+        0x06 => "ib_exception_name.busy",
+        0x08 => "ib_exception_name.memory",
+        0x0A => "ib_exception_name.path",
+        0x0B => "ib_exception_name.target",
+        _ => "ib_exception_name.other",
+    })
+}
+
 /// What is the matter, most likely, and what to do.
 pub fn exception(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {

@@ -2,6 +2,7 @@
 
 use crate::app::explain::{document, in_both_languages};
 use crate::app::{DeviceType, Kinds};
+use crate::devices::interbus::procedures::Exception;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::devices::interbus::state::Encoder;
 use crate::profile::{Document, Formats, Profile};
@@ -34,5 +35,13 @@ fn a_wrong_profile_is_told_in_both_languages() {
     for (from, to) in cases {
         let error = Document::parse(&good.replacen(from, to, 1), InterbusProfile::FORMATS).unwrap_err();
         in_both_languages(&document(&error, KINDS), &error);
+    }
+}
+
+#[test]
+fn every_exception_is_named_in_both_languages() {
+    for code in 0..=u8::MAX {
+        let exception = Exception::new(code);
+        in_both_languages(&super::gateway::exception_name(exception), &exception.name());
     }
 }
