@@ -168,7 +168,7 @@ fn a_preset_is_programmed_and_fired_at_standstill() {
     assert_eq!(written(&encoder), ["W 08000007", "STORE parameters", "W 40000000", "PRESET 7"]);
     ask(&bench, &encoder, &["do", "interbus", "preset", "3600", "--yes"]).fails(1, &["3600", "0", "3599"]);
     let Some(turning) = bench.gateway(&["--steps=3600", "--rpm=60"]) else { return };
-    ask(&bench, &turning, &["do", "interbus", "preset", "7", "--yes"]).fails(1, &["moves", "nothing was set"]);
+    ask(&bench, &turning, &["do", "interbus", "preset", "7", "--yes"]).fails(1, &["is moving", "nothing was set"]);
     assert!(written(&turning).is_empty());
 }
 
@@ -291,7 +291,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     }
     assert!(written(&encoder).is_empty());
     let ran = asked(&bench, &typed, "y\ny\n");
-    assert!(ran.status == Some(0) && ran.out.contains("has to stand still"), "{ran:?}");
+    assert!(ran.status == Some(0) && ran.out.contains("must stand still"), "{ran:?}");
     assert_eq!(written(&encoder), ["W 0A000005", "STORE parameters"]);
     wear_to(449);
     encoder.requests();

@@ -142,7 +142,7 @@ fn periods_are_typed_and_refused_in_words() {
     assert!(screen.shows("\"0\" is not a whole number from 1 to 65536."));
     type_in(&mut screen, "64");
     assert_eq!(screen.studio().signals().periods(), Some(64));
-    assert!(!screen.shows("is no whole number"));
+    assert!(!screen.shows("is not a whole number"));
 }
 
 #[test]

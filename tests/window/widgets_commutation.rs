@@ -78,8 +78,11 @@ fn the_page_is_gone_through_by_hand() {
 fn what_is_wrong_with_an_entry_stands_beside_it() {
     let mut screen = Screen::begun(TALL);
     screen.click("page.commutation");
-    let numbers =
-        ["is not a number from 0.001 to 1000", "is not a number from 0.1 to 600", "The encoder has 128 periods a turn"];
+    let numbers = [
+        "is not a number from 0.001 to 1000",
+        "is not a number from 0.1 to 600",
+        "The encoder has 128 periods per turn",
+    ];
     assert!(!numbers.iter().any(|words| screen.shows(words)), "an empty entry is not wrong yet");
     let mut form = screen.encoder().commutation.form.clone();
     (form.current_a, form.time_s, form.periods) = ("−5".to_owned(), "abc".to_owned(), "1024".to_owned());

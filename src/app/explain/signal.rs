@@ -317,7 +317,7 @@ mod tests {
         );
         assert_eq!(
             said(Quantity::Periods, 16.5)[0],
-            "Periods in a revolution: 16.5 is no whole number from 1 to 65536."
+            "Periods in a revolution: 16.5 is not a whole number from 1 to 65536."
         );
     }
 }

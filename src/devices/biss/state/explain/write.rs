@@ -272,7 +272,7 @@ mod tests {
         let cases = [
             (ChangeKind::Restore, "restoring the profile again"),
             (ChangeKind::Bytes, "any other register stays as it was written"),
-            (ChangeKind::Guided, "done before stands"),
+            (ChangeKind::Guided, "Completed steps stay done"),
             (ChangeKind::WiegandTest, "changes nothing but its saved result"),
             (ChangeKind::Filter, "status biss"),
             (ChangeKind::Preset, "position biss"),
@@ -393,7 +393,7 @@ mod tests {
                     task: Task::Stand,
                     blockers: vec![Blocker::Standing, Blocker::Temperature { celsius: 20 }],
                 },
-                "stands. The encoder is at 20 °C",
+                "stands still. The encoder is at 20 °C",
             ),
             (Failure::NotVerified { item: "0x6E".to_owned(), expected: "04".to_owned(), got: "03".to_owned() }, "0x6E"),
             (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),

@@ -158,7 +158,7 @@ mod tests {
             ),
             (geometry(Geometry::Linear { period_nm: 1_500_000, periods: 0 }), "linear, Periode 1,5 mm"),
             (position(Geometry::Rotary { periods: 128, turns: 4096 }.position(0x000E_0531)), "Umdrehung 224, 116,807°"),
-            (line_settings(LineSettings::from_byte(0x64)), "9600 8E1, Zeitgrenze 44 Bit, Bus"),
+            (line_settings(LineSettings::from_byte(0x64)), "9600 8E1, Zeitüberschreitung 44 Bit, Bus"),
             (parity(Parity::Odd), "ungerade"),
         ];
         for (text, german) in cases {

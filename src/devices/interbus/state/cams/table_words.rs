@@ -125,7 +125,7 @@ mod tests {
         let table = options.read("name;start;stop\nfeed;350;10\nglue;20;30\nglue;40;x\nGlue;100;110,5\n");
         let says = |text: Text| text.words(Language::English);
         assert_eq!(says(layout(&table)), "Pulses read: 3. Columns separated by semicolons, named in the first line.");
-        assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is no number.");
+        assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");
         let pulses = "Program 2: Glue has 2 pulses, which take cams 1, 2.";
         assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
         // 228 steps are 10.01953°.
@@ -155,7 +155,7 @@ mod tests {
             "Line 3, column 2: Cam \"8\" does not exist: there are 0 to 7.",
             "Line 4, column 3: The start at 1000 is beyond the measuring range, which is 0 to 999.",
             "Line 5, column 4: The stop is missing.",
-            "Line 7, column 2: Cam 2 of program 1 stands in line 6 already, which counts.",
+            "Line 7, column 2: Cam 2 of program 1 is already in line 6, which is used.",
         ];
         assert_eq!(told, expected);
     }

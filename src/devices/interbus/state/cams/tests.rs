@@ -68,7 +68,7 @@ fn lamps_tell_what_is_simulated_from_what_the_encoder_says() {
     assert_eq!(chart.lamps(None, None)[0], Lamp { simulated: None, own: None });
     assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
     let says = |lamp| words::lamp(lamp).words(Language::English);
-    assert_eq!(says(lamps[5]), "on as the encoder says, off as simulated");
+    assert_eq!(says(lamps[5]), "on from the encoder, off in the simulation");
     assert_eq!(says(chart.lamps(None, None)[0]), "not known");
 }
 

@@ -220,7 +220,7 @@ fn operations_are_told_one_by_one() {
         ["cam 5, stop: 10 → 20", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"].map(str::to_owned).to_vec();
     assert_eq!(words(&Op::Program(change)), ("Cam program 2, stored once".to_owned(), expected));
     let fired = words(&Op::FirePreset { value: 500 });
-    assert_eq!(fired.1, ["as it stands at that moment → 500"]);
+    assert_eq!(fired.1, ["as it is at that moment → 500"]);
     assert!(words(&Op::Default).1[0].contains("experimental"));
 }
 

@@ -203,7 +203,7 @@ fn a_handle_says_what_it_does_and_how_far_it_goes() {
     let rect = harness.get_by_label("Whole position").rect();
     harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
     harness.run_steps(60);
-    harness.get_by_label("It cannot be moved: nothing is free beside it.");
+    harness.get_by_label("This boundary cannot be moved: the neighbouring bits are not free.");
 }
 
 /// Eight error bits with long names, at the beginning of a line and at its end: none lies over another.
