@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 mod paths;
 mod places;
+mod words;
 
 use paths::{Used, paths};
 use places::{Owner, Place, modules_of};
