@@ -1,5 +1,7 @@
 //! A tab that needs no device. The studio knows no tool: it asks all of them alike.
 
+#![warn(missing_docs)]
+
 use std::any::Any;
 use std::path::{Path, PathBuf};
 

@@ -31,7 +31,6 @@ struct Front {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Common {
     /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
     /// bridge:tcp:HOST:PORT or replay:FILE, with ?name=value&…
@@ -103,7 +102,6 @@ pub struct Device {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Find {
     /// The kind of device.
     pub(super) device: String,
@@ -112,7 +110,6 @@ pub struct Find {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Status {
     /// The kind of device.
     pub(super) device: String,
@@ -121,7 +118,6 @@ pub struct Status {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Position {
     /// The kind of device.
     pub(super) device: String,
@@ -139,7 +135,6 @@ pub struct Position {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Read {
     /// The kind of device.
     pub(super) device: String,
@@ -150,7 +145,6 @@ pub struct Read {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Save {
     /// The kind of device.
     pub(super) device: String,
@@ -182,7 +176,6 @@ pub struct Verify {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Restore {
     /// The profile.
     pub file: PathBuf,
@@ -212,7 +205,6 @@ pub struct Restore {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Consenting {
     /// Write without asking.
     #[arg(long)]
@@ -223,7 +215,6 @@ pub struct Consenting {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Write {
     /// The kind of device.
     pub(super) device: String,
@@ -240,7 +231,6 @@ pub struct Write {
 }
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Simulate {
     /// The kind of device.
     pub(super) device: String,

@@ -1,6 +1,8 @@
 //! What devices, buses and Signals add to the command line. The list of them is a value that `kinds.rs` hands over: nothing
 //! here names one.
 
+#![warn(missing_docs)]
+
 use clap::builder::PossibleValue;
 use clap::{Arg, ArgMatches, FromArgMatches, ValueEnum};
 

@@ -3,6 +3,8 @@
 //! Most devices need one kind of wire, a stream of bytes ([`ByteLink`]); cyclic data are packets beside it ([`Datagrams`]).
 //! What else a protocol makes of them (registers, process data, explicit messages) takes the same [`Ctx`].
 
+#![warn(missing_docs)]
+
 mod clock;
 mod datagram;
 mod error;

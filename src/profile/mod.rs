@@ -1,6 +1,8 @@
 //! What is saved, what differs, and what a write would do: profiles, differences and plans. Pure; files are opened by
 //! `store`, devices are read and written by their procedures.
 
+#![warn(missing_docs)]
+
 mod body;
 mod cause;
 pub(crate) mod difference;

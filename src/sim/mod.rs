@@ -4,6 +4,8 @@
 //! Never in here: a clock, a thread, a socket or a port (time is handed in), nor anything of procedures or `link/`; only
 //! the tables of `protocol/` are shared with the host's side.
 
+#![warn(missing_docs)]
+
 mod fault;
 pub(crate) mod line;
 mod motor;

@@ -1,5 +1,7 @@
 //! The view of a device: typed in the device's folder, object-safe for the window. One adapter stands between the two.
 
+#![warn(missing_docs)]
+
 use egui::Ui;
 
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};

@@ -1,7 +1,5 @@
 //! Icons by name: a part of the Phosphor set, in `assets/fonts/Icons.ttf`. Each stands with a word or a tooltip.
 
-#![allow(missing_docs, reason = "each name says what it shows")]
-
 pub const ARROWS_CLOCKWISE: &str = "\u{E094}";
 pub const ARROW_CLOCKWISE: &str = "\u{E036}";
 pub const ARROW_COUNTER_CLOCKWISE: &str = "\u{E038}";

@@ -7,6 +7,8 @@
 //! Events about a job are never lost. Progress is coalesced: while nobody reads, only the newest is kept. Nobody waits
 //! for anybody: a full channel is a state of the worker, not a pause of the line.
 
+#![warn(missing_docs)]
+
 pub mod commit;
 mod event_sender;
 mod interruption;

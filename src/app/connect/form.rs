@@ -1,6 +1,8 @@
 //! The connection form of a kind of device, and what looks for such devices from there: typed in the device's folder,
 //! object-safe for the dialog. One adapter stands between the two.
 
+#![warn(missing_docs)]
+
 use std::any::Any;
 use std::marker::PhantomData;
 

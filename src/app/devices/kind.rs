@@ -1,6 +1,8 @@
 //! A kind of device, before there is one on the desk: its tab, its links, its profiles. A device implements [`DeviceType`];
 //! one adapter makes [`DeviceKind`] of it, which the studio has a list of.
 
+#![warn(missing_docs)]
+
 use std::marker::PhantomData;
 use std::path::Path;
 

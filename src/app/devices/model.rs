@@ -1,5 +1,7 @@
 //! A kind of device as the studio sees it, typed: what a device brings so that the rest is done for all of them alike.
 
+#![warn(missing_docs)]
+
 use std::any::Any;
 use std::path::{Path, PathBuf};
 

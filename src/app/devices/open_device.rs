@@ -1,6 +1,8 @@
 //! A device of any kind, as the studio, the window's common parts and other devices see it. There is one implementation for
 //! all kinds.
 
+#![warn(missing_docs)]
+
 use std::any::Any;
 use std::path::PathBuf;
 

@@ -1,6 +1,8 @@
 //! A device, or a profile of one, whose edits are kept over a crash. A kind says what an edit is and whose it is; when a
 //! draft is looked for, kept and forgotten is the same for all.
 
+#![warn(missing_docs)]
+
 use super::drafts::DRAFT_BACK;
 use super::{DraftDone, DraftEdits, DraftKey, HasSession, Kind, Phase, ProfileFile, Saving, Source};
 use crate::app::services::Services;

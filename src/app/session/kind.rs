@@ -1,5 +1,7 @@
 //! What a kind of device tells the studio of its types, so that opening, leaving and running are the same for all.
 
+#![warn(missing_docs)]
+
 use crate::app::action::OpenFailed;
 use crate::app::services::JobEnd;
 use crate::app::session::{DraftEdits, first};

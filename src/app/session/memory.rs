@@ -1,6 +1,8 @@
 //! A device whose memory is written through a review: from a wish to a plan, from the plan and the consent to it to the job
 //! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
 
+#![warn(missing_docs)]
+
 use super::{Drafted, EarlyEnd, HasSession, Kind, SessionEvents};
 use crate::app::review::{self, OpWords, Permit, Review, ReviewSheet, ReviewState, Reviewed, told};
 use crate::app::services::Services;

@@ -1,6 +1,8 @@
 //! What a line tells: samples, results of jobs, why one ended early, and its loss. What is made of a result is a kind's own
 //! matter; how the end of a job is told is the same for all.
 
+#![warn(missing_docs)]
+
 use super::{HasSession, Kind};
 use crate::app::live_session::LiveSession;
 use crate::app::services::{JobEnd, Services};

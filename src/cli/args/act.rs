@@ -7,7 +7,6 @@ use crate::cli::commands::OwnOptions;
 use crate::cli::{Failure, Result};
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Do {
     /// The kind of device.
     pub(in crate::cli) device: String,

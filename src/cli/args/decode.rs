@@ -5,7 +5,6 @@ use clap::{Args, ValueEnum};
 use crate::cli::commands::OwnOptions;
 
 #[derive(Args)]
-#[expect(missing_docs, reason = "clap would make help of it")]
 pub struct Decode {
     /// The kind of device that the bytes came from or went to, or a protocol.
     pub(in crate::cli) protocol: String,

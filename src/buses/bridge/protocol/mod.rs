@@ -5,6 +5,8 @@
 //! COBS( seq  op  body…  crc16 ) 00
 //! ```
 
+#![warn(missing_docs)]
+
 mod cobs;
 mod continuity;
 mod data;

@@ -9,6 +9,8 @@
 //! UDP  items: sequenced address, connected data ( count │ run/idle header where there is one │ process data )
 //! ```
 
+#![warn(missing_docs)]
+
 mod arrivals;
 mod connection;
 mod encapsulation;

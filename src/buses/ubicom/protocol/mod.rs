@@ -5,6 +5,8 @@
 //! 80 ADDRESS COMMAND LEN-low LEN-high payload… CHK        CHK = NOT(sum of all bytes before it)
 //! ```
 
+#![warn(missing_docs)]
+
 mod frame;
 mod message;
 mod position;

@@ -235,7 +235,6 @@ impl fmt::Display for JobStep {
 
 /// What a BiSS job gives.
 #[derive(Debug)]
-#[expect(missing_docs, reason = "each is the result of the job of that name")]
 pub enum BissOutput {
     Surveyed(Box<Survey>),
     Identity(Box<Identity>),

@@ -1,5 +1,7 @@
 //! BiSS: what is saved of an encoder, how two differ, and what restoring and the guided procedures would do.
 
+#![warn(missing_docs)]
+
 mod compare;
 mod edit;
 mod entry_error;

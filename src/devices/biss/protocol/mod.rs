@@ -4,6 +4,8 @@
 //! of it where a section is named so). What the manual leaves open is marked `U` (unknown) and is either tolerated or
 //! can be set.
 
+#![warn(missing_docs)]
+
 mod address;
 mod control;
 mod crc;

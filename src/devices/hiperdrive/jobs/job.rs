@@ -184,7 +184,6 @@ impl fmt::Display for JobStep {
 
 /// What a job gives.
 #[derive(Debug)]
-#[expect(missing_docs, reason = "each is the result of the job of that name")]
 pub enum HiperdriveOutput {
     Hello(Box<Identity>),
     Surveyed(Box<Survey>),

@@ -1,6 +1,8 @@
 //! HIPERDRIVE: what an adapter or a hub keeps of itself and its drives, what is saved of it, how two differ, and what a write
 //! would do.
 
+#![warn(missing_docs)]
+
 mod edit;
 mod entry_error;
 mod error;

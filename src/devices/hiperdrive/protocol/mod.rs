@@ -4,6 +4,8 @@
 //! Source: the drive's manual 004 ("the manual" below; the project's reference of it where a section is named so). `D` is
 //! derived, `U` is left open by the manual; where it contradicts itself, reference 8 says what is taken.
 
+#![warn(missing_docs)]
+
 mod control_word;
 pub mod drive_parameter;
 mod error_code;

@@ -275,7 +275,6 @@ impl fmt::Display for JobStep {
 
 /// What a HIPERFACE job gives.
 #[derive(Debug)]
-#[expect(missing_docs, reason = "each is the result of the job of that name")]
 pub enum HiperfaceOutput {
     Surveyed(Box<Survey>),
     Identity(Identity),

@@ -1,5 +1,7 @@
 //! HIPERFACE: what is saved of an encoder, how two differ, and what restoring would do.
 
+#![warn(missing_docs)]
+
 mod commutation;
 mod compare;
 mod edit;

@@ -8,6 +8,8 @@
 //! ```
 //! A frame ends with silence. `CHK` is the XOR of all bytes before it. Bit 7 of a reply's `CMD` is the error bit.
 
+#![warn(missing_docs)]
+
 mod address;
 mod command;
 mod data_field;

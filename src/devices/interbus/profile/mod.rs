@@ -1,5 +1,7 @@
 //! INTERBUS: what a K3 encoder holds, what is saved of it, how two differ, and what a write would do.
 
+#![warn(missing_docs)]
+
 mod edit;
 mod entry_error;
 mod error;

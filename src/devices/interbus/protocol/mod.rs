@@ -12,6 +12,8 @@
 //! The same OUT word means different things in different modes: [`Command::readings`] has all of them, and
 //! [`Command::in_mode`] the one that an encoder in a [`Mode`] takes it for.
 
+#![warn(missing_docs)]
+
 mod cam;
 mod cam_output;
 mod class;

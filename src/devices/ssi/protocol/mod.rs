@@ -3,6 +3,8 @@
 //! Source: SICK, *SSI Schnittstellenbeschreibung* ("the manual" below; the project's reference of it where a section is
 //! named so). The manual's pictures of bits are not to be had; layouts follow its text, which numbers the clocks from 1.
 
+#![warn(missing_docs)]
+
 mod code;
 mod descriptor;
 mod explain;
