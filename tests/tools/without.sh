@@ -35,11 +35,11 @@ export CARGO_TARGET_DIR=$root/target/without CARGO_PROFILE_DEV_DEBUG=0
 # Another tree at the same place: times of files tell nothing.
 find src tests -name '*.rs' -exec touch {} +
 # Warnings are about what only this kind uses of the core.
-if ! cargo test --locked --lib -q >"$copy/tests" 2>"$copy/errors" || ! cargo build --locked -q 2>>"$copy/errors"; then
-    cat "$copy/tests" "$copy/errors"
+if ! cargo test --locked --lib -q >"$copy/report" 2>"$copy/errors" || ! cargo build --locked -q 2>>"$copy/errors"; then
+    cat "$copy/report" "$copy/errors"
     exit 1
 fi
-grep "^test result" "$copy/tests"
+grep "^test result" "$copy/report"
 
 command -v Xvfb >/dev/null || { echo "without $device: the library's tests pass; no Xvfb, no window"; exit 0; }
 export HOME=$copy/home XDG_CONFIG_HOME=$copy/home/config XDG_DATA_HOME=$copy/home/data LIBGL_ALWAYS_SOFTWARE=1

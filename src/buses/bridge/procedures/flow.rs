@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::drift::Drift;
-use super::{Adapter, AdapterError, Failure, other};
+use super::{Adapter, AdapterError, Failure};
 use crate::analysis::Time;
 use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Reply, Request};
 use crate::link::line::LineError;
@@ -109,7 +109,7 @@ impl Flow {
             (Streamed::Ssi { .. }, Reply::SsiStream { period_us })
             | (Streamed::Biss { .. }, Reply::BissStream { period_us }) => i64::from(*period_us) * 1000,
             (Streamed::Analog { period_ns }, Reply::AnalogStream { on: true }) => period_ns,
-            _ => return Err(other(request.operation(), &answered.reply).into()),
+            _ => return Err(AdapterError::other(request.operation(), &answered.reply).into()),
         };
         Ok(Flow {
             streamed,

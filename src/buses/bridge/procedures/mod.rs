@@ -139,6 +139,13 @@ pub(crate) enum Failure {
     Line(LineError),
 }
 
+impl AdapterError {
+    /// Returns the error for a reply to another operation than the one requested.
+    pub fn other(asked: Operation, reply: &Reply) -> Self {
+        AdapterError::Other { asked, got: reply.operation() }
+    }
+}
+
 impl From<AdapterError> for Failure {
     fn from(error: AdapterError) -> Self {
         Failure::Adapter(error)
@@ -217,7 +224,7 @@ impl Adapter<'_, '_> {
             // The empty packet before it ends what the adapter may have heard of somebody else.
             let answered = self.repeat(&Request::Hello, &[0])?;
             let Reply::Hello(hello) = answered.reply else {
-                return Err(other(Operation::Hello, &answered.reply).into());
+                return Err(AdapterError::other(Operation::Hello, &answered.reply).into());
             };
             // Adapters that cannot tell have this bit clear.
             if self.adapter.power.found.is_none() && hello.capabilities.has(Capabilities::SUPPLIED) {
@@ -242,7 +249,7 @@ impl Adapter<'_, '_> {
         self.adapter.power.given = true;
         let answered = self.ask(&Request::Supply { on: true, millivolt: given })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
-            return Err(other(Operation::Supply, &answered.reply).into());
+            return Err(AdapterError::other(Operation::Supply, &answered.reply).into());
         };
         if measured > greatest {
             self.switch_off()?;
@@ -343,17 +350,13 @@ impl Adapter<'_, '_> {
         self.line.show(now, MaskedBytes::clear(&packet.emit()));
         match parsed {
             Ok(Message::Reply(reply)) if reply.operation() == operation => Ok(Some(reply)),
-            Ok(Message::Reply(reply)) => Err(other(operation, &reply)),
+            Ok(Message::Reply(reply)) => Err(AdapterError::other(operation, &reply)),
             Ok(Message::Error { code, text, .. }) => Err(AdapterError::Refused { operation, code, text }),
             Ok(Message::Data(_)) => Ok(None),
             Err(BodyError::Version { expected, got }) => Err(AdapterError::Version { expected, got }),
             Err(cause) => Err(AdapterError::Reply { operation, cause }),
         }
     }
-}
-
-fn other(asked: Operation, reply: &Reply) -> AdapterError {
-    AdapterError::Other { asked, got: reply.operation() }
 }
 
 /// How far the adapter's clock is behind ours, in nanoseconds: between these two, as far as replies have told. What an

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::flow::{Flow, Portion, Streamed};
-use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure, other};
+use super::{Adapter, AdapterError, AdapterState, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{Capabilities, Hello, Reply, Request};
 use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
@@ -124,7 +124,7 @@ impl Tap {
             (Wanted::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
                 (Streamed::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
             }
-            _ => return Err(TapError::from(Failure::from(other(request.operation(), &answered.reply)))),
+            _ => return Err(TapError::from(Failure::from(AdapterError::other(request.operation(), &answered.reply)))),
         };
         let flow = Flow::begin(&mut adapter, streamed, None)?;
         let period_ns = flow.period_ns();

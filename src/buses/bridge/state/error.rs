@@ -2,7 +2,7 @@
 
 use crate::app::Text;
 use crate::buses::bridge::procedures::AdapterError;
-use crate::buses::bridge::protocol::{ErrorCode, Operation};
+use crate::buses::bridge::protocol::{BodyError, ErrorCode, Operation};
 use crate::buses::bridge::state::TEXTS;
 
 /// An adapter that does not answer, or not with what was asked for.
@@ -23,14 +23,14 @@ pub fn adapter(error: &AdapterError) -> Text {
             .with_number("greatest", volts(*greatest), 2),
         AdapterError::Mute => TEXTS.text("adapter.mute"),
         AdapterError::Restarted => TEXTS.text("adapter.restarted"),
-        AdapterError::Data { cause } => TEXTS.text("adapter.data").with("why", cause),
+        AdapterError::Data { cause } => TEXTS.text("adapter.data").with_text("why", body(cause)),
         AdapterError::Refused { operation, code, text } => TEXTS
             .text("adapter.refused")
             .with("operation", number(*operation))
             .with_text("why", reason(*code))
             .with("text", text),
         AdapterError::Reply { operation, cause } => {
-            TEXTS.text("adapter.reply").with("operation", number(*operation)).with("why", cause)
+            TEXTS.text("adapter.reply").with("operation", number(*operation)).with_text("why", body(cause))
         }
         AdapterError::Other { asked, got } => {
             TEXTS.text("adapter.other").with("asked", number(*asked)).with("got", number(*got))
@@ -50,6 +50,20 @@ fn reason(code: ErrorCode) -> Text {
     }
 }
 
+/// Returns why the body of a packet cannot be read.
+fn body(error: &BodyError) -> Text {
+    let of = |id, op: u8| TEXTS.text(id).with("operation", format!("0x{op:02X}"));
+    match *error {
+        BodyError::Length { op, got } => of("adapter.body_length", op).with("got", got),
+        BodyError::Operation(op) => of("adapter.body_operation", op),
+        BodyError::Value { op, field, got } => of("adapter.body_value", op).with("field", field).with("got", got),
+        BodyError::Text { op } => of("adapter.body_text", op),
+        BodyError::Version { expected, got } => {
+            TEXTS.text("adapter.body_version").with("expected", expected).with("got", got)
+        }
+    }
+}
+
 fn volts(millivolt: u16) -> f64 {
     f64::from(millivolt) / 1000.0
 }
@@ -63,7 +77,6 @@ mod tests {
     use super::*;
     use crate::app::Language::{English, German};
     use crate::app::explain::{in_both_languages, setting};
-    use crate::buses::bridge::protocol::BodyError;
     use crate::buses::bridge::sim::Adapter;
     use crate::kinds::at_adapter;
     use crate::link::Query;
@@ -104,6 +117,20 @@ mod tests {
             let (english, german) = (adapter(&error).words(English), adapter(&error).words(German));
             assert!(english.contains(fact) && german.contains(fact), "{english} {german}");
             assert_ne!(english, german);
+        }
+    }
+
+    #[test]
+    fn a_damaged_body_is_explained_in_both_languages() {
+        let errors = [
+            BodyError::Length { op: 0x20, got: 3 },
+            BodyError::Operation(0x94),
+            BodyError::Value { op: 0x20, field: "voltage", got: 7 },
+            BodyError::Text { op: 0x01 },
+            BodyError::Version { expected: 1, got: 2 },
+        ];
+        for error in errors {
+            in_both_languages(&body(&error), &error);
         }
     }
 

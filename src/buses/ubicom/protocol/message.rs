@@ -146,7 +146,9 @@ impl Request {
     pub const POSITION: Request = Request::Position { argument: 0x01 };
     /// Its answer tells in which order the encoder takes the two bytes of a register: see [`order_told_by`]. Sent in
     /// the order low byte first.
-    pub const PROBE: Request = Request::Read { register: 0x0001 };
+    pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
+    /// The register that [`PROBE`](Self::PROBE) reads.
+    pub const PROBE_REGISTER: u16 = 0x0001;
 
     /// Which command it is.
     pub const fn command(self) -> Command {

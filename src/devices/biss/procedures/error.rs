@@ -3,8 +3,8 @@
 use std::fmt;
 
 use crate::buses::bridge::procedures::{AdapterError, Failure};
-use crate::buses::ubicom::protocol::ReplyError;
-use crate::devices::biss::protocol::{DeviceMode, FrameError, Identity, RegisterAddress};
+use crate::buses::ubicom::protocol::{Reply, ReplyError};
+use crate::devices::biss::protocol::{DeviceMode, FrameError, Identity, LayoutError, RegisterAddress};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
@@ -181,9 +181,59 @@ pub enum Error {
         /// What changed.
         item: String,
     },
-    /// The encoder answers, and not as the reference says; with what it did.
-    #[error("{0}")]
-    Unexpected(String),
+    /// The reply belongs to another kind of request.
+    #[error("{asked}: the reply is of another kind: {reply}")]
+    OtherReply {
+        /// The request.
+        asked: Asked,
+        /// The reply, as parsed.
+        reply: String,
+    },
+    /// The adapter reports a status of the frame that the bridge protocol does not have.
+    #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
+    FrameStatus {
+        /// The status byte.
+        status: u8,
+    },
+    /// A layout of the frame that no encoder can have.
+    #[error(transparent)]
+    Layout(#[from] LayoutError),
+    /// Fewer registers were read than requested.
+    #[error("{got} registers were read from {start} on, not {expected}")]
+    TooFew {
+        /// The first register.
+        start: RegisterAddress,
+        /// Registers requested.
+        expected: usize,
+        /// Registers read.
+        got: usize,
+    },
+    /// The encoder does not return to operation, or does not give up its password.
+    #[error("the encoder stays in device mode {mode}, or its password stays set")]
+    StaysUnlocked {
+        /// The mode that it reports.
+        mode: DeviceMode,
+    },
+}
+
+impl Error {
+    /// Returns the error for a reply that belongs to another kind of request.
+    pub(super) fn other_reply(asked: Asked, reply: &Reply) -> Self {
+        Error::OtherReply { asked, reply: format!("{reply:?}") }
+    }
+}
+
+/// Returns the register of a request over the configuration pin; the bank selection where the number names none.
+pub(super) fn asked_register(number: u16) -> RegisterAddress {
+    RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
+}
+
+/// Returns exactly the registers that were requested.
+///
+/// # Errors
+/// [`Error::TooFew`] if there are fewer or more.
+pub(super) fn exactly<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) -> Result<[u8; N], Error> {
+    bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
 }
 
 /// What was wrong with a reply.

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::error::exactly;
 use super::registers::Registers;
 use super::widths::find_widths;
 use super::{Error, Master, Station, Way};
@@ -202,9 +203,8 @@ fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
 fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind, Error> {
     let profile = registers.read(master, RegisterAddress::PROFILE, 2)?;
     let device = registers.read(master, RegisterAddress::DEVICE_ID, 8)?;
-    let short = || Error::Unexpected("the identification is too short".to_owned());
-    let profile: [u8; 2] = profile.try_into().map_err(|_| short())?;
-    let device: [u8; 8] = device.try_into().map_err(|_| short())?;
+    let profile: [u8; 2] = exactly(RegisterAddress::PROFILE, profile)?;
+    let device: [u8; 8] = exactly(RegisterAddress::DEVICE_ID, device)?;
     let [d0, d1, d2, d3, d4, d5, m0, m1] = device;
     Ok(Kind {
         profile: ProfileId::new(u16::from_be_bytes(profile)),

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use bus::NoFrame;
 
-use super::error::{Asked, Damage};
+use super::error::{Asked, Damage, asked_register};
 use super::position::PositionReading;
 use super::{Error, Station, Way};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
@@ -239,8 +239,7 @@ impl<'a> Master<'a> {
     }
 
     fn probe_order(&mut self) -> Result<(), Error> {
-        let Request::Read { register } = Request::PROBE else { return Ok(()) };
-        let asked = Asked::Read(RegisterAddress::from_global(register).unwrap_or(RegisterAddress::BANK_SELECT));
+        let asked = Asked::Read(asked_register(Request::PROBE_REGISTER));
         let answer = self.read_confirmed(asked, |master| master.probe_once())?;
         let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
         self.station.order = Some(order);

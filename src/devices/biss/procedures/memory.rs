@@ -3,6 +3,7 @@
 
 use std::time::Duration;
 
+use super::error::exactly;
 use super::identify::identify_with;
 use super::registers::Registers;
 use super::survey::look_around;
@@ -103,9 +104,8 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8))
     let mut banks = Vec::new();
     for number in area.banks() {
         told(number);
-        let bytes = master.read_run(RegisterAddress::start_of(number), Bank::SIZE)?;
-        let short = || Error::Unexpected(format!("bank 0x{number:02X} has not 64 registers"));
-        banks.push(Bank { number, bytes: bytes.try_into().map_err(|_| short())? });
+        let start = RegisterAddress::start_of(number);
+        banks.push(Bank { number, bytes: exactly(start, master.read_run(start, Bank::SIZE)?)? });
     }
     Ok(banks)
 }

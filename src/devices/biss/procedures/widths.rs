@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{Error, Master};
-use crate::devices::biss::protocol::{Crc, Layout, data_bits_of};
+use crate::devices::biss::protocol::{Crc, Layout, LayoutError, data_bits_of};
 
 /// As many bits as a frame has at most, data and checksum.
 const CLOCKED: u8 = 64;
@@ -20,15 +20,14 @@ const MOST: u8 = 32;
 /// # Errors
 /// [`Error::WidthsUnknown`] where no length fits, or the shaft stands still; the line.
 pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
-    let crc = Crc::new(Crc::POSITION, 0, true).map_err(|error| Error::Unexpected(error.to_string()))?;
+    let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
     let mut frames = Vec::with_capacity(FRAMES);
     while frames.len() < FRAMES {
         frames.push(master.frame(CLOCKED - crc.width(), crc.width())?);
         if let Some(bits) = data_bits_of(&frames, CLOCKED, &crc) {
             let position = bits.saturating_sub(2);
             let singleturn = position.min(MOST);
-            return Layout::new(position - singleturn, singleturn, true, true, Some(crc))
-                .map_err(|error| Error::Unexpected(error.to_string()));
+            return Ok(Layout::new(position - singleturn, singleturn, true, true, Some(crc))?);
         }
         master.wait(BETWEEN)?;
     }

@@ -1,6 +1,7 @@
 //! How a plan is written into an encoder: what was read is read again, then each operation is carried out and read back,
 //! with a person at the motor where one is needed, and the encoder is led back to operation after each.
 
+use super::error::exactly;
 use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, Step};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
@@ -249,8 +250,7 @@ pub fn read_state(
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_run(start, Bank::SIZE)?;
-    let short = || Error::Unexpected(format!("bank 0x{number:02X} has not 64 registers"));
-    Ok(Bank { number, bytes: bytes.try_into().map_err(|_| short())? })
+    Ok(Bank { number, bytes: exactly(start, bytes)? })
 }
 
 /// The filter in force; `None` where the firmware has no choice.

@@ -23,7 +23,7 @@ use crate::buses::bridge::state::adapter;
 use crate::devices::biss::jobs::{DeviceMessage, JobError, JobStep};
 use crate::devices::biss::procedures::{Asked, Error};
 use crate::devices::biss::profile::BissProfile;
-use crate::devices::biss::protocol::{DescriptionError, DeviceMode, Mismatch, Name};
+use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, LayoutError, Mismatch, Name};
 use crate::link::LinkError;
 use crate::store::StoreError;
 
@@ -107,7 +107,34 @@ pub fn encoder(error: &Error) -> Text {
         Error::Moving { rpm } => moving(*rpm),
         Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
         Error::Changed { item } => TEXTS.text("biss.changed").with("item", item),
-        Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
+        Error::OtherReply { asked, reply } => {
+            TEXTS.text("biss.other_reply").with_text("asked", self::asked(*asked)).with("reply", reply)
+        }
+        Error::FrameStatus { status } => TEXTS.text("biss.frame_status").with("status", byte(*status)),
+        Error::Layout(error) => layout(error),
+        Error::TooFew { start, expected, got } => {
+            TEXTS.text("biss.too_few").with("start", start).with("expected", expected).with("got", got)
+        }
+        Error::StaysUnlocked { mode } => in_mode("biss.stays_unlocked", *mode),
+    }
+}
+
+/// Returns why no encoder can have a layout of the frame.
+fn layout(error: &LayoutError) -> Text {
+    let hex = |number: u64| format!("{number:#X}");
+    match *error {
+        LayoutError::Field { field, bits } => TEXTS.text("biss.layout_field").with("field", field).with("bits", bits),
+        LayoutError::Empty => TEXTS.text("biss.layout_empty"),
+        LayoutError::Long(bits) => TEXTS.text("biss.layout_long").with("bits", bits),
+        LayoutError::Crc(CrcError::Degree(polynomial)) => {
+            TEXTS.text("biss.crc_degree").with("polynomial", hex(polynomial))
+        }
+        LayoutError::Crc(CrcError::LowestTerm(polynomial)) => {
+            TEXTS.text("biss.crc_lowest").with("polynomial", hex(polynomial))
+        }
+        LayoutError::Crc(CrcError::Start { start, width }) => {
+            TEXTS.text("biss.crc_start").with("start", hex(start.into())).with("width", width)
+        }
     }
 }
 

@@ -136,7 +136,7 @@ impl<'a> Master<'a> {
     pub fn read_number(&mut self, number: ParameterNumber) -> Result<i64, Error> {
         match self.read(number)? {
             Value::Number(value) => Ok(value),
-            Value::Text(_) => Err(Error::Value { number, cause: ValueError::Kind("a number is expected, not a text") }),
+            Value::Text(_) => Err(Error::Value { number, cause: ValueError::TextForNumber }),
         }
     }
 
@@ -148,7 +148,7 @@ impl<'a> Master<'a> {
         match self.read(number)? {
             Value::Text(text) => Ok(text),
             Value::Number(_) => {
-                Err(Error::Value { number, cause: ValueError::Kind("a text is expected, not a number") })
+                Err(Error::Value { number, cause: ValueError::NumberForText })
             }
         }
     }

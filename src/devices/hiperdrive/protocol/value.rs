@@ -49,9 +49,12 @@ pub enum ValueError {
         /// The greatest.
         high: i64,
     },
-    /// A text where a number has to be, or the other way.
-    #[error("{0}")]
-    Kind(&'static str),
+    /// A number for a parameter that is a text.
+    #[error("a text is expected, not a number")]
+    NumberForText,
+    /// A text for a parameter that is a number.
+    #[error("a number is expected, not a text")]
+    TextForNumber,
 }
 
 impl Kind {
@@ -108,8 +111,8 @@ impl Kind {
             (Value::Text(text), None, _) => {
                 return Ok(text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' }).collect());
             }
-            (Value::Number(_), ..) => return Err(ValueError::Kind("a text is expected, not a number")),
-            (Value::Text(_), ..) => return Err(ValueError::Kind("a number is expected, not a text")),
+            (Value::Number(_), ..) => return Err(ValueError::NumberForText),
+            (Value::Text(_), ..) => return Err(ValueError::TextForNumber),
         };
         if !(low..=high).contains(&number) {
             return Err(ValueError::Number { number, low, high });

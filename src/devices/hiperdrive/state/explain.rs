@@ -8,6 +8,7 @@ mod motion;
 mod names;
 #[cfg(test)]
 mod phrases;
+mod status;
 #[cfg(test)]
 mod tests;
 mod write;

@@ -40,10 +40,10 @@ pub(super) fn prepare(
         other_type: None,
         wanted_position: None,
     };
-    match change {
+    prepared.plan = match change {
         Change::Restore { profile, options } => restore(&mut master, &mut prepared, &profile, options, tell)?,
         Change::SetPosition { wanted, exact, synchronise, kit } => {
-            set_position(&mut master, &mut prepared, wanted, exact, synchronise, kit)?;
+            set_position(&mut master, &mut prepared, wanted, exact, synchronise, kit)?
         }
         Change::ShiftPosition { steps } => {
             let now = ensure_standstill(&mut master, prepared.identity.geometry)?;
@@ -52,10 +52,63 @@ pub(super) fn prepare(
             let to = u32::try_from(to).unwrap_or(now);
             let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
             let op = (to != now).then_some(Op::SetPosition { from: now, to, synchronise: false });
-            prepared.plan = plan_scalar(fields, Scalar::Position(now), op);
+            plan_scalar(fields, Scalar::Position(now), op)
         }
-        other => prepared.plan = single(&mut master, other)?,
-    }
+        Change::Store(edits) => {
+            let memory = read_memory(&mut master)?;
+            let touched: BTreeSet<u8> = edits.iter().map(|(range, _)| range.field).collect();
+            let fields =
+                touched.into_iter().map(|field| existing(&mut master, memory, field)).collect::<Result<Vec<_>, _>>()?;
+            plan_store(memory.fields, &fields, &edits)?
+        }
+        Change::CreateField { number, status } => plan_create(read_memory(&mut master)?, number, status)?,
+        Change::Redefine { number, status } => {
+            let memory = read_memory(&mut master)?;
+            let field = existing(&mut master, memory, number)?;
+            plan_redefine(memory, &field, status)?
+        }
+        Change::LockField { number, lock } => {
+            let memory = read_memory(&mut master)?;
+            let field = existing(&mut master, memory, number)?;
+            plan_redefine(memory, &field, field.status.with_write_enable(!lock))?
+        }
+        Change::ResizeField { number, size } => {
+            let memory = read_memory(&mut master)?;
+            let field = existing(&mut master, memory, number)?;
+            plan_redefine(memory, &field, field.status.with_size(size))?
+        }
+        Change::DeleteField { number } => {
+            let memory = read_memory(&mut master)?;
+            let field = existing(&mut master, memory, number)?;
+            plan_delete(memory, &field)?
+        }
+        Change::ChangeCode { number, new } => change_code(&mut master, number, new)?,
+        Change::SetAddress(to) => {
+            let memory = read_memory(&mut master)?;
+            let from = master.station().address;
+            // Broadcast: one encoder is connected, which may be there itself.
+            if from != to.byte() && from != BROADCAST {
+                ensure_free(&mut master, to)?;
+            }
+            let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
+            plan_scalar(memory.fields, Scalar::Address(from), op)
+        }
+        Change::Configure(to) => {
+            let memory = read_memory(&mut master)?;
+            let from: LineSettings = read_settings(&mut master)?;
+            plan_scalar(memory.fields, Scalar::Settings(from), (from != to).then_some(Op::Configure { from, to }))
+        }
+        Change::ClearCounter => {
+            let memory = read_memory(&mut master)?;
+            let from = read_counter(&mut master)?;
+            plan_scalar(memory.fields, Scalar::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
+        }
+        Change::IncrementCounter => {
+            let memory = read_memory(&mut master)?;
+            let from = read_counter(&mut master)?;
+            plan_scalar(memory.fields, Scalar::Counter(from), Some(Op::IncrementCounter { from }))
+        }
+    };
     prepared.cycles_seen = cycles_seen(&desk.store, &device_key(&prepared.identity, desk.is_virtual));
     Ok(prepared)
 }
@@ -66,7 +119,7 @@ fn restore(
     profile: &HiperfaceProfile,
     options: RestoreOptions,
     tell: &mut dyn FnMut(Progress<JobStep>),
-) -> Result<(), JobError> {
+) -> Result<HiperfacePlan, JobError> {
     let serial_number = prepared.identity.serial.serial_number.clone();
     let encoder_type = prepared.identity.label.encoder_type;
     // Known before the fields are read.
@@ -76,7 +129,6 @@ fn restore(
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     let Restore { common, unknown_fields, created_left } = restore;
-    prepared.plan = common.plan;
     prepared.unchanged = common.unchanged;
     prepared.missing = common.missing;
     prepared.mounting_left = common.mounting_left;
@@ -86,7 +138,7 @@ fn restore(
     let of_profile = profile.identity.encoder_type;
     prepared.other_type =
         (of_profile != encoder_type).then_some(OtherType { profile: of_profile, device: encoder_type });
-    Ok(())
+    Ok(common.plan)
 }
 
 fn set_position(
@@ -96,7 +148,7 @@ fn set_position(
     exact: bool,
     synchronise: bool,
     kit: bool,
-) -> Result<(), JobError> {
+) -> Result<HiperfacePlan, JobError> {
     if synchronise && !prepared.identity.kit.unwrap_or(kit) {
         return Err(Error::NotAKit { encoder: prepared.identity.name.clone() }.into());
     }
@@ -110,63 +162,7 @@ fn set_position(
     let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
     // Synchronising aligns the tracks even where the position stays.
     let op = (to != now || synchronise).then_some(Op::SetPosition { from: now, to, synchronise });
-    prepared.plan = plan_scalar(fields, Scalar::Position(now), op);
-    Ok(())
-}
-
-fn single(master: &mut Master<'_>, change: Change) -> Result<HiperfacePlan, JobError> {
-    let memory = read_memory(master)?;
-    let plan = match change {
-        Change::Store(edits) => {
-            let touched: BTreeSet<u8> = edits.iter().map(|(range, _)| range.field).collect();
-            let fields =
-                touched.into_iter().map(|field| existing(master, memory, field)).collect::<Result<Vec<_>, _>>()?;
-            plan_store(memory.fields, &fields, &edits)?
-        }
-        Change::CreateField { number, status } => plan_create(memory, number, status)?,
-        Change::Redefine { number, status } => {
-            let field = existing(master, memory, number)?;
-            plan_redefine(memory, &field, status)?
-        }
-        Change::LockField { number, lock } => {
-            let field = existing(master, memory, number)?;
-            plan_redefine(memory, &field, field.status.with_write_enable(!lock))?
-        }
-        Change::ResizeField { number, size } => {
-            let field = existing(master, memory, number)?;
-            plan_redefine(memory, &field, field.status.with_size(size))?
-        }
-        Change::DeleteField { number } => {
-            let field = existing(master, memory, number)?;
-            plan_delete(memory, &field)?
-        }
-        Change::ChangeCode { number, new } => change_code(master, number, new)?,
-        Change::SetAddress(to) => {
-            let from = master.station().address;
-            // Broadcast: one encoder is connected, which may be there itself.
-            if from != to.byte() && from != BROADCAST {
-                ensure_free(master, to)?;
-            }
-            let op = (from != to.byte()).then_some(Op::SetAddress { from, to });
-            plan_scalar(memory.fields, Scalar::Address(from), op)
-        }
-        Change::Configure(to) => {
-            let from: LineSettings = read_settings(master)?;
-            plan_scalar(memory.fields, Scalar::Settings(from), (from != to).then_some(Op::Configure { from, to }))
-        }
-        Change::ClearCounter => {
-            let from = read_counter(master)?;
-            plan_scalar(memory.fields, Scalar::Counter(from), (from != 0).then_some(Op::ClearCounter { from }))
-        }
-        Change::IncrementCounter => {
-            let from = read_counter(master)?;
-            plan_scalar(memory.fields, Scalar::Counter(from), Some(Op::IncrementCounter { from }))
-        }
-        Change::Restore { .. } | Change::SetPosition { .. } | Change::ShiftPosition { .. } => {
-            return Err(Error::Unexpected("not a single change".to_owned()).into());
-        }
-    };
-    Ok(plan)
+    Ok(plan_scalar(fields, Scalar::Position(now), op))
 }
 
 fn change_code(

@@ -1,7 +1,7 @@
 //! What can go wrong with an encoder, with the facts a person needs.
 
 use crate::devices::hiperface::profile::PlanItem;
-use crate::devices::hiperface::protocol::{CodeNumber, Command, ReplyError, StatusCode};
+use crate::devices::hiperface::protocol::{CodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
@@ -118,9 +118,36 @@ pub enum Error {
         /// As it is.
         got: ReadBack,
     },
-    /// The encoder answers, and not as the reference says; with what it did.
-    #[error("{0}")]
-    Unexpected(String),
+    /// The reply belongs to another kind of request.
+    #[error("the reply to {} is of another kind: {reply}", command.row().name)]
+    OtherReply {
+        /// The request.
+        command: Command,
+        /// The reply, as parsed.
+        reply: String,
+    },
+    /// The position already had the value that was written, so reading it back proves nothing.
+    #[error("the position had this value before, so reading it back does not show whether it was written")]
+    PositionUnchanged,
+    /// No data field requires this access code, so it cannot be tried.
+    #[error("no data field requires access code {number}, so it cannot be tried")]
+    CodeGuardsNothing {
+        /// The access code.
+        number: CodeNumber,
+    },
+    /// The settings byte names a character format that the description reserves.
+    #[error("the interface settings 0x{:02X} have a reserved format", settings.byte())]
+    ReservedFormat {
+        /// As read from the encoder, or as requested.
+        settings: LineSettings,
+    },
+}
+
+impl Error {
+    /// Returns the error for a reply that belongs to another kind of request.
+    pub(super) fn other_reply(command: Command, reply: &Reply) -> Self {
+        Error::OtherReply { command, reply: format!("{reply:?}") }
+    }
 }
 
 /// What was read back after a write.

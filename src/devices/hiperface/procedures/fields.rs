@@ -5,7 +5,9 @@ use super::identify::read_type_label;
 use super::master::Trouble;
 use super::{Error, Master};
 use crate::devices::hiperface::profile::FieldImage;
-use crate::devices::hiperface::protocol::{AccessCode, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode};
+use crate::devices::hiperface::protocol::{
+    AccessCode, Command, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode,
+};
 
 /// Fewest bytes in a transfer: below that the frame is mostly head.
 const LEAST_TRANSFER: usize = 4;
@@ -17,7 +19,7 @@ const LEAST_TRANSFER: usize = 4;
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
     match master.ask_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
-        other => Err(Error::Unexpected(format!("field status: {other:?}"))),
+        other => Err(Error::other_reply(Command::FieldStatus, &other)),
     }
 }
 
@@ -184,6 +186,6 @@ fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8
     };
     match master.settle(request, answered)?.reply {
         Reply::Data(bytes) => Ok(Ok(bytes)),
-        other => Err(Error::Unexpected(format!("data: {other:?}"))),
+        other => Err(Error::other_reply(Command::ReadData, &other)),
     }
 }

@@ -3,8 +3,8 @@
 use super::{Error, Master, read_range};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::devices::hiperface::protocol::{
-    CodeNumber, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings, Reply, Request,
-    SerialLabel, StatusCode, TypeLabel,
+    CodeNumber, Command, EXTENDED_LABEL_FIELD, EncoderTypes, ExtendedLabel, FreeMemory, Geometry, LineSettings, Reply,
+    Request, SerialLabel, StatusCode, TypeLabel,
 };
 
 /// An encoder as it presents itself.
@@ -100,7 +100,7 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
 pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Error> {
     match master.ask_confirmed(&Request::ReadTypeLabel)? {
         Reply::TypeLabel(label) => Ok(label),
-        other => Err(Error::Unexpected(format!("type label: {other:?}"))),
+        other => Err(Error::other_reply(Command::ReadTypeLabel, &other)),
     }
 }
 

@@ -4,7 +4,9 @@ use std::time::Duration;
 
 use super::identify::read_type_label;
 use super::{Error, Master, read_extended_label};
-use crate::devices::hiperface::protocol::{ExtendedLabel, Geometry, Position, Reply, Request, StatusCode, TypeLabel};
+use crate::devices::hiperface::protocol::{
+    Command, ExtendedLabel, Geometry, Position, Reply, Request, StatusCode, TypeLabel,
+};
 use crate::units::Moment;
 
 /// A position as it was read.
@@ -30,7 +32,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
     let met_before = master.station().codes_met.len();
     let timed = master.ask_timed(&Request::ReadPosition)?;
     let Reply::Position(raw) = timed.reply else {
-        return Err(Error::Unexpected(format!("position: {:?}", timed.reply)));
+        return Err(Error::other_reply(Command::ReadPosition, &timed.reply));
     };
     let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
     let position = geometry.map(|geometry| geometry.position(raw));
@@ -152,7 +154,7 @@ fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), E
     let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
         Reply::Analogue(value) => Ok((timed.at, value)),
-        other => Err(Error::Unexpected(format!("analogue value: {other:?}"))),
+        other => Err(Error::other_reply(Command::ReadAnalogue, &other)),
     }
 }
 
@@ -181,7 +183,7 @@ pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Optio
 pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     match master.ask_confirmed(&Request::ReadCounter)? {
         Reply::Counter(value) => Ok(value),
-        other => Err(Error::Unexpected(format!("counter: {other:?}"))),
+        other => Err(Error::other_reply(Command::ReadCounter, &other)),
     }
 }
 
@@ -191,17 +193,14 @@ pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
 /// # Errors
 /// [`Error::Moving`], or what reading gives.
 pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<u32, Error> {
-    let mut readings = Vec::new();
-    for reading in 0..3 {
-        if reading > 0 {
-            master.wait(Duration::from_millis(100))?;
-        }
-        readings.push(read_position(master, geometry)?.raw);
+    let first = read_position(master, geometry)?.raw;
+    let (mut last, mut readings) = (first, vec![first]);
+    for _ in 0..2 {
+        master.wait(Duration::from_millis(100))?;
+        last = read_position(master, geometry)?.raw;
+        readings.push(last);
     }
     let range = range_of(geometry);
-    let (Some(first), Some(last)) = (readings.first().copied(), readings.last().copied()) else {
-        return Err(Error::Unexpected("no position".to_owned()));
-    };
     if readings.iter().all(|reading| distance(first, *reading, range) <= 1) {
         Ok(last)
     } else {

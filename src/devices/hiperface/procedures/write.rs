@@ -13,7 +13,7 @@ use crate::devices::hiperface::procedures::master::Trouble;
 use crate::devices::hiperface::procedures::position::{distance, range_of};
 use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, Scalar};
 use crate::devices::hiperface::protocol::{
-    BROADCAST, CodeNumber, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
+    BROADCAST, CodeNumber, Command, DataFieldStatus, DeviceAddress, FreeMemory, Geometry, Reply, Request, StatusCode,
 };
 use crate::profile::Write;
 
@@ -188,7 +188,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
             let telling = distance(*from, *to, range) > 1;
             master.tell(&request, |master| {
                 if !telling {
-                    return Err(Error::Unexpected("the position was there before: it does not tell".to_owned()));
+                    return Err(Error::PositionUnchanged);
                 }
                 Ok(distance(super::read_position(master, None)?.raw, *to, range) <= 1)
             })
@@ -254,7 +254,7 @@ fn opens(
 ) -> Result<bool, Error> {
     let guarded = |field: &&FieldImage| field.status.code() == number && field.status.code_required();
     let Some(field) = base.fields.iter().find(guarded) else {
-        return Err(Error::Unexpected(format!("no data field is guarded by code {number}: it cannot be tried")));
+        return Err(Error::CodeGuardsNothing { number });
     };
     match read_range(master, field.number, 0, 1, code) {
         Ok(_) => Ok(true),
@@ -350,7 +350,7 @@ pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<()
 pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     match master.ask_confirmed(&Request::FreeMemory)? {
         Reply::FreeMemory(memory) => Ok(memory),
-        other => Err(Error::Unexpected(format!("available memory: {other:?}"))),
+        other => Err(Error::other_reply(Command::FreeMemory, &other)),
     }
 }
 

@@ -150,7 +150,14 @@ pub fn encoder(error: &Error) -> Text {
             .with_text("item", plan_item(item))
             .with("expected", expected)
             .with_text("got", read_back(got)),
-        Error::Unexpected(what) => Text::new("encoder.unexpected").with("what", what),
+        Error::OtherReply { command, reply } => {
+            TEXTS.text("encoder.other_reply").with_text("command", command::command(*command)).with("reply", reply)
+        }
+        Error::PositionUnchanged => TEXTS.text("encoder.position_unchanged"),
+        Error::CodeGuardsNothing { number } => TEXTS.text("encoder.code_guards_nothing").with("number", number),
+        Error::ReservedFormat { settings } => {
+            TEXTS.text("encoder.reserved_format").with("settings", format!("0x{:02X}", settings.byte()))
+        }
     }
 }
 

@@ -195,8 +195,7 @@ impl<'a> Master<'a> {
     fn word_once(&mut self) -> Result<(u64, Moment), Failure> {
         let answered = self.adapter().ask(&Request::SsiRead)?;
         let Reply::SsiRead { t_us, raw } = answered.reply else {
-            let (asked, got) = (Request::SsiRead.operation(), answered.reply.operation());
-            return Err(AdapterError::Other { asked, got }.into());
+            return Err(AdapterError::other(Request::SsiRead.operation(), &answered.reply).into());
         };
         Ok((raw, self.station.adapter.moment_of(t_us, &answered)))
     }
@@ -257,5 +256,5 @@ impl<'a> Master<'a> {
 }
 
 fn other(request: &Request, reply: &Reply) -> Error {
-    AdapterError::Other { asked: request.operation(), got: reply.operation() }.into()
+    AdapterError::other(request.operation(), reply).into()
 }

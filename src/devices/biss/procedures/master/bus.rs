@@ -66,7 +66,7 @@ impl<'a> Master<'a> {
         let request = Request::BissConfig { clock_hz: bus.clock_hz, data_bits, crc_bits, timeout_us };
         let answered = self.adapter().ask(&request)?;
         let Reply::BissConfig { clock_hz } = answered.reply else {
-            return Err(unexpected("a setting", &answered.reply));
+            return Err(AdapterError::other(request.operation(), &answered.reply).into());
         };
         (self.station.bus, self.station.actual_clock_hz) = (Some(bus), Some(clock_hz));
         self.station.good_frames = false;
@@ -101,7 +101,7 @@ impl<'a> Master<'a> {
         let answered = self.adapter().ask(&request).map(Some);
         let value = match self.register_answer(answered)? {
             Ok(Reply::BissRegisterRead { value }) => value,
-            Ok(reply) => return Err(unexpected("a register", &reply)),
+            Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
             Err(trouble) => return Ok(Err(trouble)),
         };
         if address == RegisterAddress::BANK_SELECT {
@@ -127,7 +127,7 @@ impl<'a> Master<'a> {
         let answered = self.adapter().ask_once(&request);
         let reads = match self.register_answer(answered)? {
             Ok(Reply::BissRegisterWrite { value }) => value,
-            Ok(reply) => return Err(unexpected("a write", &reply)),
+            Ok(reply) => return Err(AdapterError::other(request.operation(), &reply).into()),
             Err(trouble) => return Ok(Err(trouble)),
         };
         if address == RegisterAddress::BANK_SELECT {
@@ -196,7 +196,7 @@ impl<'a> Master<'a> {
         let answered = self.adapter().ask(&Request::BissRead);
         let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;
         let Reply::BissRead { t_us, status, raw } = answered.reply else {
-            return Err(unexpected("a frame", &answered.reply));
+            return Err(AdapterError::other(Request::BissRead.operation(), &answered.reply).into());
         };
         let no_frame = match status {
             BissStatus::OK => {
@@ -206,7 +206,7 @@ impl<'a> Master<'a> {
             BissStatus::NO_ACKNOWLEDGE => NoFrame::NoAcknowledge,
             BissStatus::STUCK_LOW => NoFrame::StuckLow,
             BissStatus::STUCK_HIGH => NoFrame::StuckHigh,
-            other => return Err(Error::Unexpected(format!("a frame with status {}", other.byte()))),
+            other => return Err(Error::FrameStatus { status: other.byte() }),
         };
         self.station.bank = None;
         Ok(Err(ExchangeError::NoFrame(no_frame)))
@@ -261,8 +261,4 @@ impl<'a> Master<'a> {
     pub(super) fn longest_bus_exchange(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }
-}
-
-fn unexpected(what: &str, reply: &Reply) -> Error {
-    Error::Unexpected(format!("{what}: {reply:?}"))
 }

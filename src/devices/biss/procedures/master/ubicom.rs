@@ -9,7 +9,7 @@ use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
-use crate::devices::biss::procedures::error::Damage;
+use crate::devices::biss::procedures::error::{Asked, Damage, asked_register};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
@@ -43,18 +43,18 @@ impl Master<'_> {
     /// Reads a register once.
     pub(super) fn pin_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
-        self.register_once(Request::Read { register: address.global() }, order)
+        self.register_once(address.global(), order)
     }
 
     /// Asks once for what tells the order of a register number's bytes.
     pub(super) fn probe_once(&mut self) -> Attempt<u8> {
-        self.register_once(Request::PROBE, ByteOrder::LowFirst)
+        self.register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }
 
-    fn register_once(&mut self, request: Request, order: ByteOrder) -> Attempt<u8> {
-        Ok(match self.exchange(request, order)? {
+    fn register_once(&mut self, register: u16, order: ByteOrder) -> Attempt<u8> {
+        Ok(match self.exchange(Request::Read { register }, order)? {
             Ok(Timed { reply: Reply::Value(value), .. }) => Ok(value),
-            Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a register: {reply:?}"))),
+            Ok(Timed { reply, .. }) => return Err(Error::other_reply(Asked::Read(asked_register(register)), &reply)),
             Err(trouble) => Err(trouble),
         })
     }
@@ -65,7 +65,7 @@ impl Master<'_> {
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
             Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(Taken::Yes),
             Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(Taken::No(None)),
-            Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a write: {reply:?}"))),
+            Ok(Timed { reply, .. }) => return Err(Error::other_reply(Asked::Write(address, value), &reply)),
             Err(trouble) => Err(trouble),
         })
     }
@@ -74,7 +74,7 @@ impl Master<'_> {
     pub(super) fn pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
-            Ok(Timed { reply, .. }) => return Err(Error::Unexpected(format!("a position: {reply:?}"))),
+            Ok(Timed { reply, .. }) => return Err(Error::other_reply(Asked::Position, &reply)),
             Err(trouble) => return Ok(Err(trouble)),
         };
         let layout = self.station.frame();

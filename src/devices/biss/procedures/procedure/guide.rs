@@ -403,7 +403,7 @@ pub(super) fn lead_back(
     if standing.is_in_operation() {
         return Ok(mode);
     }
-    Err(Error::Unexpected(format!("the encoder does not leave device mode {stays} or keeps its password")))
+    Err(Error::StaysUnlocked { mode: stays })
 }
 
 /// What a procedure wants to hear before its mode is left. That it does not take it is no reason to stay.

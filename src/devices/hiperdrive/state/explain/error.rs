@@ -1,6 +1,7 @@
 //! What an adapter, a hub or a drive did not do: what happened, and what to do.
 
 use super::names::parameter;
+use super::status;
 use crate::app::Text;
 use crate::app::explain::{link, plain};
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
@@ -31,12 +32,12 @@ pub fn device(error: &Error) -> Text {
         Error::Encapsulation { asked: what, status } => TEXTS
             .text("hd_said.refused")
             .with_text("asked", asked(*what))
-            .with("status", status)
+            .with_text("status", status::frame(*status))
             .with_text("remedy", frame_remedy(*status)),
         Error::Refused { asked: what, refusal } => TEXTS
             .text("hd_said.refused")
             .with_text("asked", asked(*what))
-            .with("status", refusal)
+            .with_text("status", status::refusal(refusal))
             .with_text("remedy", remedy(refusal)),
         Error::OtherMaster { extended } => TEXTS.text("hd_said.other_master").with("code", format!("0x{extended:04X}")),
         Error::TooSlow { asked_ms, got_ms } => {
@@ -57,7 +58,7 @@ pub fn device(error: &Error) -> Text {
         Error::OutOfRange(error) => out_of_range(error),
         Error::Refuses(error) => ranged("hd_said.refuses", error),
         Error::Length(error) => wrong_length(error),
-        Error::Value { number, cause } => named("hd_said.value", *number).with("why", cause),
+        Error::Value { number, cause } => named("hd_said.value", *number).with_text("why", status::value(cause)),
         Error::ReadOnly { number, .. } => named("hd_said.read_only", *number),
         Error::WriteOnly { number, .. } => named("hd_said.write_only", *number),
         Error::Motion { number, .. } => named("hd_said.motion", *number),
@@ -126,8 +127,8 @@ fn asked(asked: Asked) -> Text {
 /// What was wrong with a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
-        Damage::Packet(why) => TEXTS.text("hd_damage.packet").with("why", why),
-        Damage::Value(why) => TEXTS.text("hd_damage.value").with("why", why),
+        Damage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet(why)),
+        Damage::Value(why) => TEXTS.text("hd_damage.value").with_text("why", status::value(why)),
         Damage::Empty => TEXTS.text("hd_damage.empty"),
         Damage::Service { .. } => TEXTS.text("hd_damage.service"),
         Damage::Cut { bytes } => TEXTS.text("hd_damage.cut").with("bytes", bytes),

@@ -72,7 +72,7 @@ fn errors_say_what_happened_and_what_to_do() {
         Error::NoDrive { drive: ONE },
         Error::OutOfRange(ranged(Range::WithinOr(1, 100, 255))),
         Error::Refuses(ranged(Range::OneOf(&[9600, 19200, 38400]))),
-        Error::Value { number: number(158), cause: ValueError::Kind("a number is expected, not a text") },
+        Error::Value { number: number(158), cause: ValueError::TextForNumber },
         length.into(),
         Error::ReadOnly { number: number(107), name: "actual position" },
         Error::WriteOnly { number: number(199), name: "reset drive" },

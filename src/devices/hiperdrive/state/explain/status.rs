@@ -1,0 +1,190 @@
+//! The names of EtherNet/IP statuses, and why a packet or a value cannot be used.
+
+use crate::app::Text;
+use crate::app::explain::plain;
+use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus, PacketError};
+use crate::devices::hiperdrive::procedures::Refusal;
+use crate::devices::hiperdrive::protocol::ValueError;
+use crate::devices::hiperdrive::state::TEXTS;
+
+const UNKNOWN: &str = "hd_status_name.unknown";
+
+/// Returns the code and the name of an encapsulation status.
+pub(super) fn frame(status: EncapsulationStatus) -> Text {
+    let name = match status.code() {
+        0x00 => "hd_status_name.frame_00",
+        0x01 => "hd_status_name.frame_01",
+        0x02 => "hd_status_name.frame_02",
+        0x03 => "hd_status_name.frame_03",
+        0x64 => "hd_status_name.frame_64",
+        0x65 => "hd_status_name.frame_65",
+        0x69 => "hd_status_name.frame_69",
+        _ => UNKNOWN,
+    };
+    coded(format!("0x{:08X}", status.code()), name)
+}
+
+/// Returns the code and the name of a CIP status, and of the word that follows it.
+pub(super) fn refusal(refusal: &Refusal) -> Text {
+    let status = general(refusal.status);
+    let words: Vec<Text> = match (refusal.extended.as_slice(), refusal.row()) {
+        ([], _) => return status,
+        ([first, ..], Some(row)) => vec![coded(format!("0x{first:04X}"), connection(row.code))],
+        (words, None) => words.iter().map(|word| plain(format!("0x{word:04X}"))).collect(),
+    };
+    let words = Text::new("plain.words").with_list("words", words);
+    TEXTS.text("hd_status_name.followed").with_text("status", status).with_text("words", words)
+}
+
+fn general(status: GeneralStatus) -> Text {
+    let name = match status.code() {
+        0x00 => "hd_status_name.cip_00",
+        0x01 => "hd_status_name.cip_01",
+        0x02 => "hd_status_name.cip_02",
+        0x03 => "hd_status_name.cip_03",
+        0x04 => "hd_status_name.cip_04",
+        0x05 => "hd_status_name.cip_05",
+        0x06 => "hd_status_name.cip_06",
+        0x07 => "hd_status_name.cip_07",
+        0x08 => "hd_status_name.cip_08",
+        0x09 => "hd_status_name.cip_09",
+        0x0A => "hd_status_name.cip_0a",
+        0x0B => "hd_status_name.cip_0b",
+        0x0C => "hd_status_name.cip_0c",
+        0x0D => "hd_status_name.cip_0d",
+        0x0E => "hd_status_name.cip_0e",
+        0x0F => "hd_status_name.cip_0f",
+        0x10 => "hd_status_name.cip_10",
+        0x11 => "hd_status_name.cip_11",
+        0x12 => "hd_status_name.cip_12",
+        0x13 => "hd_status_name.cip_13",
+        0x14 => "hd_status_name.cip_14",
+        0x15 => "hd_status_name.cip_15",
+        0x16 => "hd_status_name.cip_16",
+        0x18 => "hd_status_name.cip_18",
+        0x19 => "hd_status_name.cip_19",
+        0x1C => "hd_status_name.cip_1c",
+        0x1E => "hd_status_name.cip_1e",
+        0x1F => "hd_status_name.cip_1f",
+        0x20 => "hd_status_name.cip_20",
+        0x26 => "hd_status_name.cip_26",
+        0x2C => "hd_status_name.cip_2c",
+        _ => UNKNOWN,
+    };
+    coded(format!("0x{:02X}", status.code()), name)
+}
+
+/// Returns the text of a word that follows a connection failure.
+fn connection(code: u16) -> &'static str {
+    match code {
+        0x0100 => "hd_status_name.connection_0100",
+        0x0103 => "hd_status_name.connection_0103",
+        0x0106 => "hd_status_name.connection_0106",
+        0x0107 => "hd_status_name.connection_0107",
+        0x0108 => "hd_status_name.connection_0108",
+        0x0109 => "hd_status_name.connection_0109",
+        0x0111 => "hd_status_name.connection_0111",
+        0x0113 => "hd_status_name.connection_0113",
+        0x0114 => "hd_status_name.connection_0114",
+        0x0115 => "hd_status_name.connection_0115",
+        0x0116 => "hd_status_name.connection_0116",
+        0x0117 => "hd_status_name.connection_0117",
+        0x0127 => "hd_status_name.connection_0127",
+        0x0128 => "hd_status_name.connection_0128",
+        0x0203 => "hd_status_name.connection_0203",
+        0x0204 => "hd_status_name.connection_0204",
+        0x0312 => "hd_status_name.connection_0312",
+        0x0315 => "hd_status_name.connection_0315",
+        _ => UNKNOWN,
+    }
+}
+
+fn coded(code: String, name: &'static str) -> Text {
+    TEXTS.text("hd_status_name.coded").with("code", code).with_text("name", TEXTS.text(name))
+}
+
+/// Returns why the bytes of a packet cannot be read.
+pub(super) fn packet(error: &PacketError) -> Text {
+    match *error {
+        PacketError::Short { what, got } => TEXTS.text("hd_packet.short").with("what", what).with("got", got),
+        PacketError::Long { what, left } => TEXTS.text("hd_packet.long").with("what", what).with("left", left),
+        PacketError::Value { what, field, got } => {
+            TEXTS.text("hd_packet.value").with("what", what).with("field", field).with("got", format!("0x{got:X}"))
+        }
+    }
+}
+
+/// Returns why a value does not fit the type of its parameter.
+pub(super) fn value(error: &ValueError) -> Text {
+    match *error {
+        ValueError::Length { expected, got } => {
+            TEXTS.text("hd_value.length").with("expected", expected).with("got", got)
+        }
+        ValueError::Number { number, low, high } => {
+            TEXTS.text("hd_value.number").with("number", number).with("low", low).with("high", high)
+        }
+        ValueError::NumberForText => TEXTS.text("hd_value.number_for_text"),
+        ValueError::TextForNumber => TEXTS.text("hd_value.text_for_number"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::Language::{English, German};
+    use crate::buses::ethernet_ip::protocol::{ENCAPSULATION_STATUS, EXTENDED_STATUS, GENERAL_STATUS, Service};
+
+    #[track_caller]
+    fn in_both_languages(text: &Text, error: &dyn std::fmt::Display) {
+        assert_eq!(text.words(English), error.to_string());
+        assert_ne!(text.words(German), text.words(English));
+    }
+
+    fn refused(status: u8, extended: Vec<u16>) -> Refusal {
+        Refusal { service: Service::FORWARD_OPEN, status: GeneralStatus::new(status), extended }
+    }
+
+    #[test]
+    fn every_status_is_named_in_both_languages() {
+        for code in (0..=255).chain([0x1_0000]) {
+            let status = EncapsulationStatus::new(code);
+            in_both_languages(&frame(status), &status);
+        }
+        for code in 0..=255 {
+            for extended in [vec![], vec![0x0106], vec![0x7777, 2]] {
+                let refused = refused(code, extended);
+                in_both_languages(&refusal(&refused), &refused);
+            }
+        }
+        for row in EXTENDED_STATUS {
+            let refused = refused(0x01, vec![row.code]);
+            in_both_languages(&refusal(&refused), &refused);
+        }
+        // A name for each row, of no other row.
+        let unknown = TEXTS.text(UNKNOWN).words(German);
+        let mut names: Vec<String> = GENERAL_STATUS.iter().map(|row| general(row.code).words(German)).collect();
+        names.extend(ENCAPSULATION_STATUS.iter().map(|row| frame(row.code).words(German)));
+        assert!(names.iter().all(|name| !name.contains(&unknown)), "{names:?}");
+    }
+
+    #[test]
+    fn damage_is_explained_in_both_languages() {
+        let packets = [
+            PacketError::Short { what: "ForwardOpen", got: 3 },
+            PacketError::Long { what: "ForwardOpen", left: 2 },
+            PacketError::Value { what: "the path", field: "length", got: 0xFFFF },
+        ];
+        for error in packets {
+            in_both_languages(&packet(&error), &error);
+        }
+        let values = [
+            ValueError::Length { expected: 4, got: 2 },
+            ValueError::Number { number: 300, low: 0, high: 255 },
+            ValueError::NumberForText,
+            ValueError::TextForNumber,
+        ];
+        for error in values {
+            in_both_languages(&value(&error), &error);
+        }
+    }
+}
