@@ -22,7 +22,7 @@ const RESERVE: Duration = Duration::from_millis(100);
 /// The line; or no reply at the stored settings.
 pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     let stored = read_type_label(master)?.settings;
-    let format = stored.format().ok_or_else(|| Error::ReservedFormat { settings: stored })?;
+    let format = stored.format().ok_or(Error::ReservedFormat { settings: stored })?;
     master.tell_all(&Request::Reset)?;
     let factory = format == CharacterFormat::FACTORY && stored.long_timeout();
     let wait = if factory { INTO_DEFAULT_WINDOW } else { Timing::DEFAULT_WINDOW_END + Timing::SWITCH + RESERVE };
@@ -40,7 +40,7 @@ pub fn reset(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
 /// # Errors
 /// A refusal, or no reply at the new settings; then both sides are at the old ones, as far as the encoder can be asked.
 pub fn change_line_for_now(master: &mut Master<'_>, settings: LineSettings) -> Result<(), Error> {
-    let format = settings.format().ok_or_else(|| Error::ReservedFormat { settings })?;
+    let format = settings.format().ok_or(Error::ReservedFormat { settings })?;
     let (old_format, old_timeout) = (master.station().format, master.station().long_timeout);
     let request = Request::ConfigureLineTemporarily { settings };
     let outcome = match master.attempt(&request)? {
