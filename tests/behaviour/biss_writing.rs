@@ -274,7 +274,7 @@ fn a_worn_flash_is_told_and_written_only_where_that_is_wished() {
         logbook.conclude(id, Timestamp::now(), Outcome::Done, spent).unwrap();
     };
     wear_to(798);
-    write(&[]).says(&["at least 800 of the 1000"]);
+    write(&[]).says(&["At least 800 of the 1000"]);
     wear_to(999);
     write(&[]).fails(1, &["999", "(2)", "1000", "--force-wear"]);
     assert_eq!(write(&["--force-wear"]).json()["write_cycles"], json!(2));

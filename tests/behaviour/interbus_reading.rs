@@ -68,7 +68,7 @@ fn every_item_is_read_by_its_name() {
     ];
     for (item, value, unit) in cases {
         let ran = ask(&bench, &encoder, &["read", "interbus", item]);
-        assert_eq!(ran.err.contains("Cam programs are selected"), item.contains("cam") || item == "shift", "{ran:?}");
+        assert_eq!(ran.err.contains("Reading a cam program selects it"), item.contains("cam") || item == "shift", "{ran:?}");
         let told = ran.json();
         assert_eq!((&told["item"], &told["value"]), (&json!(item), &value), "{told}");
         assert_eq!(told.get("unit").and_then(Value::as_str), unit, "{told}");
@@ -121,7 +121,7 @@ fn what_is_no_position_is_not_taken_for_one() {
     let Some(encoder) = bench.gateway(&["--lost"]) else { return };
     let told = ask(&bench, &encoder, &["status", "interbus"]).json();
     assert_eq!((&told["ok"], &told["errors"][0]["code"]), (&json!(false), &json!(3)), "{told}");
-    assert!(told["errors"][0]["text"].as_str().unwrap().contains("restore a profile"), "{told}");
+    assert!(told["errors"][0]["text"].as_str().unwrap().contains("Restore a profile"), "{told}");
     let told = ask(&bench, &encoder, &["position", "interbus"]).json();
     assert_eq!((&told["raw"], &told["valid"], &told["turns"]), (&json!(0x8600_0000_u32), &json!(false), &Value::Null));
 }
@@ -147,7 +147,7 @@ fn what_is_saved_is_what_is_there() {
     let file = bench.file("saved.ron");
     let ran = ask(&bench, &encoder, &["save", "interbus", "-o", &file]);
     assert_eq!(ran.json()["programs"], json!(8));
-    assert!(ran.err.contains("Cam programs are selected"), "{ran:?}");
+    assert!(ran.err.contains("Reading a cam program selects it"), "{ran:?}");
     let text = bench.read("saved.ron");
     for line in ["steps: 3600,", "preset: 500,", "(cam: 0, start: 3000, stop: 200),", "mask: 0x80,", "startup_mode: 5,"]
     {
@@ -218,7 +218,7 @@ fn cam_programs_are_read_once_the_machine_stands_still() {
         // Without a terminal.
         let ran = bench.run(command);
         // Other programs are only in the encoder: `diff` tells them.
-        assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("outputs are switched"), "{ran:?}");
+        assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("outputs of the encoder switch"), "{ran:?}");
         assert!(selects(), "{command:?}");
         assert!(bench.run(&[command[0], "--help"]).out.contains("switches its live outputs"), "{command:?}");
         let ran = asked(&bench, command, "n\n");

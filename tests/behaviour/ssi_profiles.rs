@@ -70,7 +70,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     let of_family = bench.file("of-family.ron");
     bench.run(&["save", "ssi", "--layout", "ahs36,steps=360,code=bcd", "-o", &of_family]);
     let advised = bench.run(&["ssi", "decode", "--layout", &of_family, "0x0"]);
-    assert!(advised.err.contains("does not name the code bcd") && !advised.err.contains("No setting"), "{advised:?}");
+    assert!(advised.err.contains("does not list the code bcd") && !advised.err.contains("No setting"), "{advised:?}");
     let faster = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing", "--clock", "1000000"]);
     assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
 }

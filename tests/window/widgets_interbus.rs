@@ -111,7 +111,7 @@ fn a_pasted_table_is_looked_at_before_it_is_taken() {
     let text = "name;start;stop\nfeed;100;200\nglue;300;350\nglue;700;750\n";
     screen.paste(&format!("{text}late;3600;10\n"));
     assert!(screen.shows("Program 1: glue has 2 pulses, which take cams 1, 2."));
-    assert!(screen.shows("Line 5, column 2: The start at 3600 is beyond the measuring range, which is 0 to 3599."));
+    assert!(screen.shows("Line 5, column 2: The start at 3600 is outside the measuring range, which is 0 to 3599."));
     assert_eq!(screen.cam(0), before);
     screen.check_language();
     screen.act(Action::SetLanguage(Language::German));
@@ -136,12 +136,12 @@ fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
     let (start, _) = screen.cam(2);
     let (own, _) = screen.cam(1);
     screen.edit_cams(Edit::Cam { program: program(), cam: cam(1), start: own, stop: start, on: true });
-    assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses of one track and meet at {start}.")));
+    assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses of one track and overlap at {start}.")));
     screen.edit_cams(Edit::Steps(3200));
-    assert!(screen.shows("Program 1: cam 7 is beyond the measuring range, which ends at 3199."));
+    assert!(screen.shows("Program 1: cam 7 is outside the measuring range, which ends at 3199."));
     // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays in sight.
     screen.edit_cams(Edit::Steps(3000));
-    assert!(screen.shows("Program 1: cams 6, 7 are beyond the measuring range, which ends at 2999."));
+    assert!(screen.shows("Program 1: cams 6, 7 are outside the measuring range, which ends at 2999."));
     assert!(!screen.shows("Program 1: cam 7"));
     screen.act(Action::SetLanguage(Language::German));
     assert!(screen.shows("Programm 1: Nocken 6, 7 liegen jenseits des Messbereichs (bis 2999)."));

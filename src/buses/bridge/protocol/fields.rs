@@ -12,7 +12,7 @@ pub enum BodyError {
         got: usize,
     },
     /// Not an operation of this version.
-    #[error("0x{0:02X} is no operation")]
+    #[error("0x{0:02X} is not an operation")]
     Operation(u8),
     /// A value that its field cannot have.
     #[error("operation 0x{op:02X}: {field} cannot be {got}")]

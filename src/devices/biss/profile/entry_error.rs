@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A bank that stands in the list already.
-    #[error("bank 0x{0:02X} stands twice")]
+    #[error("bank 0x{0:02X} appears twice")]
     Twice(u8),
     /// Banks that end before they begin.
     #[error("0x{first:02X} comes after 0x{last:02X}")]
@@ -25,7 +25,7 @@ pub enum EntryError {
         last: u8,
     },
     /// Another number of bytes than there has to be.
-    #[error("{got} bytes where {expected} belong")]
+    #[error("{got} bytes instead of {expected}")]
     Length {
         /// How many there are.
         got: usize,

@@ -148,6 +148,6 @@ mod tests {
             assert_eq!(said(&encoder, at, Language::German), german, "{at}");
         }
         encoder.memory.take("0x03:0x0A".parse().unwrap(), &[0x0C]);
-        assert_eq!(said(&encoder, "0x03:0x3F", Language::English), "checksum does not fit");
+        assert_eq!(said(&encoder, "0x03:0x3F", Language::English), "wrong checksum");
     }
 }

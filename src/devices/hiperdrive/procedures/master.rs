@@ -147,9 +147,7 @@ impl<'a> Master<'a> {
     pub fn read_text(&mut self, number: ParameterNumber) -> Result<String, Error> {
         match self.read(number)? {
             Value::Text(text) => Ok(text),
-            Value::Number(_) => {
-                Err(Error::Value { number, cause: ValueError::NumberForText })
-            }
+            Value::Number(_) => Err(Error::Value { number, cause: ValueError::NumberForText }),
         }
     }
 

@@ -114,7 +114,7 @@ impl Exception {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// Bytes that are no frame of Modbus/TCP.
-    #[error("{bytes} bytes that are no Modbus/TCP frame")]
+    #[error("{bytes} bytes that are not a Modbus/TCP frame")]
     NoFrame {
         /// How many.
         bytes: usize,
@@ -136,7 +136,7 @@ pub enum Damage {
         got: u8,
     },
     /// Not as many registers as were asked for, or others.
-    #[error("not the registers that were asked for")]
+    #[error("not the registers that were requested")]
     Registers,
 }
 

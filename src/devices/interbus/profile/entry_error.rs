@@ -7,15 +7,15 @@ use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A program that stands in the list already.
-    #[error("program {} stands twice", .0.get())]
+    #[error("program {} appears twice", .0.get())]
     ProgramTwice(ProgramNumber),
     /// A cam that stands in its program already.
-    #[error("cam {} stands twice", .0.get())]
+    #[error("cam {} appears twice", .0.get())]
     CamTwice(CamNumber),
     /// No program, no cam, or what is marked is nothing.
     #[error(transparent)]
     Item(#[from] ItemError),
     /// What is marked is no setting.
-    #[error("{0} is measured, and belongs to no mounting")]
+    #[error("{0} is measured and does not belong to the mounting")]
     Measured(Item),
 }

@@ -169,12 +169,12 @@ mod tests {
         for (word, mode, says) in [
             (0x0200_00FF, Mode::Position, "Steps := 255"),
             (0x0600_0004, Mode::Parameterisation, "Direction := counterclockwise"),
-            (0x2040_0001, Mode::Position, "Speed instead of the position"),
+            (0x2040_0001, Mode::Position, "Send the speed instead of the position"),
             (0x2040_0001, Mode::Cam, "Active cams: 0"),
             (0x2040_0093, Mode::Cam, "Active cams: 0, 1, 4, 7"),
             (0x4600_0015, Mode::Cam, "Cam 3 starts at 21"),
             (0x2021_000C, Mode::Position, "Read out: temperature"),
-            (0x4600_0015, Mode::Position, "Not legal in position mode; it would be: Cam 3 starts at 21"),
+            (0x4600_0015, Mode::Position, "Not valid in position mode; elsewhere: Cam 3 starts at 21"),
         ] {
             assert_eq!(english(out(word, mode)), says, "{word:08X}");
         }

@@ -72,7 +72,7 @@ pub enum RangeError {
         limit: u8,
     },
     /// Nothing to tell apart.
-    #[error("a range of a single position says nothing: give it bits or steps")]
+    #[error("a range of a single position is not possible: give it bits or steps")]
     Empty,
     /// A fraction with a zero in it.
     #[error("revolutions must be more than 0/0: {0}/{1}")]

@@ -273,7 +273,7 @@ mod tests {
             (ChangeKind::Restore, "restoring the profile again"),
             (ChangeKind::Bytes, "any other register stays as it was written"),
             (ChangeKind::Guided, "Completed steps stay done"),
-            (ChangeKind::WiegandTest, "changes nothing but its saved result"),
+            (ChangeKind::WiegandTest, "changes only its saved result"),
             (ChangeKind::Filter, "status biss"),
             (ChangeKind::Preset, "position biss"),
         ];
@@ -332,7 +332,7 @@ mod tests {
             ["0x01 calibration, 0x00 operation", "0x01 Kalibrierung, 0x00 Betrieb"],
             ["password", "Passwort"],
             ["table", "Tabelle"],
-            ["Lead it back", "zurückführen"],
+            ["Lead the encoder back", "zurückführen"],
             ["b.ron", "b.ron"],
         ];
         assert_eq!((english.len(), german.len()), (expected.len(), expected.len()), "{english:?}");
@@ -363,7 +363,7 @@ mod tests {
         }
         let (idle, _) =
             told(Failure::Device(Error::NeverSilent), standing(&[DeviceMode::PRESET], false, Activity::Nothing));
-        assert!(idle[3].contains("Lead it back"), "{idle:?}");
+        assert!(idle[3].contains("Lead the encoder back"), "{idle:?}");
     }
 
     /// Manual 6.3 and 6.4, every code; what happened, and what to do.

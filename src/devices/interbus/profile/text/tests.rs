@@ -89,13 +89,13 @@ fn what_is_wrong_names_its_entry() {
         ("mask: 0b101", "mask: 256", "programs[0].mask must be a number from 0 to 255 (0x00 to 0xFF)"),
         ("cam: 2", "cam: 8", "programs[0].cams[0].cam: cam 8 is not within 0 to 7"),
         ("start: 3500, ", "", "programs[0].cams[0].start is missing"),
-        ("        ]),\n", "        ]), (program: 2, mask: 0)\n", "programs[1].program: program 2 stands twice"),
-        ("name: \"glue\"),", "), (cam: 2, start: 1, stop: 2)", "programs[0].cams[1].cam: cam 2 stands twice"),
+        ("        ]),\n", "        ]), (program: 2, mask: 0)\n", "programs[1].program: program 2 appears twice"),
+        ("name: \"glue\"),", "), (cam: 2, start: 1, stop: 2)", "programs[0].cams[1].cam: cam 2 appears twice"),
         ("    programs", "    shift: 26, programs", "shift must be a number from 0 to 25"),
         (
             "    programs",
             "    mounting: [(item: \"temperature\")], programs",
-            "mounting[0].item: temperature is measured, and belongs to no mounting",
+            "mounting[0].item: temperature is measured and does not belong to the mounting",
         ),
     ];
     for (from, to, message) in cases {

@@ -151,11 +151,11 @@ mod tests {
         let table = options.read("program;cam;start;stop\n9;0;1;2\n1;8;1;2\n1;0;1000;2\n1;1;1\n1;2;1;2\n1;2;3;4\n");
         let told: Vec<String> = table.problems.iter().map(|own| problem(own).words(Language::English)).collect();
         let expected = [
-            "Line 2, column 1: Cam program \"9\" does not exist: there are 1 to 8.",
-            "Line 3, column 2: Cam \"8\" does not exist: there are 0 to 7.",
-            "Line 4, column 3: The start at 1000 is beyond the measuring range, which is 0 to 999.",
+            "Line 2, column 1: Cam program \"9\" does not exist. Choose 1 to 8.",
+            "Line 3, column 2: Cam \"8\" does not exist. Choose 0 to 7.",
+            "Line 4, column 3: The start at 1000 is outside the measuring range, which is 0 to 999.",
             "Line 5, column 4: The stop is missing.",
-            "Line 7, column 2: Cam 2 of program 1 is already in line 6, which is used.",
+            "Line 7, column 2: Cam 2 of program 1 is already defined in line 6, which is used.",
         ];
         assert_eq!(told, expected);
     }

@@ -219,10 +219,10 @@ fn a_lane_says_where_its_cam_is_and_what_is_wrong() {
     let expected = "On from 900 (324.0°) over the end of the range to 20 (7.2°), 121 steps";
     assert_eq!(says(words::lane(lane, &degrees, 1000)), expected);
     let troubles: Vec<String> = words::troubles(&chart, lane).into_iter().map(says).collect();
-    assert_eq!(troubles, ["Meets another pulse of the track glue."]);
+    assert_eq!(troubles, ["Overlaps another pulse of the track glue."]);
     own.edit(&Edit::Steps(850)).unwrap();
     let chart = Chart::of(&own, program()).unwrap();
     let troubles: Vec<String> = words::troubles(&chart, chart.lane(cam(3)).unwrap()).into_iter().map(says).collect();
-    assert_eq!(troubles[0], "Beyond the measuring range, which ends at 849.");
+    assert_eq!(troubles[0], "Outside the measuring range, which ends at 849.");
     assert!(chart.lane(cam(3)).unwrap().edited && !chart.lane(cam(5)).unwrap().edited);
 }

@@ -160,7 +160,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
         (ChangeKind::Restore, "restoring the profile again"),
         (ChangeKind::Edits, "the command again"),
         (ChangeKind::Preset, "old one or the preset"),
-        (ChangeKind::Default, "brings them back"),
+        (ChangeKind::Default, "brings back the old ones"),
     ] {
         let lines = told(2, Left::AsFound, kind);
         assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");

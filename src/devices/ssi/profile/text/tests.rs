@@ -251,7 +251,7 @@ fn a_wrong_profile_is_told_where() {
         ("clocks: 27,", "", "frame.clocks is missing"),
         ("clocks: 27", "clocks: 300", "frame.clocks must be a number from 0 to 255"),
         ("clocks: 27", "clocks: 65", "frame: a frame has 1 to 64 clocks, not 65"),
-        ("clocks: 27", "clocks: 26", "frame: ERROR is on clock 27, which 26 clocks do not reach"),
+        ("clocks: 27", "clocks: 26", "frame: ERROR is on clock 27, beyond the 26 clocks of the frame"),
         ("clock: 27", "clock: 26", "frame: clock 26 is asked for by the position and by ERROR"),
         ("multiturn: 12", "multiturn: 33", "frame: multiturn must have at most 32 bits, not 33"),
         (

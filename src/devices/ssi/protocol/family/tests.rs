@@ -207,7 +207,7 @@ fn round_axis() {
 fn what_a_family_cannot_do_is_refused_with_the_reason() {
     let cases = [
         ("ttk70,clocks=32", "TTK70 SSI bears at most 31 clocks, not 32"),
-        ("ahs36,clocks=14", "ERROR is on clock 15, which 14 clocks do not reach"),
+        ("ahs36,clocks=14", "ERROR is on clock 15, beyond the 14 clocks of the frame"),
         (
             "ahs36,steps=359,code=gray-excess",
             "gray excess needs an even number of steps, not 359: with an odd one two bits would change at the end",

@@ -51,7 +51,7 @@ pub enum LayoutError {
         second: Taker,
     },
     /// A bit behind the last clock.
-    #[error("{name} is on clock {clock}, which {clocks} clocks do not reach")]
+    #[error("{name} is on clock {clock}, beyond the {clocks} clocks of the frame")]
     Behind {
         /// Which bit.
         name: Taker,

@@ -135,7 +135,7 @@ fn what_cannot_work_is_refused_with_the_reason() {
         (
             "error bit behind the frame",
             Descriptor { errors: vec![bit("ERROR", 26)], ..plain() },
-            "ERROR is on clock 26, which 25 clocks do not reach",
+            "ERROR is on clock 26, beyond the 25 clocks of the frame",
         ),
         (
             "wide",

@@ -77,7 +77,7 @@ fn phrases_within_a_phrase_are_told_in_german_too() {
         ),
         (
             LayoutError::Behind { name: Taker::Parity, clock: 30, clocks: 15 },
-            "dem Paritätsbit steht auf Takt 30, den 15 Takte nicht erreichen",
+            "Takt 30 mit dem Paritätsbit liegt hinter den 15 Takten",
         ),
         (LayoutError::Many { what: Several::Patterns, limit: 32, count: 33 }, "höchstens 32 Muster, nicht 33"),
     ];

@@ -57,7 +57,7 @@ fn when_a_position_is_made() {
     // 27 clocks take 67.5 µs.
     let expected = [(Moment::Latched, 0.0), (Moment::Started, 87.5), (Moment::Ready, 212.5), (Moment::Next, 267.5)];
     assert_eq!(marks, expected);
-    assert_eq!(said(&synchronous)[4..], ["Pause at least: 150 µs", "New position in the making: 125 µs"]);
+    assert_eq!(said(&synchronous)[4..], ["Pause at least: 150 µs", "Next position in progress: 125 µs"]);
     let first_edge = diagram("atm60", 500e3, 300.0, true);
     assert_eq!(first_edge.marks()[0], Mark { what: Moment::Taken, at: 0.0 });
     assert_eq!(said(&first_edge)[3], "tm = 150 µs");

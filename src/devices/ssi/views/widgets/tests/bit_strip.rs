@@ -64,7 +64,7 @@ fn value(harness: &Harness<'_, Design>, label: &str) -> String {
 fn boundaries_are_moved_by_keys() {
     let mut harness = tree();
     let split = "Boundary between turns and steps";
-    assert_eq!(value(&harness, split), "behind clock 12");
+    assert_eq!(value(&harness, split), "after clock 12");
     focus(&mut harness, split);
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::ArrowRight), (NONE, Key::ArrowLeft)]);
     assert_eq!(moves(&harness), [13, 14, 13].map(|clock| StripEvent::Moved(Handle::Split, clock)));
@@ -82,13 +82,13 @@ fn boundaries_are_moved_by_keys() {
 #[test]
 fn zeros_between_take_the_keyboard_along() {
     let mut harness = tree();
-    focus(&mut harness, "Beginning of the steps");
+    focus(&mut harness, "Start of the steps");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
     harness.get_by_label("Zeros between: 1, on clock 13");
     focus(&mut harness, "End of the turns");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
     assert!(harness.get_by_label("Boundary between turns and steps").is_focused());
-    assert_eq!(value(&harness, "Beginning of the steps"), "behind clock 13");
+    assert_eq!(value(&harness, "Start of the steps"), "after clock 13");
 }
 
 /// Presses a handle, moves the pointer by so many cells of 28 points, and lets go.
@@ -119,7 +119,7 @@ fn boundaries_are_dragged() {
     assert_eq!(moves(&harness)[2..], [StripEvent::Moved(Handle::Position, 3)]);
     drag(&mut harness, "End of the frame", 2.0);
     assert_eq!(moves(&harness)[3..], [StripEvent::Moved(Handle::FrameEnd, 27)]);
-    drag(&mut harness, "Beginning of the position", 0.2);
+    drag(&mut harness, "Start of the position", 0.2);
     assert_eq!(moves(&harness).len(), 4, "where it is, is no other place");
 }
 
@@ -179,7 +179,7 @@ fn every_frame_lies_within_its_width() {
         let plain = crate::devices::ssi::protocol::Descriptor::plain(bits.0, bits.1);
         let harness = strip(&Layout::new(plain).unwrap(), width);
         let left = harness.get_by_label("before").rect().left();
-        let labels = ["Frame", "End of the frame", "Beginning of the position", "Whole position"];
+        let labels = ["Frame", "End of the frame", "Start of the position", "Whole position"];
         for label in labels.into_iter().chain(["Boundary between turns and steps"]) {
             let rect = harness.get_by_label(label).rect();
             assert!(rect.left() >= left && rect.right() <= left + width, "{label} at {width}: {rect}");
@@ -191,8 +191,7 @@ fn every_frame_lies_within_its_width() {
 fn a_handle_says_what_it_does_and_how_far_it_goes() {
     let mut harness = tree();
     // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five behind.
-    for (label, reach) in
-        [("Boundary between turns and steps", "Possible: 5 to 19"), ("Whole position", "Possible: 1 to 10")]
+    for (label, reach) in [("Boundary between turns and steps", "Range: 5 to 19"), ("Whole position", "Range: 1 to 10")]
     {
         let rect = harness.get_by_label(label).rect();
         harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
@@ -203,7 +202,7 @@ fn a_handle_says_what_it_does_and_how_far_it_goes() {
     let rect = harness.get_by_label("Whole position").rect();
     harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
     harness.run_steps(60);
-    harness.get_by_label("This boundary cannot be moved: the neighbouring bits are not free.");
+    harness.get_by_label("This boundary cannot be moved: the bits beside it are in use.");
 }
 
 /// Eight error bits with long names, at the beginning of a line and at its end: none lies over another.
