@@ -15,7 +15,7 @@ pub fn hex_compact(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
 
-/// Which byte of a number comes first.
+/// The order of the bytes of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ByteOrder {
@@ -31,7 +31,7 @@ pub enum ByteOrder {
 pub struct Word {
     /// The bits, right-justified.
     pub value: u64,
-    /// How many they are.
+    /// Number of bits.
     pub bits: u8,
 }
 
@@ -127,7 +127,7 @@ impl FromStr for MaskedBytes {
     }
 }
 
-/// Why a text is not hex bytes.
+/// Why a text is not hexadecimal bytes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HexError {
     /// A character that is neither a hex digit nor a separator.
@@ -213,10 +213,10 @@ impl TypedKind {
     }
 }
 
-/// What the first bytes of a run are in one reading. Where the order of bytes makes no difference, both are the same.
+/// The first bytes of a run in one reading. Where the order of bytes makes no difference, both are the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypedRow {
-    /// How they are read.
+    /// The kind of reading.
     pub kind: TypedKind,
     /// Lowest byte first; `None` where there are too few bytes.
     pub little: Option<String>,

@@ -1,12 +1,12 @@
-//! What a parameter, a setting or an entry may be: a fact with its limits, English here, in the window a text of its own
-//! (`app::explain::expected`).
+//! The allowed values of a parameter, a setting or an entry: a fact with its limits, in English here, with its own text
+//! in the window (`app::explain::expected`).
 
 use std::borrow::Cow;
 use std::fmt;
 
 use thiserror::Error;
 
-/// What would do where something else was written.
+/// The allowed values in place of a wrong one.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Expected {
     /// One of these words, few enough to be read as a sentence.
@@ -18,7 +18,7 @@ pub enum Expected {
     /// A number with what it counts, and its limits.
     #[error("{quantity} from {low} to {high}")]
     Range {
-        /// What it counts.
+        /// The counted quantity.
         quantity: Quantity,
         /// The least.
         low: Limit,
@@ -118,7 +118,7 @@ pub enum Expected {
     /// A name.
     #[error("up to {most} characters of ASCII")]
     Ascii {
-        /// How many.
+        /// The greatest number.
         most: u32,
     },
     /// A position that has no limits yet.
@@ -154,10 +154,10 @@ pub enum Expected {
     /// The variant of a drive.
     #[error("a variant from 1 to 13, or its name as HDA30A")]
     Variant,
-    /// Which places have a drive.
+    /// The places with a drive.
     #[error("0 or 1 for each of {count} places, separated by commas, as 1,0")]
     Places {
-        /// How many places there are.
+        /// Number of places.
         count: u8,
     },
     /// A layout of SSI frames.
@@ -222,7 +222,7 @@ pub enum Expected {
     Clocks,
 }
 
-/// What the number of a range counts, with its article.
+/// The quantity of a range, with its article.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 pub enum Quantity {
     /// Nothing in particular.

@@ -15,7 +15,7 @@ pub struct Refused {
     pub key: String,
     /// The value as it was written.
     pub value: String,
-    /// What would do.
+    /// The allowed values.
     pub allowed: Expected,
 }
 
@@ -35,7 +35,7 @@ pub struct Entry {
     pub label: &'static str,
     /// The sign of its unit; empty where it has none.
     pub unit: &'static str,
-    /// What counts while the entry is empty, or an example.
+    /// The default while the entry is empty, or an example.
     pub hint: String,
     /// It is a number that may have a decimal point.
     pub is_decimal: bool,
@@ -43,7 +43,7 @@ pub struct Entry {
 
 /// Parameters that stand together, made by `parameters!`. The default is what counts where they say nothing.
 pub trait Parameters: Default {
-    /// Why one of them is refused.
+    /// Why a value is refused.
     type Error;
 
     /// Their keys, in the order in which they are declared.

@@ -1,5 +1,5 @@
-//! Words for quantities: newtypes wherever two integers could be swapped, a range is limited or arithmetic has a meaning.
-//! No clock is read here: a [`Moment`] is handed in by whoever owns one.
+//! Quantities: newtypes wherever two integers could be swapped, a range is limited or arithmetic has a meaning. No
+//! clock is read here: a [`Moment`] is passed in by its owner.
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -65,7 +65,7 @@ impl Baud {
         self.0
     }
 
-    /// How long `bits` bits take on the line.
+    /// Returns the time of `bits` bits on the line.
     pub fn time_of_bits(self, bits: u64) -> Duration {
         Duration::from_nanos(bits.saturating_mul(1_000_000_000) / u64::from(self.0))
     }
@@ -120,7 +120,7 @@ impl fmt::Display for Parity {
     }
 }
 
-/// How a character travels on a serial line: what both ends must agree upon. One start bit, eight data bits, one stop
+/// The format of a character on a serial line, on which both ends must agree. One start bit, eight data bits, one stop
 /// bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
@@ -146,12 +146,12 @@ impl fmt::Display for CharacterFormat {
     }
 }
 
-/// What an encoder is supplied with, in millivolts.
+/// The supply of an encoder, in millivolts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SupplyVoltage {
     /// The least that it works with.
     pub least: u16,
-    /// What is given to it.
+    /// The supplied voltage.
     pub given: u16,
     /// The greatest that it stands.
     pub greatest: u16,

@@ -1,14 +1,14 @@
 //! A device check, for every kind of device: steps with a verdict each. Which steps there are and what they find is the
 //! device's.
 
-/// How a step ended. The worse is the greater.
+/// How a step ended. The worse verdict is the greater one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// It was not checked.
     Skipped,
     /// As it should be.
     Good,
-    /// It works, and somebody should look.
+    /// Works, but needs attention.
     Attention,
     /// It does not work.
     Bad,
@@ -17,11 +17,9 @@ pub enum Verdict {
 /// One line of a check: `S` names its step, `F` what it found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StepResult<S, F> {
-    /// What was checked.
     pub step: S,
-    /// How it ended.
     pub verdict: Verdict,
-    /// What was found: values and codes.
+    /// The findings: values and codes.
     pub findings: Vec<F>,
 }
 
@@ -33,19 +31,19 @@ impl<S, F> StepResult<S, F> {
     }
 }
 
-/// What is known of how far a device's memory is worn.
+/// The known wear of a device's memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wear {
-    /// Write cycles that were seen; `None` where nobody tells.
+    /// Write cycles counted; `None` if not known.
     pub seen: Option<u64>,
     /// From here on a person should know.
     pub warning: u64,
-    /// What the memory stands.
+    /// Write cycles that the memory endures.
     pub limit: u64,
 }
 
 impl Wear {
-    /// Write cycles that were seen, and what is to be said of them; `None` where nobody tells.
+    /// Returns the verdict on the counted write cycles; `None` if they are not known.
     pub(crate) fn judged(&self) -> Option<(Verdict, u64)> {
         let seen = self.seen?;
         let verdict = match seen {

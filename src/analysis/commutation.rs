@@ -14,7 +14,7 @@ pub struct Motor {
     pole_pairs: u32,
 }
 
-/// What energising a second vector tells.
+/// The result of energising a second vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVector {
     /// Pole pairs that the movement speaks for, rounded; 0 where the shaft has moved by more than an electrical turn.

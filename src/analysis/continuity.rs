@@ -1,5 +1,5 @@
-//! How the times of a capture follow each other: where samples are missing and where the time goes back. Whatever is
-//! counted from one sample to the next, as the periods of a frequency, is counted within a continuous stretch only.
+//! The sequence of the times of a capture: missing samples, and times that go backwards. Values counted from sample to
+//! sample, such as the periods of a frequency, are counted within a continuous section only.
 //!
 //! A step of more than one and a half usual steps is a gap (U). Times of a table have few digits, so that even samples can
 //! have steps of two lengths: one digit more or less is no gap.
@@ -13,7 +13,7 @@ const SAME: f64 = 0.01;
 /// With fewer of the same than this share, the digits of the times are what makes the difference.
 const MOSTLY: f64 = 0.9;
 
-/// What the times tell.
+/// The result of examining the times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
     /// Samples that are missing; `None` where none are, or there are no times.

@@ -1,23 +1,23 @@
-//! How much of the period a capture covers: octants, periods, and how far the samples keep from the ellipse. Validity of a
-//! fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
+//! How much of the period a capture covers: octants, periods, and the distance of the samples from the ellipse.
+//! Validity of a fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
 
 use std::ops::Range;
 
 use super::ellipse::Ellipse;
 use super::outliers::kept;
 
-/// What samples do on their ellipse.
+/// The path of the samples on their ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
     /// Octants of the corrected angle that hold at least one sample, 0 to 8.
     pub octants: u32,
     /// Periods from the lowest to the highest angle, with the fraction.
     pub periods: f64,
-    /// Periods from the first to the last sample, without what nobody saw of them in a gap; negative when the angle falls.
+    /// Periods from the first to the last sample, without those in a gap; negative when the angle falls.
     pub travel_periods: f64,
     /// All the way, forward and back, likewise.
     pub path_periods: f64,
-    /// How often the angle turned back by more than half a period.
+    /// How often the angle reversed by more than half a period.
     pub reversals: usize,
     /// Distance from the ellipse, rms, as a share of the amplitude.
     pub residual_rms: f64,
@@ -62,7 +62,7 @@ impl Angle {
     }
 }
 
-/// Where an angle went: how far in all, and how often it turned back.
+/// The path of an angle: its total length, and its reversals.
 struct Way {
     /// Highest and lowest of all.
     top: Angle,
@@ -70,7 +70,7 @@ struct Way {
     /// Highest and lowest since it turned back last.
     high: Angle,
     low: Angle,
-    /// Where the stretch began, where it turned back last, and where it is.
+    /// The angles at the start of the section, at the last reversal, and now.
     begun: Angle,
     turned: Angle,
     here: Angle,
@@ -131,7 +131,7 @@ impl Way {
         self.direction = direction;
     }
 
-    /// Nobody knows how the angle came here.
+    /// Starts again at an angle whose path is not known.
     fn begin_at(&mut self, here: Angle) {
         self.end_stretch();
         (self.high, self.low, self.begun, self.turned, self.here) = (here, here, here, here, here);

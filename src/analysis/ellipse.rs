@@ -75,7 +75,7 @@ const DEAD: f64 = 0.05;
 const THIN: f64 = 1e-4;
 /// Smallest over largest eigenvalue of the normal equations below which they have no single solution.
 const CONDITION: f64 = 1e-13;
-/// How often the origin is laid into the middle of the ellipse found before.
+/// How often the origin is moved to the centre of the ellipse found before.
 const ROUNDS: usize = 4;
 
 impl Channel {
@@ -174,7 +174,7 @@ impl Ellipse {
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
     }
 
-    /// So many points of it as (cosine, sine) in volts, and the first once more.
+    /// Returns this many points as (cosine, sine) in volts, with the first one repeated.
     pub fn outline(&self, points: usize) -> Vec<(f64, f64)> {
         let point = |at: usize| {
             let (sine, cosine) = self.at(at as f64 / points as f64 * std::f64::consts::TAU);
@@ -216,7 +216,8 @@ impl Correction {
         (x * self.tan + self.scale * (sine - self.q), x)
     }
 
-    /// How a change of the cosine and one of the sine change the corrected sine; the corrected cosine changes as the cosine.
+    /// Returns how a change of the cosine and one of the sine change the corrected sine; the corrected cosine changes
+    /// as the cosine.
     pub(super) fn stretch(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }

@@ -1,6 +1,6 @@
-//! What a drive's input circuit does to the signals: frequency of the signals at a speed, phase and amplitude of the input
+//! The effect of a drive's input circuit on the signals: signal frequency at a speed, phase and amplitude of the input
 //! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the
-//! input resistor in the text and the feedback resistor in the formula: what counts is the one across the capacitor.
+//! input resistor in the text and the feedback resistor in the formula: the one across the capacitor counts.
 
 use std::f64::consts::TAU;
 
@@ -16,17 +16,17 @@ pub struct InputFilter {
     pub capacitance_f: f64,
 }
 
-/// What a filter does at one frequency.
+/// The response of a filter at one frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
-    /// How far the output lags, in electrical degrees, 0 to 90.
+    /// Lag of the output in electrical degrees, 0 to 90.
     pub phase_deg: f64,
     /// Amplitude of the output over that of the input, 0 to 1.
     pub gain: f64,
 }
 
 impl InputFilter {
-    /// What it does at a frequency in hertz.
+    /// Returns the response at a frequency in hertz.
     pub fn at(&self, frequency_hz: f64) -> Response {
         let product = TAU * frequency_hz * self.resistance_ohm * self.capacitance_f;
         Response { phase_deg: product.atan().to_degrees(), gain: 1.0 / product.hypot(1.0) }

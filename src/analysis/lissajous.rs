@@ -45,7 +45,7 @@ pub const MOST_CELLS: usize = 2048;
 
 /// Room around the samples, as a share of their range.
 const MARGIN: f64 = 0.05;
-/// A square for samples that are all the same.
+/// Half the side of the square for samples that are all equal.
 const LEAST_HALF_V: f64 = 1e-3;
 
 impl Square {
@@ -127,7 +127,7 @@ impl Density {
         (self.outside, self.bad) = (0, 0);
     }
 
-    /// Where the cells lie.
+    /// Returns the square of the cells.
     pub fn square(&self) -> Square {
         self.square
     }

@@ -1,7 +1,7 @@
-//! What samples mean: their time, positions without a wrap, speed and acceleration; hours of them and pictures of any
-//! stretch; of sine and cosine the angle inside a period, the ellipse they draw and how to make it a circle, their quality,
-//! and how they go together with the absolute position; and the verdicts of a device check. Pure: samples and their times
-//! are handed in; nothing here waits, reads a clock or a file, or draws.
+//! The analysis of samples: times, unwrapped positions, speed and acceleration; long histories and pictures of any
+//! range; for sine and cosine the angle within a period, the ellipse and its correction, quality, and synchronisation
+//! with the absolute position; and the verdicts of a device check. Pure: samples and their times are arguments; nothing
+//! here waits, reads a clock or a file, or draws.
 //!
 //! Follows SICK 8010701 (HIPERFACE, process data channel) and Heydemann, Applied Optics 20, 3382 (1981).
 

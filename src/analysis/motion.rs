@@ -14,7 +14,7 @@ pub struct Motion {
     recent: VecDeque<(Time, i64)>,
 }
 
-/// How a position changes.
+/// The rates of change of a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rates {
     /// Steps/s, averaged over the last window, so it belongs to the middle of it; `None` until a window is over.
@@ -32,7 +32,7 @@ impl Motion {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
 
-    /// Begins anew: what comes next is not connected to what was.
+    /// Starts again: the next position is not connected with the last.
     pub fn reset(&mut self) {
         self.recent.clear();
     }

@@ -22,13 +22,13 @@ pub struct Nonlinearity {
 pub struct Deviation {
     /// Reference in mechanical degrees.
     pub reference_deg: f64,
-    /// What remains beside the mean over a period, in mechanical degrees.
+    /// Deviation from the mean over a period, in mechanical degrees.
     pub differential_deg: f64,
     /// The mean over a period, in mechanical degrees.
     pub integral_deg: f64,
 }
 
-/// Why it cannot be told.
+/// Why it cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum NonlinearityError {
     /// The reference does not run in one direction at this sample.

@@ -8,16 +8,16 @@ use super::coverage::Coverage;
 use super::ellipse::{Channel, Ellipse, FitError};
 use super::moments::{Moments, Scale};
 
-/// What was left out of a fit.
+/// The samples excluded from a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
     /// The samples, by index from 0, in their order; no two stretches touch.
     pub stretches: Vec<Range<usize>>,
-    /// How many samples.
+    /// Number of samples.
     pub count: usize,
     /// The longest stretch.
     pub longest: usize,
-    /// How far from the ellipse the farthest is, in volts.
+    /// Largest distance from the ellipse, in volts.
     pub farthest_v: f64,
     /// The ellipse through all samples and what they do on it; `None` where they determine none.
     pub all: Option<(Ellipse, Coverage)>,
@@ -25,11 +25,11 @@ pub struct Outliers {
 
 /// Robust deviations beyond which a sample is left out: noise of the normal distribution comes so far in one of 10¹⁵.
 pub const DEVIATIONS: f64 = 8.0;
-/// What is not further from the ellipse than this share of the amplitude stays, however little noise there is.
+/// Share of the amplitude within which a sample is never an outlier, however little noise there is.
 pub const LEAST_SHARE: f64 = 0.02;
 /// Beyond this share of the samples they are no outliers but a property of the signal.
 pub const MOST: f64 = 0.05;
-/// With fewer samples nobody can tell which of them are wrong.
+/// Fewest samples with which outliers can be recognised.
 pub const LEAST_SAMPLES: usize = 50;
 
 /// Samples that medians are taken from, evenly spread.
@@ -44,7 +44,7 @@ const UPRIGHT: f64 = 0.15;
 /// A channel with less than this share of the other's range does not move.
 const DEAD: f64 = 0.05;
 
-/// What a look for outliers gives.
+/// The result of a search for outliers.
 pub(super) enum Found {
     /// None, or so many that they are none.
     Nothing,
@@ -112,7 +112,7 @@ pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
     boxed(sine, cosine).err().flatten().filter(|_| !few)
 }
 
-/// What remains of `length` samples without `left_out`.
+/// Returns the ranges of `length` samples that remain without `left_out`.
 pub(crate) fn kept(length: usize, left_out: &[Range<usize>]) -> impl Iterator<Item = Range<usize>> {
     let starts = std::iter::once(0).chain(left_out.iter().map(|stretch| stretch.end));
     let ends = left_out.iter().map(|stretch| stretch.start).chain(std::iter::once(length));

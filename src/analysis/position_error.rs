@@ -24,15 +24,15 @@ pub const HARMONICS: usize = 8;
 pub struct PositionError {
     /// As measured, in electrical degrees, at [`POINTS`] evenly spread angles; its mean is zero.
     pub raw_deg: Vec<f64>,
-    /// What remains after the correction, likewise.
+    /// The remaining error after the correction, likewise.
     pub corrected_deg: Vec<f64>,
-    /// Where the remaining error comes from.
+    /// Basis of the remaining error.
     pub basis: Basis,
     /// Peak to peak of what remains, in electrical degrees.
     pub corrected_pp_deg: f64,
 }
 
-/// What the remaining error was measured against.
+/// The basis against which the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
     /// A steady motion, from which the samples keep this far beside the harmonics (noise), rms in electrical degrees.
@@ -176,7 +176,7 @@ struct Segment {
 }
 
 impl Segment {
-    /// What of `range` is not left out.
+    /// Returns the part of `range` that is not excluded.
     fn of(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
         let from = left_out.partition_point(|stretch| stretch.end <= range.start);
         let inside = left_out.iter().skip(from).take_while(|stretch| stretch.start < range.end);

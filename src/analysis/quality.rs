@@ -60,7 +60,7 @@ impl Family {
         }
     }
 
-    /// What its encoders are supplied with: HIPERFACE description 8010701; 4.5 to 5.5 V for AFS and AFM60 with sine and
+    /// Returns the supply of its encoders: HIPERFACE description 8010701; 4.5 to 5.5 V for AFS and AFM60 with sine and
     /// cosine.
     pub const fn supply(self) -> SupplyVoltage {
         match self {
@@ -79,7 +79,7 @@ impl Family {
     }
 }
 
-/// What is out of its limits.
+/// A value out of its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Finding {
     /// An amplitude (peak) in volts, the smaller or larger of the two channels.
@@ -88,7 +88,7 @@ pub enum Finding {
         volts: f64,
         /// Good from, good to, in volts.
         ok_v: (f64, f64),
-        /// How bad.
+        /// The verdict.
         verdict: Verdict,
     },
     /// Offset of the sine channel as a share of the amplitude.
@@ -142,7 +142,8 @@ impl Limits {
         }
     }
 
-    /// What of an ellipse is out of its limits, in the order of section 2. `residual_rms` is relative to the amplitude.
+    /// Returns the values of an ellipse that are out of their limits, in the order of section 2. `residual_rms` is
+    /// relative to the amplitude.
     pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<Finding> {
         let amplitude = ellipse.amplitude_v;
         let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude(volts), volts));

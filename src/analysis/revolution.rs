@@ -17,7 +17,7 @@ pub struct Revolution {
     pub corrected: Nonlinearity,
 }
 
-/// Why it cannot be told.
+/// Why it cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum RevolutionError {
     /// The samples or the reference do not allow it.
@@ -33,7 +33,7 @@ pub enum RevolutionError {
     },
 }
 
-/// How far the counted periods may be from those given, as a share.
+/// How far the counted periods may differ from those given, as a share.
 const CLOSE: f64 = 0.02;
 
 impl Revolution {
@@ -88,7 +88,7 @@ impl Revolution {
     }
 }
 
-/// An angle that runs on where the measured one begins anew.
+/// An angle that continues where the measured one wraps.
 struct Follow {
     whole: f64,
     last: Option<f64>,

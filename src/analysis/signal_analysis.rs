@@ -23,9 +23,9 @@ const LARGEST_STEP_DEG: f64 = 90.0;
 pub struct Analysis {
     /// The ellipse.
     pub ellipse: Ellipse,
-    /// What the samples do on it.
+    /// How the samples cover the ellipse.
     pub coverage: Coverage,
-    /// What the times of the samples do.
+    /// How the times of the samples follow each other.
     pub continuity: Continuity,
     /// Median angle from one sample to the next, in degrees, 0 to 180.
     pub step_deg: f64,

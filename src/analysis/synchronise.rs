@@ -13,12 +13,12 @@ use super::quality::Verdict;
 /// Steps of the absolute position in one period.
 pub const STEPS: u64 = 32;
 
-/// How two positions are brought together.
+/// Combines two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
     /// Periods in the whole range: periods a revolution times revolutions, at least 1.
     pub periods: u64,
-    /// How much the absolute position is ahead when both are right, in steps of 1/32 period; 0 where nothing is known.
+    /// Lead of the absolute position when both are right, in steps of 1/32 period; 0 if not known.
     pub offset_steps: f64,
     /// The absolute position means the middle of its step instead of its beginning.
     pub half_step: bool,

@@ -15,8 +15,8 @@ pub struct Unwrap {
 pub struct Unwrapped {
     /// Steps; beyond the range after a wrap, negative below zero.
     pub steps: i64,
-    /// How it came here from the sample before is not known: there was a gap, or the step was half the range, which may
-    /// have been either way. Not set for the first position of all.
+    /// The path from the previous sample is not known: there was a gap, or the step was half the range, which is
+    /// ambiguous. Not set for the very first position.
     pub broken: bool,
 }
 

@@ -1,4 +1,4 @@
-//! What a person, a view or a finished task asks of the studio.
+//! The actions of the studio: from the user, a view or a finished task.
 
 use std::any::Any;
 use std::path::PathBuf;
@@ -43,7 +43,7 @@ pub enum Action {
     StopMotion,
     /// The window has lost the keyboard, or has put something over itself: what is held is let go.
     LetGo,
-    /// What Esc does: stop what runs, else close what is open.
+    /// Escape: stops what runs, or else closes what is open.
     Escape,
     /// Close the window; asks when something would be lost.
     Close,
@@ -59,7 +59,7 @@ pub enum Action {
     OpenVirtual,
     /// Save a profile: into the file that is open, else into one that is asked for.
     Save(SessionId),
-    /// What becomes of a profile that others have changed meanwhile.
+    /// Resolves a profile that another program has changed meanwhile.
     Resolve(Resolve),
     /// Ask for a file to open: a capture in the Signals tab, else a profile.
     AskOpen,
@@ -105,7 +105,7 @@ pub enum Action {
     NoThread(String),
 }
 
-/// What can be done with the review of a write.
+/// An action on the review of a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReviewAction {
     /// Write the plan that was shown, and no other.
@@ -118,11 +118,10 @@ pub enum ReviewAction {
     Close,
 }
 
-/// What tasks come back with.
+/// The results of tasks.
 pub enum Done {
-    /// Whether there is something at the place where a file is to be written.
+    /// The target of a save was checked for an existing file.
     Looked {
-        /// What is to be written.
         question: FileQuestion,
         /// The place.
         path: PathBuf,
@@ -141,18 +140,15 @@ pub enum Done {
     Read {
         /// The file and its content.
         file: ProfileFile,
-        /// What is in it.
         result: Result<Box<Document>, ReadError>,
         /// Puts it on the desk, with the tables that its kind needs; `None` of a kind that the window does not show.
         open: Option<OpenProfile>,
     },
     /// A profile was written.
     Written {
-        /// What was to be written.
         saving: Box<Saving>,
         /// The file, with what it is to say.
         file: ProfileFile,
-        /// How it went.
         result: Result<(), FileError>,
     },
     /// The file of a profile is not what was opened, and was not written.
@@ -165,7 +161,7 @@ pub enum Done {
     PictureSaved(PathBuf, Result<(), FileError>),
     /// A report was saved, or not.
     ReportSaved(PathBuf, Result<(), FileError>),
-    /// What closing waits for has had time enough.
+    /// A wait before closing has run out of time.
     Waited(Waited),
     /// A session that was let go has ended.
     Left,
@@ -187,7 +183,6 @@ pub enum Done {
         of: DeviceKey,
         /// The file.
         path: PathBuf,
-        /// What is in it.
         result: Result<Box<Document>, ReadError>,
     },
     /// A task of one kind of device, for one session; see `Done::device`.
@@ -196,11 +191,11 @@ pub enum Done {
     Tool(Tab, Payload),
 }
 
-/// What came of opening a link for a session.
+/// The result of opening a link for a session.
 pub struct Attempt {
     /// For whom.
     pub session: SessionId,
-    /// Which attempt of that session: only its latest counts.
+    /// Number of the attempt within its session: only the latest counts.
     pub attempt: u32,
     /// The session on its thread.
     pub(super) result: Result<Box<dyn AnyOpened>, Box<OpenFailed>>,
@@ -210,9 +205,8 @@ pub struct Attempt {
 pub struct Opened<D: Kind> {
     /// The session.
     pub(super) worker: Worker<D>,
-    /// What is kept of it beside its thread.
+    /// The part of the session that stays outside its thread.
     pub(crate) aside: D::SessionHandle,
-    /// Where it talks.
     pub(super) url: crate::link::LinkUrl,
     /// Its trace.
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
@@ -220,7 +214,7 @@ pub struct Opened<D: Kind> {
     pub(super) is_virtual: bool,
     /// When its clock began.
     pub began: jiff::Zoned,
-    /// Who waits for the wire waits until this is dropped.
+    /// Dropping it lets the next attempt use the wire.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }
 
@@ -243,7 +237,7 @@ impl<D: Kind> AnyOpened for Opened<D> {
     }
 }
 
-/// What has had time enough before the window closes; the later ones include those before.
+/// The waits before the window closes, in order; a later one includes the earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Waited {
     /// Drives.
@@ -263,11 +257,11 @@ pub enum OpenFailed {
     Link(OpenError),
     /// No thread for it.
     Thread(String),
-    /// Whoever held the wire does not let go of it.
+    /// The wire is still held by another user.
     Held,
 }
 
-/// What is done with a result that is for no one session.
+/// Handles a result that belongs to no single session.
 pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice>]) + Send>;
 
 /// Why a profile cannot be read.
@@ -284,6 +278,6 @@ pub enum ReadError {
 pub enum RecorderOwner {
     /// A device's.
     Device(SessionId),
-    /// That of a tab that needs no device.
+    /// A tab that needs no device.
     Tool(Tab),
 }

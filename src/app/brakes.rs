@@ -8,8 +8,8 @@ use std::time::{Duration, Instant};
 
 use crate::worker::Stopper;
 
-/// What stops the drives of a session when the program ends. A handle that is shared with the session: it works from any
-/// thread, whatever the session does and whether the window still draws or not.
+/// Stops the drives of a session when the program ends. A handle shared with the session: it works from any thread,
+/// whatever the session does and whether or not the window still draws.
 pub trait Brake: Send {
     /// The program ends: asks for all drives to stop, to be switched off, and their connection to be closed. From then on
     /// nothing moves any more, whatever else is asked. Does not wait, and may be called again.
@@ -39,11 +39,11 @@ struct Shared {
     closing: AtomicBool,
 }
 
-/// How often it is looked whether connections are closed.
+/// Interval at which closed connections are checked for.
 const LOOKS: Duration = Duration::from_millis(5);
 
 impl Brakes {
-    /// How long drives get to stop and connections to close, before the program ends all the same.
+    /// Time that drives have to stop and connections to close before the program ends regardless.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
     /// Drives of a session that begins.

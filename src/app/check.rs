@@ -6,11 +6,8 @@ use crate::analysis::check::{StepResult, Verdict};
 /// One line of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckLine {
-    /// What was checked.
     pub step: Text,
-    /// How it ended.
     pub verdict: Verdict,
-    /// What was found.
     pub findings: Vec<Text>,
 }
 
@@ -25,7 +22,7 @@ impl CheckLine {
     }
 }
 
-/// How a step ended.
+/// Returns the text of a verdict.
 pub fn verdict(verdict: Verdict) -> Text {
     Text::new(match verdict {
         Verdict::Skipped => "check.skipped",

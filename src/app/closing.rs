@@ -8,7 +8,7 @@ use super::session::Source;
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Text, recorder};
 
-/// Nanoseconds of a recording that nobody wants to lose by a click.
+/// Nanoseconds of a recording that are too many to lose by a click.
 pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
@@ -87,7 +87,7 @@ impl Studio {
         }
     }
 
-    /// The system ends the program: edits are kept as drafts, and nobody is there to be asked.
+    /// Handles the end of the program by the system: edits are kept as drafts, and no questions are asked.
     pub(super) fn quit(&mut self) {
         self.question = None;
         self.stop();

@@ -1,4 +1,4 @@
-//! What is asked of one device: by its kind's own actions, or by what every device can be asked for.
+//! Requests to one device: actions of its kind, or commands that every device has.
 
 use super::action::ReadError;
 use super::devices::{ActContext, DeviceCommand};

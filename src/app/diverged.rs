@@ -13,15 +13,13 @@ use crate::profile::{Change, Changed, Document, ProfileError, divergence};
 /// One profile in two versions.
 #[derive(Debug)]
 pub struct Diverged {
-    /// What was to be written.
     saving: Saving,
-    /// What the file says now.
+    /// The present content of the file.
     theirs: Result<Box<Document>, ReadError>,
     /// As it is written there.
     text: String,
-    /// What differs.
     rows: Vec<Row>,
-    /// Why what was chosen cannot be.
+    /// Why the last choice is not possible.
     problem: Option<Text>,
 }
 
@@ -29,29 +27,29 @@ pub struct Diverged {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     change: Change,
-    /// Who changed it.
+    /// Which side changed it.
     pub changed: Changed,
-    /// Which version is taken; `None`: that has to be said.
+    /// The version that is taken; `None` until it is chosen.
     pub take: Option<Side>,
 }
 
 /// One of both versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// What the file says now.
+    /// The present content of the file.
     Theirs,
-    /// What was to be written.
+    /// The edited profile.
     Mine,
 }
 
-/// What becomes of a profile in two versions.
+/// How to resolve a profile in two versions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Resolve {
-    /// What the file says; the edits are given up.
+    /// Takes the file and discards the edits.
     Reload,
-    /// What was to be written, whatever the file says.
+    /// Takes the edited profile, whatever the file contains.
     KeepMine,
-    /// Which version an entry is taken from.
+    /// Takes an entry from one version.
     Take(usize, Side),
     /// Each entry from the version that was chosen.
     Merge,
@@ -60,12 +58,12 @@ pub enum Resolve {
 }
 
 impl Row {
-    /// Where it stands in the profile.
+    /// Returns the location of the entry in the profile.
     pub fn place(&self) -> String {
         self.change.place()
     }
 
-    /// What a version says there; `None`: nothing.
+    /// Returns the value in a version; `None` if it has none.
     pub fn says(&self, side: Side) -> Option<&str> {
         match side {
             Side::Theirs => self.change.from.as_deref(),
@@ -75,7 +73,7 @@ impl Row {
 }
 
 impl Diverged {
-    /// What differs between what a file says and what is to be written there.
+    /// Compares a file with the profile that is to be written to it.
     pub(super) fn new(saving: Saving, Found { text, document }: Found, kinds: Kinds) -> Self {
         let formats = kinds.formats;
         let kind = saving.document.body.kind();
@@ -111,12 +109,12 @@ impl Diverged {
         &self.saving.path
     }
 
-    /// What differs.
+    /// Returns the differences.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }
 
-    /// Why the file cannot be read again, or why what was chosen cannot be.
+    /// Returns why the file cannot be read again, or why the last choice is not possible.
     pub fn problem(&self) -> Option<Text> {
         self.problem.clone()
     }
@@ -148,7 +146,7 @@ impl Diverged {
         })
     }
 
-    /// What is to be written over what the file says now, and nothing else.
+    /// Returns the save that overwrites only the present content of the file.
     fn over_theirs(self, document: Option<Document>) -> Saving {
         let Diverged { mut saving, theirs, text, .. } = self;
         // A file that is no longer a profile has nothing to keep, and the person was told.

@@ -88,13 +88,13 @@ impl Studio {
     }
 }
 
-/// Why a profile is neither saved nor written into a device: it is of a newer schema.
+/// Returns why a profile of a newer schema is neither saved nor written to a device.
 pub(crate) fn only_looked_at(source: &Source) -> Option<Text> {
     let Source::File { path, document, .. } = source else { return None };
     document.is_newer().then(|| explain::newer_profile(path, document))
 }
 
-/// What was read just now, as a profile.
+/// Returns the profile that has just been read as a document.
 pub(crate) fn document_of(body: Body) -> Document {
     let now = Timestamp::now();
     let seconds = Timestamp::from_second(now.as_second()).unwrap_or(now);

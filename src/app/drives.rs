@@ -1,5 +1,5 @@
-//! What the settings remember of drives beside what they keep themselves: the spindles behind them, what their positions are
-//! shown in, limits that nobody has looked at since their scaling was changed, and what was not saved.
+//! The memory of drives in the settings, besides what the drives keep themselves: their spindles, the unit of their
+//! positions, limits not confirmed since the scaling was changed, and values not saved.
 //!
 //! A drive may be open in another session or another window too. What is typed in one of them does not change another; limits
 //! that are marked as unconfirmed in one of them lock all of them, and are confirmed in each.
@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-/// What positions are shown and typed in.
+/// The unit in which positions are shown and entered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Measure {
     /// As they are sent.
@@ -18,7 +18,7 @@ pub enum Measure {
     Turns,
     /// Its angle, also beyond a turn.
     Degrees,
-    /// On a spindle whose pitch somebody has typed.
+    /// Millimetres of a spindle whose pitch has been entered.
     Millimetres,
 }
 
@@ -37,23 +37,23 @@ impl Measure {
     }
 }
 
-/// What is remembered of the drives behind one device.
+/// The memory of the drives behind one device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RememberedDrives {
     /// Nanometres a turn, by the numbers of the drives.
     pub pitches: BTreeMap<u8, u64>,
-    /// What positions are shown in.
+    /// Unit of the positions.
     pub measure: Measure,
-    /// Drives whose limits nobody has confirmed.
+    /// Drives whose limits have not been confirmed.
     unconfirmed: Vec<u8>,
-    /// How often each drive was marked so: tells a mark from the one before.
+    /// How often each drive was marked: distinguishes a mark from an earlier one.
     marks: BTreeMap<u8, u64>,
-    /// What was saved of what was written since, by the parameters' own numbers.
+    /// Written values that the drive has not saved, by parameter number.
     pub unsaved: BTreeMap<u16, i64>,
 }
 
-/// What can be read of a drive's entry whose other parts are broken.
+/// The readable part of a drive's entry whose other parts are broken.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct LocksAlone {
@@ -61,7 +61,7 @@ pub(crate) struct LocksAlone {
     marks: BTreeMap<u8, u64>,
 }
 
-/// Whether the settings were read since control was taken: another window may have marked limits in them.
+/// Whether the settings have been read since control was taken: another window may have marked limits in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Marks {
     /// Not yet, or too long ago.
@@ -162,7 +162,7 @@ impl RememberedDrives {
     }
 }
 
-/// What `ours` has changed since `known`, key by key.
+/// Applies the changes from `known` to `ours`, key by key.
 fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMap<K, V>, ours: &BTreeMap<K, V>) {
     for key in known.keys().chain(ours.keys()) {
         match (known.get(key), ours.get(key)) {

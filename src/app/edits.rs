@@ -8,7 +8,7 @@ use super::history::History;
 
 /// A memory as it was read.
 pub trait EditBase: Default {
-    /// Where a value stands.
+    /// The location of a value.
     type Place: Ord + Copy;
     /// A value.
     type Value: Copy + PartialEq;

@@ -12,13 +12,13 @@ use super::{DeviceAction, Language, Picture, Text};
 /// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
-    /// Which profile to open.
+    /// Opens a profile.
     Open,
-    /// Which capture to open.
+    /// Opens a capture.
     OpenCapture,
-    /// Which recorded trace to connect to.
+    /// Opens a recorded trace to connect to.
     Recording,
-    /// Where to save; with a name to begin with.
+    /// Saves under a name, with a suggestion.
     Save {
         /// Whose profile it is.
         session: SessionId,
@@ -27,7 +27,7 @@ pub enum FileQuestion {
     },
     /// A file that one kind of device reads or writes.
     OfDevice(DeviceFile),
-    /// Where to write a table of samples.
+    /// Saves a table of samples.
     Table {
         /// Whose they are.
         desk: RecorderOwner,
@@ -36,7 +36,7 @@ pub enum FileQuestion {
         /// A name to begin with.
         suggested: PathBuf,
     },
-    /// Where to save a picture.
+    /// Saves a picture.
     Picture {
         /// The picture.
         picture: Picture,
@@ -118,7 +118,7 @@ impl fmt::Debug for DeviceFile {
 }
 
 impl FileQuestion {
-    /// How the names of such files end.
+    /// Returns the extensions of such files.
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
             FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],

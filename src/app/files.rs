@@ -33,7 +33,7 @@ impl Studio {
         url
     }
 
-    /// Where paths begin that a person gives.
+    /// Returns the folders that relative paths start from.
     pub fn folders(&self) -> &Folders {
         &self.services.world.folders
     }

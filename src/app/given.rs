@@ -37,7 +37,7 @@ impl fmt::Debug for Given {
 
 type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// What opens links to a kind of device in place of the kind's own way. Given by tests only.
+/// Opens links to a kind of device instead of the kind's own way. Used by tests only.
 pub struct Opener<D: Device>(Box<Open<D>>);
 
 impl<D: Device> Opener<D> {

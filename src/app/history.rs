@@ -1,6 +1,6 @@
-//! Steps that can be undone and done again, whatever it is that changes in them. What is now lies with whoever holds this.
+//! Steps that can be undone and redone, whatever they change. The owner holds the present state.
 
-/// What was before each of the last steps, and what was undone of them.
+/// The states before the last steps, and those undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct History<T> {
     undo: Vec<T>,
@@ -50,12 +50,12 @@ impl<T> History<T> {
         true
     }
 
-    /// What led here cannot be undone any more.
+    /// Forgets all steps: nothing can be undone any more.
     pub(crate) fn forget(&mut self) {
         *self = History::default();
     }
 
-    /// What was undone cannot be done again any more.
+    /// Forgets the undone steps: nothing can be redone any more.
     pub(super) fn forget_undone(&mut self) {
         self.redo.clear();
     }

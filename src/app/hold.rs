@@ -17,7 +17,7 @@
 
 use super::press::{FreshKeys, PressKey};
 
-/// What a picture of the button begins with.
+/// The state of a hold button at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldScene {
     /// It may be pressed.
@@ -30,14 +30,13 @@ pub struct HoldScene {
     pub moving: bool,
 }
 
-/// What came since the picture before, in its order.
+/// Input since the previous frame, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldInput {
     /// The window got or lost the keyboard.
     WindowFocus(bool),
     /// A key went down, or repeats itself.
     Down {
-        /// Which one.
         key: PressKey,
         /// Without modifiers.
         plain: bool,
@@ -66,7 +65,7 @@ pub enum HoldInput {
     Finger,
 }
 
-/// What became of a hold in a picture.
+/// The effect of a frame on a hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
     /// It begins.
@@ -85,7 +84,7 @@ enum Holder {
     Key(PressKey),
 }
 
-/// What a button remembers from one picture to the next.
+/// The state of a button that is kept between frames.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HoldState {
     scene: Option<HoldScene>,

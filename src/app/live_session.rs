@@ -16,11 +16,9 @@ use crate::worker::{Device, Event, JobId, Progress, Ring, Stopper, SubmitError, 
 pub struct Running<W> {
     /// Its number in this session.
     pub id: JobId,
-    /// What it is.
     pub what: Text,
     /// Since when.
     pub since: Zoned,
-    /// How far it is.
     pub progress: Option<Progress<W>>,
     /// It changes the device's memory.
     pub writes: bool,
@@ -37,10 +35,9 @@ pub struct LiveSession<D: Device> {
     pub is_virtual: bool,
 }
 
-/// A job that runs, for whoever does not know the device.
+/// A running job, for code that does not know the device.
 #[derive(Clone, Debug)]
 pub struct Progressing {
-    /// What it is.
     pub what: Text,
     /// Steps done, steps in all, and what is being done.
     pub progress: Option<(u64, u64, Text)>,
@@ -77,7 +74,7 @@ impl<D: Kind> LiveSession<D> {
         self.running.as_ref()
     }
 
-    /// How often samples are taken; `None`: not at all.
+    /// Returns the polling interval; `None` if polling is off.
     pub fn polling(&self) -> Option<Duration> {
         self.worker.polling()
     }
@@ -137,12 +134,12 @@ impl<D: Kind> LiveSession<D> {
         self.trace.drain()
     }
 
-    /// What ends the job that runs, from any thread.
+    /// Returns a handle that stops the running job from any thread.
     pub(crate) fn stopper(&self) -> Stopper {
         self.worker.stopper()
     }
 
-    /// Gives the thread back, to be closed where nobody waits for it.
+    /// Returns the thread, to be closed where nothing waits for it.
     pub(crate) fn into_worker(self) -> Worker<D> {
         self.worker
     }

@@ -1,5 +1,5 @@
-//! What the program knows and can do, without drawing: all state of the window and what can be done with it, the words
-//! for a person, the look as data.
+//! The state and logic of the program, without drawing: the state of the window and its actions, the texts, the theme
+//! as data.
 
 pub(crate) mod action;
 mod brakes;

@@ -1,4 +1,4 @@
-//! What moves, in all sessions: stopped and let go here, whatever kind of device it is.
+//! Motion in all sessions: stopped and let go here, for every kind of device.
 
 use super::devices::MotionControl;
 use super::studio::Studio;
@@ -32,7 +32,7 @@ impl Studio {
         self.motions().any(MotionControl::is_under_way)
     }
 
-    /// Somebody has control of some drives: what they say comes by itself.
+    /// Returns whether drives are under control: their values then arrive unrequested.
     pub fn is_in_control(&self) -> bool {
         self.motions().any(MotionControl::is_in_control)
     }
@@ -42,8 +42,8 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Whatever a person holds is let go, and what turns without an end: the window has lost the keyboard, or has put
-    /// something over itself.
+    /// Lets go of everything that is held, and of endless rotation: the window has lost the keyboard, or a dialog
+    /// covers it.
     pub(super) fn let_go_of_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::let_go);
     }

@@ -1,4 +1,4 @@
-//! What happened, in words for a person: the latest stands in the window until it is read, all stand in the log.
+//! Messages to the user: the latest is shown in the window until it is read, all of them are in the log.
 
 use std::collections::VecDeque;
 use std::path::Path;
@@ -8,14 +8,14 @@ use jiff::Zoned;
 
 use super::Text;
 
-/// How much a notice matters.
+/// The severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Something was done.
     Note,
     /// It was done and verified.
     Good,
-    /// Somebody should look.
+    /// Needs attention.
     Warning,
     /// Something was not done.
     Error,
@@ -38,18 +38,17 @@ impl Severity {
 pub struct Notice {
     /// When.
     pub at: Zoned,
-    /// How much it matters.
     pub severity: Severity,
     /// What happened, and what to do.
     pub texts: Vec<Text>,
     /// Whose it is: the name of a session.
     pub about: Option<String>,
-    /// Which part of that: a drive of a hub.
+    /// The part concerned: a drive of a hub.
     pub part: Option<Text>,
 }
 
 impl Notice {
-    /// Whose it is, before what happened; empty where it is nobody's.
+    /// Returns the prefix that names the device and part; empty if there is none.
     pub fn whose(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
@@ -102,7 +101,7 @@ impl Log {
         self.standing.as_ref()
     }
 
-    /// What stands in the window is true no more, where it is this text about this session.
+    /// Removes this text about this session from the window: it no longer applies.
     pub(crate) fn settle(&mut self, id: &str, about: Option<&str>) {
         let is_it =
             |notice: &Notice| notice.about.as_deref() == about && notice.texts.iter().any(|text| text.id() == id);

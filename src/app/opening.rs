@@ -179,8 +179,8 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread, after an earlier attempt and after whoever still holds the wire. What it gives tells by
-    /// its end that the wire is free again, or in use.
+    /// Opens a link on a thread, after an earlier attempt and any other user of the wire have finished. Dropping its
+    /// turn shows that the wire is free again.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,

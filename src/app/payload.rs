@@ -1,5 +1,5 @@
-//! What is asked of one kind of device, on its way through what knows no kind. It is put in typed and taken out typed; the
-//! one place that can find another kind's is [`Payload::open`].
+//! Typed actions of one kind of device on their way through untyped code. [`Payload::open`] is the only place that can
+//! find another kind's.
 
 use std::any::Any;
 use std::fmt;

@@ -1,6 +1,6 @@
 //! Edits that are not written, as far as they are the same for every kind of device.
 
-/// What the user wants otherwise than it is in the device or in the file, with the way back.
+/// Edited values that differ from the device or the file, with undo.
 pub trait PendingEdits {
     /// Returns the number of edits.
     fn count(&self) -> usize;

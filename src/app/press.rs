@@ -19,7 +19,7 @@ pub enum PressKey {
 /// presses, repeat a key by a release and a press at once.
 const LEAST: f64 = 0.05;
 
-/// What is known of a key.
+/// The known state of a key.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum Seen {
     /// It may be held.
@@ -31,7 +31,7 @@ enum Seen {
     Up,
 }
 
-/// What is known of the keys that press buttons.
+/// The known state of the keys that press buttons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FreshKeys {
     space: Seen,
@@ -126,7 +126,7 @@ mod tests {
     use super::PressKey::{Enter, Space};
     use super::*;
 
-    /// So many pictures with nothing in them.
+    /// Runs this many empty frames.
     fn pictures(keys: &mut FreshKeys, from: f64, apart: f64, count: u32) {
         for number in 0..count {
             let _ = keys.end_picture(from + apart * f64::from(number));

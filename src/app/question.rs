@@ -22,7 +22,7 @@ pub struct Question {
     pub(super) then: Then,
 }
 
-/// What a confirmed question leads to.
+/// The act that follows a confirmed question.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Then {
     CloseWindow,
@@ -42,7 +42,7 @@ impl Question {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }
 
-    /// Whether another master may be on the line behind a link.
+    /// Returns the question whether another master may be on the line behind a link.
     pub(crate) fn other_master(link: &LinkUrl, then: Then) -> Self {
         Question {
             text: Text::new("question.drive").with("link", without_codes(link)),

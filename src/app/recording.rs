@@ -1,4 +1,4 @@
-//! What is recorded of a device, as far as it is the same for every kind.
+//! The recording of a device, as far as it is the same for every kind.
 
 use std::time::Duration;
 

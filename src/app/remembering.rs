@@ -1,5 +1,4 @@
-//! What the settings remember of drives goes to them, and what is new of it into the settings; other windows write the same
-//! file.
+//! Exchange of remembered values between the settings and the drives; other windows write the same file.
 
 use std::time::Duration;
 
@@ -9,13 +8,13 @@ use super::drives::{Marks, RemembersDrives};
 use super::studio::Studio;
 use crate::store::FileError;
 
-/// How often the settings are read while drives are in hand.
+/// Interval at which the settings are read while drives are under control.
 const PACE: Duration = Duration::from_secs(1);
-/// How long what they said counts: as long as what was read of the drives themselves.
+/// How long the settings that were read stay valid: as long as values read from the drives.
 const STALE: Duration = Duration::from_secs(4);
 
 impl Studio {
-    /// What is remembered of drives from one start to the next goes to them, and what is new of it into the settings.
+    /// Gives the drives their remembered values, and puts new ones into the settings.
     pub(super) fn remember_drives(&mut self) {
         for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
             let Some(key) = drives.remembered_as() else { continue };

@@ -14,22 +14,20 @@ use crate::worker::{Committed, is_uncounted};
 
 /// A write on its way.
 pub struct Review<K: Reviewed> {
-    /// What the user wants.
     pub what: Text,
-    /// How far it is.
     pub state: ReviewState<K>,
     /// Write although the device counts as worn.
     pub force_wear: bool,
-    /// What is wanted was made for another device.
+    /// The change was made for another device.
     pub is_for_another: bool,
-    /// What is wanted was made for another type of device.
+    /// The change was made for another type of device.
     pub is_for_another_type: bool,
     pub(crate) change: K::Change,
-    /// What is in question beyond the usual, and whether it is allowed.
+    /// The permits in question, and whether they are given.
     permits: Vec<Toggle>,
 }
 
-/// How far a write is.
+/// The state of a write.
 pub enum ReviewState<K: Reviewed> {
     /// The device is read and the plan made.
     Planning,
@@ -102,7 +100,7 @@ impl<K: Reviewed> Review<K> {
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
-    /// What is wanted, with one of the toggles the other way round.
+    /// Returns the change with one of its permits toggled.
     pub(crate) fn toggled(&self, permit: Permit) -> Option<K::Change> {
         let mut change = self.change.clone();
         let own = K::permitted(&mut change, permit)?;
@@ -110,7 +108,7 @@ impl<K: Reviewed> Review<K> {
         Some(change)
     }
 
-    /// What may be allowed beyond the usual: what is, and what would make a difference.
+    /// Returns the permits that are given or would make a difference.
     fn toggles(&self) -> Vec<Toggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
@@ -127,7 +125,6 @@ impl<K: Reviewed> Review<K> {
 /// An operation of a plan in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpWords {
-    /// What it changes.
     pub item: Text,
     /// Each thing that it changes, in its order; at least one.
     pub changes: Vec<ChangeWords>,
@@ -136,11 +133,9 @@ pub struct OpWords {
 /// One thing that an operation changes, in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeWords {
-    /// Which part of the item; `None`: all of it.
+    /// The part of the item; `None` for all of it.
     pub part: Option<Text>,
-    /// What is there now.
     pub old: Text,
-    /// What will be there.
     pub new: Text,
 }
 
@@ -160,13 +155,12 @@ impl OpWords {
 /// Something about a plan that has to be answered, and makes another plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
-    /// What it is about.
     pub what: Text,
     /// The answer that allows nothing.
     pub no: Text,
     /// The answer that allows it.
     pub yes: Text,
-    /// What is allowed where the answer is yes.
+    /// The permit that a positive answer gives.
     pub permit: Permit,
     /// The answer.
     pub is_on: bool,
@@ -177,14 +171,14 @@ pub struct Question {
 pub enum Manner {
     /// From end to end.
     Writes,
-    /// Step by step, with somebody at the device.
+    /// Step by step, with the user at the device.
     Leads,
     /// Step by step, and nothing is written.
     Tests,
 }
 
 impl Manner {
-    /// What starts it, as a row of the texts.
+    /// Returns the id of the text of the start button.
     pub const fn word(self) -> &'static str {
         match self {
             Manner::Writes => "review.write",
@@ -193,7 +187,7 @@ impl Manner {
         }
     }
 
-    /// What will be done, as a row of the texts.
+    /// Returns the id of the text that says what will be done.
     pub const fn way(self) -> &'static str {
         match self {
             Manner::Writes => "review.way",
@@ -206,34 +200,30 @@ impl Manner {
 /// A review as a person sees it, whatever the device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
-    /// What the user wants.
     pub what: Text,
-    /// How far it is.
     pub stage: Stage,
     /// The operations.
     pub lines: Vec<OpWords>,
-    /// What should make somebody stop and look.
+    /// Warnings that need attention.
     pub warnings: Vec<Text>,
-    /// What the plan needs from the person in front of the device.
+    /// What the plan requires of the user at the device.
     pub needs: Vec<Text>,
-    /// What has to be set up anew afterwards, because it comes from another device: while it is planned, while it is
-    /// written, and at its end.
+    /// Values from another device that have to be set up again afterwards; shown during planning, writing and at the
+    /// end.
     pub redo: Option<Text>,
-    /// What it costs, beside what this computer has seen the device take.
+    /// The cost, besides the write cycles that this computer has counted.
     pub cost: Option<Text>,
-    /// How it is carried out.
     pub manner: Manner,
-    /// What may be allowed beyond the usual.
     pub toggles: Vec<Toggle>,
-    /// What has to be answered about it.
+    /// Questions that have to be answered first.
     pub questions: Vec<Question>,
-    /// The device counts as worn after it, or its wear is not known: whether it is to be written all the same.
+    /// The device is worn after it, or its wear is not known: whether to write regardless.
     pub force_wear: Option<bool>,
-    /// How many write cycles it has had is not known.
+    /// The number of its earlier write cycles is not known.
     pub is_uncounted: bool,
 }
 
-/// How far a review is.
+/// The stage of a review.
 #[derive(Clone, Debug)]
 pub enum Stage {
     /// The device is read and the plan made.
@@ -246,11 +236,11 @@ pub enum Stage {
     Writing(usize),
     /// It was carried out.
     Done {
-        /// That it was read back.
+        /// Confirmation that it was read back.
         verified: Text,
         /// The before-image.
         backup: Option<PathBuf>,
-        /// What the logbook could not take.
+        /// What the logbook could not record.
         logbook: Option<Text>,
     },
     /// It cannot be done, or ended early.
@@ -264,18 +254,18 @@ pub enum Stage {
     },
 }
 
-/// What a kind of device with a memory says about its writes.
+/// A kind of device with a memory: the words for its writes.
 pub trait Reviewed: Kind<Review = Review<Self>> {
-    /// What a user wants.
+    /// The requested change.
     type Change: Clone;
-    /// What was read and planned.
+    /// The result of reading and planning.
     type Prepared: Planned + Clone;
-    /// What came of it.
+    /// The result of the write.
     type Written;
 
-    /// What is wanted, in words.
+    /// Returns the change in words.
     fn change(change: &Self::Change) -> Text;
-    /// Whether this is allowed; `None` where it is not in question.
+    /// Returns the flag of a permit; `None` if it is not in question.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     /// An operation of it, in words.
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
@@ -284,27 +274,27 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         false
     }
 
-    /// What it writes that is right for another device alone, and has to be set up anew.
+    /// Returns the written values that belong to another device and have to be set up again.
     fn redo(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
-    /// What has to be answered about it.
+    /// Returns the questions that have to be answered first.
     fn questions(_prepared: &Self::Prepared) -> Vec<Question> {
         Vec::new()
     }
 
-    /// What should make somebody stop and look.
+    /// Returns warnings that need attention.
     fn warnings(_prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
-    /// What it needs from the person in front of the device.
+    /// Returns what the plan requires of the user at the device.
     fn needs(_change: &Self::Change, _prepared: &Self::Prepared) -> Vec<Text> {
         Vec::new()
     }
 
-    /// What it costs.
+    /// Returns the cost in words.
     fn cost(prepared: &Self::Prepared) -> Text;
 
     /// The device counts as worn after it.
@@ -313,7 +303,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
 
-    /// What was written.
+    /// Returns the result of the write in words.
     fn written(written: &Self::Written) -> Text;
 
     /// The same for the end of a review, which shows each operation.
@@ -321,7 +311,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Self::written(written)
     }
 
-    /// How it is carried out.
+    /// Returns how the plan is carried out.
     fn manner(_prepared: &Self::Prepared) -> Manner {
         Manner::Writes
     }
@@ -330,7 +320,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
 /// An operation of a plan.
 pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
 
-/// What a write came to, and how much that weighs.
+/// Returns the result of a write in words, with its severity.
 pub fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
@@ -339,7 +329,7 @@ pub fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Te
     }
 }
 
-/// What a restore leaves alone: what only one side has, by the words for it, and what belongs to another mounting.
+/// Returns the values that a restore leaves unchanged: those that only one side has, and those of another mounting.
 pub(crate) fn left_alone(words: impl Into<Text>, missing: Vec<Text>, mounting: Vec<Text>) -> Vec<Text> {
     let mut texts = Vec::new();
     if !missing.is_empty() {
@@ -351,7 +341,7 @@ pub(crate) fn left_alone(words: impl Into<Text>, missing: Vec<Text>, mounting: V
     texts
 }
 
-/// Says what has to be set up anew.
+/// Returns the text for values that have to be set up again.
 pub fn redo(items: Vec<Text>) -> Option<Text> {
     (!items.is_empty()).then(|| Text::new("review.redo").with_list("items", items))
 }

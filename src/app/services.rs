@@ -1,4 +1,4 @@
-//! What every session needs of the studio: the world outside, threads for what would block, the log, the list of jobs.
+//! The services of the studio for sessions: the outside world, threads for blocking tasks, the log, the list of jobs.
 
 use std::any::{Any, TypeId};
 use std::collections::{HashMap, VecDeque};
@@ -24,13 +24,13 @@ use crate::worker::JobId;
 pub struct World {
     /// Backups, logbook, drafts, settings.
     pub store: Store,
-    /// What kinds of device are given from outside.
+    /// The configuration that kinds of device receive from outside.
     pub given: Given,
     /// The kinds of devices and the tools that there are.
     pub kinds: Kinds,
     /// Lists the serial ports.
     pub ports: Arc<dyn Fn() -> Result<Vec<PortInfo>, LinkError> + Send + Sync>,
-    /// Where paths begin that a person gives.
+    /// The folders that relative paths start from.
     pub folders: Folders,
     /// The time of day.
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
@@ -75,14 +75,12 @@ pub struct JobRecord {
     pub until: Option<Zoned>,
     /// Whose it is.
     pub about: String,
-    /// What it is.
     pub what: Text,
-    /// How it ended.
     pub end: JobEnd,
     key: (SessionId, JobId),
 }
 
-/// What sessions share.
+/// The services that sessions share.
 pub struct Services {
     /// The world outside.
     pub(crate) world: World,
@@ -102,7 +100,7 @@ pub struct Services {
     pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
     pub(super) drafts_on_their_way: usize,
-    /// What the sessions of one kind of device have in common.
+    /// Data shared by the sessions of one kind of device.
     shared: HashMap<TypeId, Box<dyn Any>>,
 }
 

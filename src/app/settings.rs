@@ -1,5 +1,5 @@
-//! What the studio remembers from one start to the next: looks, language, links, the arrangement of its panels. A text
-//! that cannot be read costs the memory of a few clicks, and the defaults hold. Files are opened elsewhere.
+//! The settings that are kept between starts: appearance, language, links, arrangement of the panels. If they cannot be
+//! read, the defaults apply. Files are opened elsewhere.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -38,7 +38,7 @@ pub struct Settings {
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
-    /// What is remembered of drives, by the device that they are behind.
+    /// Remembered drives, by the device that they are behind.
     drives: BTreeMap<String, RememberedDrives>,
 }
 
@@ -70,8 +70,8 @@ impl Settings {
         ron::from_str(text).ok()
     }
 
-    /// What can be read of a text that [`parse`](Self::parse) refuses, each entry by itself: a tab that this program does
-    /// not know costs nobody his links.
+    /// Returns the readable part of a text that [`parse`](Self::parse) refuses, entry by entry, so that an unknown tab
+    /// does not cost the links.
     pub(super) fn salvage(text: &str) -> Self {
         macro_rules! entry {
             ($name:ident: $type:ty, $usual:expr) => {{
@@ -123,7 +123,7 @@ impl Settings {
         self
     }
 
-    /// What drives have changed in `ours` since `known`.
+    /// Applies the changes to drives from `known` to `ours`.
     pub(super) fn change_drives(&mut self, known: &Settings, ours: &Settings) {
         let none = RememberedDrives::default();
         for (device, own) in &ours.drives {
@@ -145,12 +145,12 @@ impl Settings {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
     }
 
-    /// What is remembered of the drives behind a device.
+    /// Returns what is remembered of the drives behind a device.
     pub(crate) fn drives(&self, device: &str) -> RememberedDrives {
         self.drives.get(device).cloned().unwrap_or_default()
     }
 
-    /// What is to be remembered of them.
+    /// Remembers the drives behind a device.
     pub(crate) fn remember_drives(&mut self, device: String, what: RememberedDrives) {
         self.drives.insert(device, what);
     }
@@ -160,7 +160,7 @@ impl Settings {
         self.links.of(tab)
     }
 
-    /// What names no tab that there is means the first one.
+    /// Replaces an unknown tab by the first one.
     pub(super) fn settle(&mut self, kinds: Kinds) {
         if !kinds.has_tab(self.tab) {
             self.tab = kinds.first_tab();
@@ -364,7 +364,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: whatever else cannot be read, limits that nobody has confirmed stay locked.
+    /// Issue 21.11: limits that have not been confirmed stay locked, whatever else cannot be read.
     #[test]
     fn marks_are_read_from_a_broken_entry() {
         let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";

@@ -21,20 +21,20 @@ use crate::store::{FileError, FileProblem, read_text, update_text};
 /// How long the start waits for the settings.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// What was told of the settings where they cannot be kept.
+/// Text id of the notice that the settings cannot be kept.
 const NOT_KEPT: &str = "session.settings_not_kept";
 
 /// Behind a reading that failed, the next one waits so long.
 const AGAIN: Duration = Duration::from_secs(1);
 
-/// What is on disk, and whether a write is on its way.
+/// The settings on disk, and a write in progress.
 #[derive(Debug)]
 pub(crate) struct SettingsStore {
     /// The settings here as they were when the file was last read or written.
     known: Settings,
-    /// What could not be written.
+    /// Settings that could not be written.
     failed: Option<Settings>,
-    /// What is being written.
+    /// Settings that are being written.
     busy: Option<Settings>,
     /// The file has been read, or put aside: before that nothing is written over it.
     may_write: bool,
@@ -47,7 +47,7 @@ pub(crate) struct SettingsStore {
     unseen: Option<Zoned>,
 }
 
-/// What came of reading the settings.
+/// The result of reading the settings.
 #[derive(Debug)]
 pub enum SettingsRead {
     /// They are as the program writes them.
@@ -56,21 +56,20 @@ pub enum SettingsRead {
     Missing,
     /// The file is broken: what could be read of it, and where it was put.
     Broken {
-        /// What could be read.
         settings: Box<Settings>,
         /// The file.
         path: PathBuf,
-        /// Where it is kept, or why it is not.
+        /// Path of the copy that was set aside, or why there is none.
         aside: Result<PathBuf, String>,
     },
     /// The file cannot be read at all.
     Unreadable(FileError),
 }
 
-/// What came of writing them.
+/// The result of writing the settings.
 #[derive(Debug)]
 pub struct SettingsWritten {
-    /// What the file says now.
+    /// The present content of the file.
     settings: Box<Settings>,
     /// It was broken, and this was put aside of it.
     aside: Option<(PathBuf, PathBuf)>,
@@ -152,7 +151,7 @@ impl SettingsStore {
         services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
-    /// What has become of a write; that one failed is told once.
+    /// Handles the result of a write; a failure is reported once.
     pub(super) fn kept(
         &mut self,
         result: Result<SettingsWritten, FileError>,
@@ -223,7 +222,7 @@ impl SettingsStore {
         age.is_none_or(|age| age > than)
     }
 
-    /// What others have written about drives is known here from now on.
+    /// Takes over what others have written about drives.
     fn meet(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
         settings.take_drives(found);
@@ -251,7 +250,7 @@ fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     }
 }
 
-/// What can be read of a text, and whether that is all of it; `None` where there is no file.
+/// Parses settings as far as possible, and returns whether that is all of them; `None` without a file.
 fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(Settings, bool)>, FileError> {
     match text {
         Ok(text) => {
@@ -270,7 +269,7 @@ fn understood(text: Result<String, FileError>, kinds: Kinds) -> Result<Option<(S
     }
 }
 
-/// What stands in the settings; `None` where no window can have written any.
+/// Reads the settings; `None` if no window can have written any.
 fn found(path: &Path, kinds: Kinds) -> Result<Option<Settings>, FileError> {
     use FileProblem::{IsFolder, NoFolder, NotAFile, NotFolder};
     match understood(read_text(path), kinds) {

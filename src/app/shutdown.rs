@@ -15,7 +15,7 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
-/// How long closing waits, and opening for a wire that somebody still holds.
+/// How long closing waits, and opening for a wire that is still held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
     /// For drives: they stop and are let go.
@@ -45,7 +45,6 @@ pub(crate) struct Leaver {
     pub(crate) session: SessionId,
     /// Its name.
     pub(crate) about: String,
-    /// Where it talks.
     pub(crate) url: LinkUrl,
     /// The write that runs there.
     pub(crate) write: Option<JobId>,
@@ -65,7 +64,7 @@ pub(crate) trait Left: Send + Sync {
     /// Waits at most `patience` for the end; true when it has come.
     fn wait(&self, patience: Duration) -> bool;
 
-    /// How jobs ended that it has told of since the last time.
+    /// Returns how jobs ended since the last call.
     fn last_words(&self) -> Vec<LastWords>;
 }
 

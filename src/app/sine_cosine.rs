@@ -1,4 +1,4 @@
-//! What Signals needs of a device that gives sine and cosine beside its absolute position, whatever kind it is of.
+//! The capability that Signals uses: a device that gives sine and cosine besides its absolute position.
 
 use super::action::Action;
 use super::studio::SessionId;
@@ -52,7 +52,7 @@ pub trait SineCosineSource {
     /// The action that reads it.
     fn read_action(&self) -> Action;
 
-    /// Which device it is.
+    /// Returns the identity of the device.
     fn origin(&self) -> SineCosineOrigin;
 
     /// The reading that was asked for, once; or why there is none.

@@ -1,6 +1,6 @@
-//! What a press means that comes on the heels of a stop: whoever stops a machine presses twice, holds the key, and lets go of
-//! the button when the machine stands already. None of that is meant for whatever else runs. It stops motion all the same:
-//! something may have begun meanwhile. Pure: times are those of the pictures, in seconds.
+//! The meaning of a press that closely follows a stop: a person who stops a machine presses twice, holds the key, or
+//! releases the button after the machine has stopped. Such presses apply to nothing else that runs. They still stop
+//! motion, as something may have started meanwhile. Pure: times are those of the frames, in seconds.
 
 /// So soon after a stop, in seconds, another press means the same.
 const FRIGHT: f64 = 0.5;
@@ -13,7 +13,8 @@ pub struct StopPresses {
 }
 
 impl StopPresses {
-    /// Whether what was pressed at this time means what moves, or has moved until just now; then it is a stop itself.
+    /// Returns whether a press at this time is meant for a motion that runs or has just ended; it is then a stop
+    /// itself.
     pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_just_stopped(pressed);
         if means {

@@ -24,7 +24,7 @@ pub struct SessionId(pub(crate) u32);
 
 /// All state of the window.
 pub struct Studio {
-    /// What is remembered from one start to the next.
+    /// The settings that are kept between starts.
     pub settings: Settings,
     /// The connection dialog, when it is open.
     pub connect: Option<Connect>,
@@ -68,7 +68,7 @@ impl Studio {
         }
     }
 
-    /// What the window begins with: a link, a profile, or else the virtual encoder.
+    /// Starts the window with a link, a profile, or else the virtual encoder.
     pub fn begin(&mut self, link: Option<LinkUrl>, profile: Option<PathBuf>) {
         let tab = self.tab_of(link.as_ref());
         let is_empty = link.is_none() && profile.is_none();

@@ -1,5 +1,4 @@
-//! What would make the window wait: files, links that open, dialogs of the system. Each runs on a thread of its own and
-//! comes back as an action.
+//! Blocking tasks: files, opening links, system dialogs. Each runs on its own thread and returns as an action.
 
 use std::sync::Arc;
 use std::thread;
@@ -47,7 +46,7 @@ impl Tasks {
         Mailbox { sender: self.sender.clone(), wake: self.wake.clone() }
     }
 
-    /// How sessions wake the window.
+    /// Returns the function with which sessions wake the window.
     pub(crate) fn wake(&self) -> Wake {
         self.wake.clone()
     }

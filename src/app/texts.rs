@@ -67,7 +67,7 @@ struct Row {
     terminal: String,
 }
 
-/// Where a text is said.
+/// The output that a text is for.
 #[derive(Clone, Copy)]
 enum Output {
     Window(Language),
@@ -136,7 +136,7 @@ impl Text {
         self.id
     }
 
-    /// The words in the window, with hints for somebody in front of it.
+    /// Returns the words for the window.
     pub fn words(&self, language: Language) -> String {
         self.said(Output::Window(language))
     }

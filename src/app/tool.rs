@@ -87,7 +87,7 @@ impl dyn Tool {
     }
 }
 
-/// What a tool may use beside itself.
+/// The context of a tool: what it may use besides itself.
 pub struct ToolContext<'a> {
     tab: Tab,
     studio: &'a mut Studio,

@@ -1,5 +1,4 @@
-//! What has passed over a line, with its meaning, for the trace panel. Frames are read when they come, not when they are
-//! drawn.
+//! The traffic on a line, decoded for the trace panel. Frames are decoded on arrival, not when they are drawn.
 
 use std::collections::VecDeque;
 
@@ -14,17 +13,15 @@ use crate::units::Moment;
 pub struct TraceLine {
     /// When its first byte was sent or received, on the session's clock.
     pub at: Moment,
-    /// Which way it went.
     pub direction: Direction,
     /// Its bytes; `**` is a masked one.
     pub bytes: String,
-    /// What it says.
     pub meaning: Vec<Text>,
-    /// How it ended, where that is not as it should.
+    /// The fault at its end, if any.
     pub fault: Option<TraceFault>,
 }
 
-/// What is wrong with a frame.
+/// The fault of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TraceFault {
     /// The device reports an error or a warning.
@@ -33,12 +30,12 @@ pub enum TraceFault {
     Broken,
 }
 
-/// What a frame says.
+/// The meaning of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explained {
     /// In words.
     pub meaning: Vec<Text>,
-    /// What is wrong with it.
+    /// The fault, if any.
     pub fault: Option<TraceFault>,
 }
 
@@ -56,7 +53,7 @@ impl From<Vec<Text>> for Explained {
 }
 
 impl TraceLine {
-    /// What it says, in one line.
+    /// Returns the meaning in one line.
     pub fn words(&self, language: Language) -> String {
         self.meaning.iter().map(|text| text.words(language)).collect::<Vec<_>>().join(" · ")
     }

@@ -1,5 +1,5 @@
-//! What is recorded of a device while it is read: its position without the wrap, speed and acceleration, and the values
-//! that are watched beside it. It knows no device: what a position means, and what a watched value is, is said by its kind.
+//! The recording of a device while it is read: unwrapped position, speed and acceleration, and watched values. It knows
+//! no device: the kind supplies the meaning of positions and values.
 
 use std::time::Duration;
 
@@ -22,10 +22,10 @@ pub use watchable::{Watchable, Watching};
 
 /// Positions that are kept: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
-/// Nanoseconds between positions from which they are not joined, at any pace: a line would tell of a movement that nobody
-/// has seen.
+/// Nanoseconds between positions beyond which they are not joined at any rate: a line would show a motion that was not
+/// observed.
 const APART: i64 = 5_000_000_000;
-/// What a position may be late beside four intervals: a reply that was lost and asked for again.
+/// Nanoseconds that a position may be late besides four intervals: a lost reply that was requested again.
 const LATE: i64 = 400_000_000;
 /// Likewise between watched values, which come more slowly.
 const WATCHED_APART: i64 = APART;
@@ -59,7 +59,7 @@ pub struct Track<W> {
     /// The lines of position, speed and acceleration.
     lines: [LineId; 3],
     watched: Vec<Watched<W>>,
-    /// What positions mean; `None` until the first.
+    /// The meaning of positions; `None` until the first.
     follower: Option<Follower>,
     dropped: u64,
     /// When the clock of the first session began, and how much later that of the present one did.
@@ -158,7 +158,7 @@ impl<W: Watchable> Track<W> {
         self.gap();
     }
 
-    /// What positions mean; `None` until the first.
+    /// Returns the meaning of positions; `None` until the first.
     pub fn meaning(&self) -> Option<&Meaning> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
@@ -172,7 +172,7 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// So many samples were dropped before those that come next.
+    /// Records that samples were dropped before the next ones.
     pub fn lose(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
@@ -266,7 +266,7 @@ impl<W: Watchable> Track<W> {
         self.recorder.rescale(own.line, line.scales().to_vec());
     }
 
-    /// What is recorded beside the position.
+    /// Returns the values recorded with the position.
     pub fn watched(&self) -> Vec<W> {
         self.watched.iter().filter(|own| own.active).map(|own| own.what.clone()).collect()
     }
@@ -319,8 +319,8 @@ impl<W: Watchable> Track<W> {
         self.watch(&watched);
     }
 
-    /// What was recorded is read anew, as far as so many words are kept of it: the clocks stay as they are. Where that is not
-    /// all of it, what was recorded stays too.
+    /// Decodes the recording again, as far as its words are kept; times do not change. If not all of it is kept, the
+    /// old recording stays too.
     pub fn begin_again(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
             self.part(&Meaning::of_steps(None));
@@ -388,7 +388,7 @@ impl<W: Watchable> Track<W> {
         self.lose_track();
     }
 
-    /// How the next position goes on from the last is not known.
+    /// Records that the next position does not continue the last one.
     fn lose_track(&mut self) {
         if let Some(follower) = &mut self.follower {
             follower.lose_track();

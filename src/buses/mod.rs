@@ -1,4 +1,4 @@
-//! What several devices speak.
+//! Protocols that several devices use.
 
 pub mod bridge;
 pub mod ethernet_ip;

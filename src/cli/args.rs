@@ -1,4 +1,4 @@
-//! What can be written on the command line, whatever the kind of device.
+//! The arguments of the command line, for any kind of device.
 
 mod act;
 pub(crate) mod build;
@@ -54,7 +54,7 @@ pub struct Common {
 }
 
 impl Common {
-    /// What the options that kinds of device add give to them.
+    /// Returns the values of the options that kinds of device add.
     pub(super) fn given(&self) -> Result<Given, Failure> {
         self.commands.devices().iter().try_fold(Given::default(), |given, device| device.given(&self.own, given))
     }
@@ -67,7 +67,7 @@ pub enum Command {
     Ports,
     /// The devices that answer.
     Find(Find),
-    /// Who is there.
+    /// Reads the identity of the device
     Identify(Device),
     /// Errors and warnings, decoded.
     Status(Status),
@@ -77,7 +77,7 @@ pub enum Command {
     Read(Read),
     /// Read everything that can be restored, and what identifies the device.
     Save(Save),
-    /// What differs, field by field.
+    /// Compares field by field
     Diff(Diff),
     /// Read back and compare; changes nothing.
     Verify(Verify),
@@ -138,7 +138,7 @@ pub struct Position {
 pub struct Read {
     /// The kind of device.
     pub(super) device: String,
-    /// What to read, by its name.
+    /// Name of the value to read
     pub(crate) item: String,
     #[command(flatten)]
     pub(crate) own: OwnOptions,
@@ -218,7 +218,7 @@ pub struct Consenting {
 pub struct Write {
     /// The kind of device.
     pub(super) device: String,
-    /// What to write, by its name.
+    /// Name of the value to write
     pub(crate) item: String,
     /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT); a word or a range where the
     /// item takes one.

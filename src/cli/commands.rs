@@ -1,5 +1,5 @@
-//! What devices, buses and Signals add to the command line. The list of them is a value that `kinds.rs` hands over: nothing
-//! here names one.
+//! The commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list as a value; no
+//! device is named here.
 
 #![warn(missing_docs)]
 
@@ -89,12 +89,12 @@ pub trait DeviceCommands: Sync {
     /// One sentence on the kind, for the help.
     fn about(&self) -> &'static str;
 
-    /// What the help of the program says of the kind beside that; whole sentences.
+    /// Returns additional sentences for the help of the program.
     fn note(&self) -> Option<&'static str> {
         None
     }
 
-    /// What the help of a command says of the kind: items, values, forms.
+    /// Returns the help of a command for this kind: items, values, forms.
     fn help(&self, _command: CommandId) -> Option<String> {
         None
     }
@@ -132,8 +132,7 @@ pub trait DeviceCommands: Sync {
         Vec::new()
     }
 
-    /// Why an option of this kind is refused for another one, where there is more to say than that; `None` of any other
-    /// option.
+    /// Returns why an option of this kind is refused for another one; `None` without a special reason.
     fn refused_option(&self, _option: &str) -> Option<String> {
         None
     }
@@ -143,7 +142,7 @@ pub trait DeviceCommands: Sync {
         &[]
     }
 
-    /// Whether `find` looks for devices of this kind.
+    /// Returns whether `find` searches for devices of this kind.
     fn is_searchable(&self) -> bool {
         false
     }
@@ -161,12 +160,12 @@ pub trait DeviceCommands: Sync {
     /// Reads the device for a comparison: all of it, or at least what a profile says something about.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
-    /// What is to be known of a profile, whatever is done with it.
+    /// Returns a remark about a profile that applies to every use of it.
     fn remark(&self, _profile: &Body) -> Option<Text> {
         None
     }
 
-    /// That two profiles are not of the same device.
+    /// Returns a message if two profiles are not of the same device.
     fn other_device(&self, _profile: &Body, _device: &Body) -> Option<String> {
         None
     }
@@ -189,7 +188,7 @@ pub trait ProtocolDecoder: Sync {
     /// One sentence on the protocol, for the help.
     fn about(&self) -> &'static str;
 
-    /// What the help of `decode` says of the bytes.
+    /// Returns the help of `decode` for these bytes.
     fn help(&self) -> &'static str;
 
     /// Explains captured bytes.
@@ -236,7 +235,7 @@ impl Commands {
         self.devices.iter().flat_map(|device| device.common_options())
     }
 
-    /// Why an option of every command is refused for a kind of device that does not have it, in words.
+    /// Returns why an option is refused for a kind of device that does not have it.
     pub(super) fn refusal(self, option: &str, chosen: &str) -> String {
         let own = self.devices.iter().find_map(|device| device.refused_option(option));
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
@@ -301,7 +300,7 @@ impl OwnOptions {
         parse(&self.0)
     }
 
-    /// Whether an option was given; those that have a default are not.
+    /// Returns whether an option was given; options with a default do not count.
     pub(super) fn has(&self, id: &str) -> bool {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }

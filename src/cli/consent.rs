@@ -11,7 +11,8 @@ use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, Planned};
 use crate::worker::{self, NotBegun};
 
-/// Without a terminal nobody can be asked: refused before anything is opened.
+/// Requires consent. Without a terminal the question cannot be asked, so the command is refused before anything is
+/// opened.
 pub fn require_consent(consent: &Consenting) -> Result<()> {
     if consent.yes || can_ask() {
         return Ok(());
@@ -21,7 +22,7 @@ pub fn require_consent(consent: &Consenting) -> Result<()> {
     ))
 }
 
-/// Somebody sits there.
+/// Returns whether there is a terminal with a user.
 pub(crate) fn can_ask() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
@@ -73,13 +74,13 @@ pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
     Err(Failure::Failed(vec![format!("Not confirmed; {name} is left as it is.")]))
 }
 
-/// What is to be said once a file was written.
+/// The message after a file was written.
 pub(super) struct Replaces {
     says: Option<String>,
 }
 
 impl Replaces {
-    /// Says that a file was replaced, where nobody was asked.
+    /// Reports that a file was replaced, if the user was not asked.
     pub(super) fn said(&self, output: &Output) {
         if let Some(says) = &self.says {
             output.remark(says);
@@ -92,7 +93,7 @@ pub(crate) fn ask(question: &str) -> bool {
     matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }
 
-/// Asks somebody who sits there. A terminal that cannot be read from gives no answer.
+/// Asks the user at the terminal. A terminal that cannot be read gives an empty answer.
 pub(crate) fn answer(question: &str) -> String {
     say(question);
     let mut answer = String::new();

@@ -1,4 +1,4 @@
-//! What `decode` shares between the kinds of device: captured bytes from the arguments, and what they mean, printed.
+//! Shared parts of `decode` for all kinds of device: captured bytes from the arguments, printed with their meaning.
 
 use serde_json::{Map, Value as Json, json};
 

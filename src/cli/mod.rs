@@ -44,21 +44,21 @@ pub enum Done {
     Differs,
 }
 
-/// Why a command did not do what it should.
+/// Why a command failed.
 #[derive(Debug)]
 pub enum Failure {
     /// It was called wrongly: status 2.
     Usage(String),
     /// The device or the operation failed: status 1. One to four lines.
     Failed(Vec<String>),
-    /// Whoever reads our output has gone: nothing more to say.
+    /// The reader of the output is gone: nothing more can be reported.
     NobodyReads,
 }
 
-/// What a command comes to.
+/// The result of a command.
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
-/// What arguments ask for.
+/// What the arguments request.
 pub enum Asked {
     /// A command, which has ended with this status.
     Command(u8),
@@ -66,14 +66,14 @@ pub enum Asked {
     Window(Window),
 }
 
-/// What the window is to begin with.
+/// The start of the window.
 #[derive(Debug, Default)]
 pub struct Window {
     /// A link to open.
     pub link: Option<LinkUrl>,
     /// A profile to open.
     pub profile: Option<PathBuf>,
-    /// What the options give to kinds of device.
+    /// The values of the options for kinds of device.
     pub given: Given,
 }
 

@@ -1,4 +1,4 @@
-//! What is printed: text in columns, or one JSON object.
+//! The output: text in columns, or one JSON object.
 
 use std::io::{self, Write};
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::{Commands, Failure};
 use crate::profile::Formats;
 
-/// What a command is given: where results go, the formats of profiles that can be read, and the kinds of device.
+/// The context of a command: destination of the output, formats of profiles, and the kinds of device.
 pub struct Output {
     json: bool,
     formats: Formats,
@@ -107,7 +107,7 @@ pub(super) fn say_usage(error: &clap::Error) {
     }
 }
 
-/// Writes to stderr. When nobody reads that either, there is nobody to tell.
+/// Writes to stderr. Errors of doing so are ignored, as they cannot be reported anywhere.
 pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(visible(text).as_bytes()).and_then(|()| err.flush());

@@ -16,17 +16,16 @@ pub struct PlanReport {
     pub operations: Vec<Json>,
     /// The same for a person, with what it costs.
     pub text: String,
-    /// What it costs.
     pub write_cycles: u64,
 }
 
 /// A line of a plan.
 pub struct Step {
-    /// What is changed.
+    /// The item that changes.
     pub item: String,
-    /// What is there now.
+    /// The old value.
     pub old: Option<String>,
-    /// What will be there.
+    /// The new value.
     pub new: Option<String>,
     /// None for what is saved together with others.
     pub write_cycles: u64,
@@ -71,21 +70,20 @@ pub fn text<Base, Op: Operation>(
 /// Said of a plan without operations.
 pub(super) const NOTHING: &str = "nothing to write: it is so already\n";
 
-/// What a write has done.
+/// The summary of a write.
 #[derive(Default)]
 pub struct WriteSummary {
     /// Things that were changed.
     pub written: u64,
     /// Those of them that were read back.
     pub verified: u64,
-    /// What it has cost.
     pub write_cycles: u64,
     /// `None`: there was nothing to write.
     pub backup: Option<PathBuf>,
 }
 
 impl WriteSummary {
-    /// What a commit did; what the logbook could not take is told.
+    /// Makes the summary of a commit; reports what the logbook could not record.
     pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());

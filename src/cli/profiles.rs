@@ -117,7 +117,7 @@ pub fn write_restore(
     if restore.dry_run { show_dry_run(output, plan, left) } else { show_restored(output, &write()?, left) }
 }
 
-/// What the command line allows of a restore, for devices without data fields.
+/// Returns the options of a restore, for devices without data fields.
 pub fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
     if !restore.copy.is_empty() || !restore.leave.is_empty() {
         return Err(Failure::Usage("--copy and --leave are for data fields; this device has none".to_owned()));
@@ -159,18 +159,18 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     Ok(if equal { Done::Well } else { Done::Differs })
 }
 
-/// What a restore leaves as it is.
+/// What a restore leaves unchanged.
 pub struct Left {
     /// Things that are already as the profile says.
     pub unchanged: u64,
-    /// What one side does not have.
+    /// Items that only one side has.
     pub missing: Vec<String>,
-    /// What has to be set up anew, because it comes from another device.
+    /// Values from another device that have to be set up again.
     pub redo: Vec<String>,
 }
 
 impl Left {
-    /// Says what has to be set up anew.
+    /// Prints which values have to be set up again.
     fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
         if let Some(text) = review::redo(items) {

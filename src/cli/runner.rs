@@ -22,16 +22,16 @@ use crate::link::{LinkError, LinkUrl, write_entry, write_header};
 use crate::store::Store;
 use crate::worker::{Device, Event, OpenError, Session, Worker};
 
-/// What the command line has to know of a device that it runs jobs on.
+/// The functions that the command line needs of a device to run jobs on it.
 pub trait Runs: Kind {
-    /// What is kept of a session when its thread has it.
+    /// State of a session outside its thread.
     type Context;
     /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
     const HAS_ONE_MASTER: bool = false;
     /// Its kind on the command line.
     const COMMANDS: &'static dyn DeviceCommands;
 
-    /// Whether another master may be on the line behind a link, so that this is asked before the first byte.
+    /// Returns whether another master may be on the line behind a link; the user is then asked before the first byte.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
@@ -45,18 +45,18 @@ pub trait Runs: Kind {
     /// A step, beside the bar at a terminal.
     fn step(doing: &Self::JobStep) -> String;
 
-    /// What somebody at the terminal should know of a step; told when it changes.
+    /// Returns a message about a step for the user at the terminal, printed when it changes.
     fn announce(_doing: &Self::JobStep) -> Option<String> {
         None
     }
 
-    /// How long its replies take, where that is measured and the link says how long they may.
+    /// Returns how long replies take, if that is measured and the link has a time-out.
     fn reply_pace(_session: &Session<Self>) -> Option<Pace> {
         None
     }
 
-    /// What Ctrl-C does at once, before anything else, each time that it is pressed; the program ends after the second time,
-    /// for which it is told `true`.
+    /// Returns the immediate effect of Ctrl-C, called each time; the program ends after the second time, for which the
+    /// argument is `true`.
     fn interrupt(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
         Box::new(|_| ())
     }
@@ -68,9 +68,9 @@ pub struct Runner<D: Runs> {
     /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
-    /// What the device said on the way of the last job.
+    /// Messages of the device during the last job.
     pub remarks: Vec<D::DeviceMessage>,
-    /// What is known of the session.
+    /// State of the session outside its thread.
     pub kept: D::Context,
 }
 
@@ -86,7 +86,7 @@ pub enum Ended<D: Runs> {
     Worker,
 }
 
-/// What must not be left as it is (a drive in control, a supply that was switched on) takes no longer.
+/// The longest time to leave a state that must not remain: a drive in control, a supply that was switched on.
 const LEAVING: Duration = Duration::from_secs(4);
 
 impl<D: Runs> Drop for Runner<D> {
@@ -183,7 +183,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// What the worker tells next; `None` where it is time to look how things go.
+    /// Returns the next event; `None` when it is time for a check.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, Ended<D>> {
         let events = self.worker.events();
         let Some(left) = self.patience.left() else {
@@ -256,7 +256,7 @@ pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line, where somebody can be asked and has not said so already.
+/// Asks whether a drive is on the line, if there is a user to ask who has not confirmed it yet.
 fn ask_for_other_master(common: &Common) -> Result<()> {
     if common.only_master || !can_ask() {
         return Ok(());

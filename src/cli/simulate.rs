@@ -16,14 +16,15 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// How long to wait for bytes when the device has nothing to say: also how late an interrupt is noticed.
+/// How long to wait for bytes while the device is idle; also the latency of an interrupt.
 const PATIENCE: Duration = Duration::from_millis(20);
 /// A socket's own time-out comes only with the next tick of the system: what is due sooner is slept for.
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait Simulated: ByteDevice {
-    /// How its line is set at a moment; `None` where there is nothing to set, and while it is deaf.
+    /// Returns the setting of its line at a moment; `None` if there is no setting, and while the device does not
+    /// listen.
     fn format(&self, now: Moment) -> Option<CharacterFormat>;
 
     /// The same device for another client beside this one, at this address; `None` where there is one line to it, and clients come one
@@ -37,7 +38,7 @@ pub trait Simulated: ByteDevice {
         None
     }
 
-    /// Where a device with datagrams is reached.
+    /// Sets the address of a device with datagrams.
     fn listens(&self, _at: SocketAddrV4) {}
 
     /// It has closed the connection.
@@ -86,7 +87,7 @@ struct Device {
     clock: Arc<RealClock>,
 }
 
-/// What reading from a client gave.
+/// The result of reading from a client.
 enum Heard {
     Bytes(usize),
     Nothing,

@@ -1,21 +1,21 @@
-//! What is said at a terminal while a device answers slowly, so that nobody takes a slow network for a program that hangs.
+//! The message at a terminal while a device answers slowly, so that a slow network is not mistaken for a hang.
 
 use std::time::{Duration, Instant};
 
 use crate::link::Replies;
 
-/// Before that nobody wonders.
+/// Time before the first message.
 const WONDERS: Duration = Duration::from_secs(3);
-/// How often one looks from then on.
+/// Interval between the following checks.
 const LOOKS: Duration = Duration::from_millis(500);
 /// A reply that takes as long is a slow one.
 const SLOW: Duration = Duration::from_millis(100);
 
-/// How long replies of a device take, and how long they may.
+/// The measured and the allowed reply time of a device.
 pub struct Pace {
-    /// What has been measured.
+    /// The measured times.
     pub(crate) replies: Replies,
-    /// So long a reply may take, as `timeout=` in the link says.
+    /// The allowed reply time, as `timeout=` in the link sets it.
     pub(crate) timeout: Duration,
     /// The longest `timeout=`.
     pub(crate) longest: Duration,
@@ -33,7 +33,7 @@ impl SlowReplyNotice {
         SlowReplyNotice { pace, look: Instant::now() + WONDERS }
     }
 
-    /// How long to wait for news before the next look; `None`: as long as it takes.
+    /// Returns how long to wait for events before the next check; `None` for no limit.
     pub(super) fn left(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
@@ -52,7 +52,7 @@ impl SlowReplyNotice {
 }
 
 impl Pace {
-    /// That it is slow, and where more time may help, how to give it.
+    /// Returns the message, with how to allow more time if that may help.
     fn words(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest());
         let more = if timeout < self.longest {
@@ -80,7 +80,7 @@ impl Pace {
 mod tests {
     use super::*;
 
-    /// What is said with a time-out of so many milliseconds, after replies that took so many.
+    /// Returns the message for a time-out in milliseconds after replies with these times in milliseconds.
     fn said(timeout: u64, took: &[u64]) -> Option<String> {
         let replies = Replies::default();
         took.iter().for_each(|ms| replies.note(Duration::from_millis(*ms)));

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use crate::units::Moment;
 
-/// Who tells the time and waits.
+/// A source of time that can wait.
 pub trait Clock: Send + Sync {
     /// Now.
     fn now(&self) -> Moment;
@@ -38,7 +38,7 @@ impl Clock for RealClock {
     }
 }
 
-/// A clock that moves only when somebody waits: an hour passes in no time.
+/// A clock that advances only while it is waited on: an hour passes in no time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

@@ -36,7 +36,7 @@ pub trait Datagrams: Send {
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<bool, LinkError>;
 }
 
-/// Where packets to and from a target begin.
+/// Opens channels for packets to and from a target.
 pub trait DatagramPort: Send {
     /// Takes a port of ours.
     ///
@@ -53,8 +53,8 @@ pub trait Shout: Send {
     /// When nobody at all can be asked.
     fn shout(&mut self, packet: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits until somebody answers, at most until `until`, and puts the packet into `into` instead of what was there; gives
-    /// back who it was, or `None` when the time is up.
+    /// Waits for a packet until `until` and puts it into `into`, replacing the content. Returns the sender, or `None`
+    /// when the time is up.
     ///
     /// # Errors
     /// When the network is gone.

@@ -1,4 +1,4 @@
-//! What can happen to a wire.
+//! Errors of a wire.
 
 use std::io;
 
@@ -8,11 +8,11 @@ use std::io;
 pub struct LinkError {
     /// Port, host or file, as the user named it.
     pub target: String,
-    /// What happened.
+    /// The kind of error.
     pub kind: LinkErrorKind,
 }
 
-/// What happened to a wire.
+/// The kind of an error of a wire.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LinkErrorKind {
     /// No such port, host or file.
@@ -30,7 +30,7 @@ pub enum LinkErrorKind {
     /// It exists and is no serial port.
     #[error("not a serial port")]
     NotAPort,
-    /// Nobody listens at that address, or it cannot be reached.
+    /// Nothing listens at that address, or it cannot be reached.
     #[error("cannot be reached: {0}")]
     Unreachable(String),
     /// It was there and is gone: unplugged, or the connection was closed.

@@ -1,6 +1,5 @@
-//! What every line has on which a host asks and a device answers in frames: silences, echoes, replies that come late, and
-//! how often and how long one asks again. What the frames say is the business of each device's own folder; here no byte
-//! of them is looked at, but for an echo.
+//! The common behaviour of lines with frames: silence, echoes, late replies, repetition and time-outs. The devices' own
+//! folders decode the frames; no byte is interpreted here, except for the echo.
 
 mod echo;
 mod quality;
@@ -30,7 +29,7 @@ const NEVER_SILENT: Duration = Duration::from_secs(2);
 /// Bytes that are kept at most of what is no frame: a socket brings more noise than anybody can read.
 pub(crate) const MOST_KEPT: usize = 4096;
 
-/// Why something on a line ends early.
+/// Why an exchange on a line ends early.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
     /// The user wished it.
@@ -51,10 +50,10 @@ impl From<LinkError> for LineError {
 pub(crate) struct SerialLine<'a> {
     /// All that the job got.
     pub(crate) ctx: Ctx<'a>,
-    /// How long one goes on asking without an answer, where that is not the usual.
+    /// How long to keep asking without an answer, if not the default.
     pub(crate) patience: Option<Duration>,
     shielded: bool,
-    /// What was let pass, where that is kept.
+    /// The skipped bytes, if they are kept.
     passed: Option<Vec<u8>>,
 }
 
@@ -119,8 +118,8 @@ impl<'a> SerialLine<'a> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Before each exchange on a line without packets: the user's wish, and silence on the line. Where somebody talks, silence has to last for
-    /// `quiet`.
+    /// Prepares an exchange on a line without packets: checks for cancellation and waits for silence. On a busy line,
+    /// the silence has to last for `quiet`.
     ///
     /// # Errors
     /// See [`LineError`].
@@ -180,7 +179,7 @@ impl<'a> SerialLine<'a> {
         }
     }
 
-    /// Tells bytes that were received to whoever watches.
+    /// Passes received bytes to the trace.
     pub(crate) fn show(&mut self, at: Moment, shown: MaskedBytes) {
         self.ctx.trace.record(at, Direction::Received, shown);
     }

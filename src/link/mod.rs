@@ -61,8 +61,8 @@ pub trait ByteLink: Send {
     /// When the line is gone or cannot be set so.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
-    /// [`set_format`](Self::set_format) sets something. A device server has its own settings, which nobody here sees:
-    /// what answers through it says nothing about speed and parity.
+    /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
+    /// not visible here: a reply through it proves nothing about speed and parity.
     fn sets_format(&self) -> bool {
         true
     }
@@ -134,6 +134,6 @@ pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     pub clock: &'a dyn Clock,
     /// The wish to end.
     pub cancel: &'a Cancel,
-    /// Who watches the line.
+    /// The trace of the line.
     pub trace: &'a mut Trace,
 }

@@ -1,10 +1,10 @@
-//! How long a device takes to reply, seen from outside the thread of its session.
+//! The reply times of a device, seen from outside the thread of its session.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-/// What has been measured of a device's replies since its session began. All copies are the same.
+/// The measured reply times of a session. Clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct Replies(Arc<Measured>);
 
@@ -27,13 +27,13 @@ impl Replies {
         self.0.count.fetch_add(1, Ordering::Release);
     }
 
-    /// How long a reply takes on average; `None` before one came.
+    /// Returns the average reply time; `None` before the first reply.
     pub fn usual(&self) -> Option<Duration> {
         let count = self.0.count.load(Ordering::Acquire);
         self.0.sum.load(Ordering::Relaxed).checked_div(count).map(Duration::from_micros)
     }
 
-    /// How long the slowest took; zero before one came.
+    /// Returns the longest reply time; zero before the first reply.
     pub fn longest(&self) -> Duration {
         Duration::from_micros(self.0.longest.load(Ordering::Relaxed))
     }

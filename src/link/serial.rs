@@ -15,13 +15,13 @@ use crate::units::{CharacterFormat, Moment, Parity};
 pub struct PortInfo {
     /// Path or name, as a link takes it.
     pub path: String,
-    /// What the system says about the adapter: maker and product; empty where it says nothing.
+    /// Maker and product of the adapter according to the system; may be empty.
     pub description: String,
     /// Serial number of a USB adapter.
     pub serial_number: Option<String>,
 }
 
-/// The serial ports of this machine, by name. A pseudo-terminal is never listed and can be opened all the same.
+/// Returns the serial ports of this machine, by name. Pseudo-terminals are never listed but can be opened.
 ///
 /// # Errors
 /// When the system does not tell.
@@ -163,7 +163,7 @@ fn parity(parity: Parity) -> serialport::Parity {
     }
 }
 
-/// What the system says of a device that has no speed to set, such as /dev/null.
+/// The system's message for a device without a speed, such as /dev/null.
 const NOT_A_TERMINAL: &str = "Not a typewriter";
 
 fn opening(path: &str, error: &serialport::Error) -> LinkErrorKind {

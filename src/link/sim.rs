@@ -64,7 +64,7 @@ impl ByteLink for SimLink {
     }
 }
 
-/// Where packets to and from a virtual device begin.
+/// Opens channels for packets to and from a virtual device.
 pub struct SimPort {
     device: Arc<Mutex<dyn DatagramDevice>>,
     clock: Arc<dyn Clock>,

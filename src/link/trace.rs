@@ -1,5 +1,4 @@
-//! The trace tap: every frame that goes over a wire, with what is secret masked, for whoever watches; and its text form,
-//! which `replay:` reads.
+//! The trace tap: all frames on a wire, with secrets masked; and its text form, which `replay:` reads.
 //!
 //! ```text
 //! # encoder-studio trace 1
@@ -15,7 +14,7 @@ use std::time::Duration;
 use crate::bits::{HexError, MaskedBytes};
 use crate::units::Moment;
 
-/// Which way bytes went.
+/// The direction of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// From us.
@@ -29,15 +28,15 @@ pub enum Direction {
 pub struct TraceEntry {
     /// When its first byte was sent or received.
     pub at: Moment,
-    /// Which way it went.
+    /// The direction.
     pub direction: Direction,
-    /// What may be shown of it.
+    /// The bytes, with secrets masked.
     pub bytes: MaskedBytes,
 }
 
 type Watcher = Box<dyn FnMut(&TraceEntry) + Send>;
 
-/// Who watches a wire.
+/// A trace tap of a wire.
 #[derive(Default)]
 pub struct Trace {
     watchers: Vec<Watcher>,
@@ -107,7 +106,7 @@ pub enum TraceFileError {
     Hex {
         /// Counted from 1.
         line: usize,
-        /// What is wrong with them.
+        /// The problem.
         source: HexError,
     },
 }

@@ -15,10 +15,10 @@ use crate::units::Moment;
 const LONGEST: usize = 1500;
 /// Packets that wait to be taken. In a flood the rest is dropped.
 const WAITING: usize = 64;
-/// So soon an ear notices that nobody listens any more.
+/// The longest time until a receiver notices that its owner is gone.
 const GLANCE: Duration = Duration::from_millis(100);
 
-/// Where packets to and from the target of a TCP connection begin: at the address of ours that leads to it.
+/// Opens channels for packets to and from the target of a TCP connection, at the local address that leads to it.
 pub struct UdpPort {
     target: String,
     clock: Arc<dyn Clock>,

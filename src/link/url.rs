@@ -1,5 +1,5 @@
-//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; what the parameters mean is the
-//! business of whoever opens the link.
+//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; whoever opens the link interprets
+//! the parameters.
 
 use std::fmt;
 use std::str::FromStr;
@@ -7,7 +7,7 @@ use std::str::FromStr;
 use crate::expected::Expected;
 use crate::parameter::{Refused, Values};
 
-/// Which kind of wire.
+/// The kind of wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
     /// The virtual device in this process.
@@ -42,7 +42,7 @@ impl Scheme {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
-    /// What stands behind the colon.
+    /// Returns what follows the colon.
     fn needs(self) -> &'static str {
         match self {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
@@ -67,7 +67,7 @@ pub struct LinkUrl {
     pub query: Query,
 }
 
-/// What a link needs of the machine, so that two links can be told to need the same.
+/// The resource of the machine that a link needs; two links may need the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// The device is in this process.
@@ -109,7 +109,7 @@ pub enum UrlError {
     Port {
         /// The word before the colon.
         scheme: &'static str,
-        /// What stands there.
+        /// The text of the port.
         port: String,
     },
     /// A parameter that is not of the form name=value.
@@ -121,11 +121,11 @@ pub enum UrlError {
     /// A parameter that this link does not take.
     #[error("{name} is not a parameter of {scheme}: links; known are {known}")]
     Unknown {
-        /// What was written.
+        /// The name as written.
         name: String,
         /// The word before the colon.
         scheme: &'static str,
-        /// What could be written.
+        /// The names that are known.
         known: String,
     },
     /// A value that cannot be used.
@@ -133,9 +133,9 @@ pub enum UrlError {
     Value {
         /// The parameter.
         name: String,
-        /// What was written.
+        /// The value as written.
         value: String,
-        /// What could be written.
+        /// The allowed values.
         allowed: Expected,
     },
 }
@@ -177,7 +177,7 @@ impl LinkUrl {
         LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
     }
 
-    /// What has to be opened.
+    /// Returns the resource that has to be opened.
     pub fn wire(&self) -> Wire<'_> {
         let target = self.target.as_str();
         match (self.scheme, target.strip_prefix("tcp:")) {
@@ -209,9 +209,9 @@ impl LinkUrl {
     }
 }
 
-/// Where Modbus/TCP is served unless something else is said.
+/// Default port of Modbus/TCP.
 const MODBUS_PORT: &str = ":502";
-/// Where EtherNet/IP takes explicit messages unless something else is said.
+/// Default port of EtherNet/IP explicit messages.
 const ENIP_PORT: &str = ":44818";
 
 /// A host alone, which may be an IPv6 address in brackets.

@@ -1,4 +1,4 @@
-//! What values a parameter takes: how they are read and printed, and what is expected where one is not taken.
+//! The values of a parameter: parsing, printing, and the allowed ones for messages.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -8,13 +8,13 @@ use crate::expected::{Expected, Limit, Quantity};
 
 /// The values that a parameter takes.
 pub trait Values {
-    /// What one of them means.
+    /// The parsed value.
     type Value;
 
     /// The meaning of a value as it is written.
     fn read(&self, text: &str) -> Option<Self::Value>;
 
-    /// What they are.
+    /// Returns the allowed values.
     fn allowed(&self) -> Expected;
 
     /// A value as it is written, where it is short enough for an example.

@@ -1,5 +1,5 @@
-//! What a profile holds, whatever the kind of device. A device implements [`Profile`] for a type of its own; here that
-//! becomes the traits without types that documents carry, once for all devices.
+//! The content of a profile, for any kind of device. A device implements [`Profile`] for its own type; this module
+//! makes of it the untyped traits that documents carry.
 
 use std::any::Any;
 use std::fmt;
@@ -32,7 +32,7 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     fn compare(&self, other: &Self) -> Comparison;
 }
 
-/// How the profiles of one kind of device are read.
+/// The parser for the profiles of one kind of device.
 pub trait ProfileFormat: fmt::Debug + Sync {
     /// The word for the kind of device.
     fn kind(&self) -> &'static str;
@@ -44,7 +44,7 @@ pub trait ProfileFormat: fmt::Debug + Sync {
     fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError>;
 }
 
-/// What is saved of a device of some kind. Implemented for every [`Profile`].
+/// The saved content of a device. Implemented for every [`Profile`].
 pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// The word for the kind of device.
     fn kind(&self) -> &'static str;
@@ -105,7 +105,7 @@ impl<P: Profile> ProfileFormat for FormatOf<P> {
     }
 }
 
-/// What is saved: the profile of some kind of device.
+/// The content of a profile of some kind of device.
 pub struct Body(Box<dyn ProfileBody>);
 
 impl Body {

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::error::Error;
 use std::fmt;
 
-/// Why a text is refused, in the type of the device that refuses it. It reads like that error, and is equal to one like it.
+/// Why a text is refused, as the device's own error type. It displays like that error and compares equal to it.
 pub struct Cause(Box<dyn Fact>);
 
 trait Fact: Any + Error + Send + Sync {

@@ -1,4 +1,4 @@
-//! What differs between two profiles, or between a profile and a device.
+//! The differences between two profiles, or between a profile and a device.
 
 use std::ops::Range;
 
@@ -13,7 +13,7 @@ pub struct Difference {
     pub right: String,
 }
 
-/// What a comparison found.
+/// The result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
     /// Only what differs, in the order of the device's memory.

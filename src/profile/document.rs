@@ -22,9 +22,9 @@ pub const SCHEMA: u32 = 1;
 pub struct Document {
     /// When it was read from a device, RFC 3339.
     pub saved: Option<String>,
-    /// What a person wrote about it.
+    /// The user's note.
     pub note: Option<String>,
-    /// What is saved.
+    /// The content.
     pub body: Body,
     /// Entries that this program does not know.
     pub unknown: Unknown,

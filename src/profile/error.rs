@@ -14,7 +14,7 @@ pub enum ProfileError {
         line: usize,
         /// Counted from 1.
         column: usize,
-        /// What is wrong there.
+        /// The problem.
         what: SyntaxProblem,
     },
     /// The name of an entry is not known, and one like it is missing.
@@ -24,7 +24,7 @@ pub enum ProfileError {
         line: usize,
         /// Counted from 1.
         column: usize,
-        /// Where: `fields[2].statsu`.
+        /// Path of the entry, such as `fields[2].statsu`.
         path: String,
         /// The name that is missing.
         meant: String,
@@ -32,7 +32,7 @@ pub enum ProfileError {
     /// No version of a profile's form, or a later one where it has to be known as a whole.
     #[error("schema {found}; this program knows schema 1 to {known}")]
     Schema {
-        /// What the file says.
+        /// The value in the file.
         found: u32,
         /// The newest that is known.
         known: u32,
@@ -40,7 +40,7 @@ pub enum ProfileError {
     /// Not a kind of device that this program saves.
     #[error("device {found:?}; this program knows {}", quoted(known))]
     Device {
-        /// What the file says.
+        /// The value in the file.
         found: String,
         /// The kinds that are known.
         known: Vec<&'static str>,
@@ -48,44 +48,44 @@ pub enum ProfileError {
     /// A kind of device that this program saves, and not the one that is asked for.
     #[error("a profile of a {found} device where one of a {wanted} device is needed")]
     OtherKind {
-        /// What the file says.
+        /// The value in the file.
         found: &'static str,
-        /// What is needed.
+        /// The required value.
         wanted: &'static str,
     },
     /// Something has to be there and is not.
     #[error("{path} is missing")]
     Missing {
-        /// Where: `fields[2].status`.
+        /// Path of the entry, such as `fields[2].status`.
         path: String,
     },
     /// Something is of another kind.
     #[error("{path} must be {expected}")]
     Shape {
-        /// Where.
+        /// Path of the entry.
         path: String,
-        /// What belongs there.
+        /// The expected value.
         expected: Expected,
     },
     /// Bytes that are none.
     #[error("{path}: {problem}")]
     Bytes {
-        /// Where.
+        /// Path of the entry.
         path: String,
-        /// What is wrong.
+        /// The problem.
         problem: HexError,
     },
     /// A value that cannot be, or values that cannot be together, as the device tells it.
     #[error("{path}: {cause}")]
     Refused {
-        /// Where.
+        /// Path of the entry.
         path: String,
-        /// Why not.
+        /// The reason.
         cause: Cause,
     },
 }
 
-/// Why a text is not RON, or not RON for a profile.
+/// Why a text is not RON, or not RON of a profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SyntaxProblem {
     /// Structures in structures in structures.

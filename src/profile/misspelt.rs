@@ -4,7 +4,7 @@ use std::cell::{Cell, RefCell};
 
 use super::{ProfileError, SCHEMA};
 
-/// What the structures of a file have in common while it is read.
+/// State shared by the structures of a file while it is read.
 #[derive(Default)]
 pub(super) struct Reading {
     /// The newer schema that the file is of: its entries that are not known are kept.
@@ -18,9 +18,8 @@ pub(super) struct Reading {
 /// A name that is another one but for a slip of the hand. The one with the fewest letters to change is the least.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Slip {
-    /// How many letters differ.
+    /// Number of differing letters.
     pub(super) letters: usize,
-    /// Where it stands.
     pub(super) path: String,
     /// The name that is meant.
     pub(super) meant: String,
@@ -75,8 +74,8 @@ impl Reading {
     }
 }
 
-/// How many letters differ between a name and the one that is meant, where that is a slip of the hand: a few do, or the one
-/// begins with the other. Case, hyphens and underscores do not count.
+/// Returns how many letters differ between a name and the intended one, if that looks like a typing error: a few do, or
+/// one is the beginning of the other. Case, hyphens and underscores do not count.
 pub(super) fn letters_apart(name: &str, meant: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()

@@ -1,5 +1,5 @@
-//! What is saved, what differs, and what a write would do: profiles, differences and plans. Pure; files are opened by
-//! `store`, devices are read and written by their procedures.
+//! Profiles, differences and plans. Pure; files are opened by `store`, devices are read and written by their
+//! procedures.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! What belongs to the mounting of a device on one machine, as profiles mark it.
+//! Values that belong to the mounting of a device on one machine, as marked in profiles.
 
 use std::error::Error;
 
@@ -9,9 +9,9 @@ use crate::expected::Expected;
 /// Something that is right for one device on one machine and no other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
-    /// What; something that can be written.
+    /// The item; it can be written.
     pub item: Item,
-    /// What it means.
+    /// Its meaning.
     pub meaning: String,
     /// Entries that this program does not know.
     pub unknown: Unknown,

@@ -1,4 +1,4 @@
-//! Where an entry stands in the text of a profile: the parser's values do not tell it.
+//! The location of an entry in the text of a profile, which the parser's values do not keep.
 
 use std::fmt;
 

@@ -2,10 +2,10 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// What a write would do, for a person to look at. Nothing but its operations is carried out.
+/// A planned write, for the user to review. Only its operations are carried out.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan<Base, Op> {
-    /// What was read before; it is read again before the first operation and must be the same.
+    /// The values read before; they are read again before the first operation and must be unchanged.
     pub base: Base,
     /// The operations, in the order in which they are carried out.
     pub ops: Vec<Op>,
@@ -17,7 +17,7 @@ pub trait Operation {
     fn write_cycles(&self) -> u64;
 }
 
-/// Which plan a consent is for.
+/// Identifies the plan that a consent is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanId(u64);
 

@@ -1,6 +1,6 @@
-//! What restoring a profile may do, and what it would do, whatever the kind of device.
+//! Restoring a profile: its options and its outcome, for any kind of device.
 
-/// What a restore may do.
+/// The options of a restore.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RestoreOptions {
     /// The profile may go onto a device with another serial number.
@@ -11,17 +11,17 @@ pub struct RestoreOptions {
     pub with_mounting: bool,
 }
 
-/// What a restore would do.
+/// The outcome of planning a restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore<Plan, Item, Missing = String> {
     /// The operations.
     pub plan: Plan,
     /// Things that are already as the profile says, counted as a comparison counts them.
     pub unchanged: u64,
-    /// What is left alone because one side does not have it, or cannot read it.
+    /// Items left unchanged because one side does not have them or cannot read them.
     pub missing: Vec<Missing>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
-    /// Values of the mounting of another device that are written: they have to be set up anew.
+    /// Values of another device's mounting that are written: they have to be set up again.
     pub mounting_written: Vec<Item>,
 }

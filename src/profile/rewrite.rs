@@ -20,7 +20,7 @@ impl Document {
         }
     }
 
-    /// What makes `other` of it, entry by entry.
+    /// Returns the changes that turn this into `other`, entry by entry.
     pub fn changes_to(&self, other: &Document) -> Vec<Change> {
         changes(&self.emit(), &other.emit()).unwrap_or_default()
     }
@@ -34,7 +34,7 @@ impl Document {
     }
 }
 
-/// Who changed an entry since both had the same profile.
+/// Which side changed an entry since both had the same profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changed {
     /// The other one alone.
@@ -45,7 +45,7 @@ pub enum Changed {
     Both,
 }
 
-/// What differs between two profiles that were one: what makes `mine` of `theirs`, and who changed it.
+/// Returns the changes that turn `theirs` into `mine`, and which side made each.
 pub fn divergence(base: &Document, theirs: &Document, mine: &Document) -> Vec<(Change, Changed)> {
     let (there, here) = (base.changes_to(theirs), base.changes_to(mine));
     let touches = |own: &[Change], change: &Change| {

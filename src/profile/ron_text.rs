@@ -16,7 +16,7 @@ use crate::expected::Expected;
 /// Entries that this program does not know, by name: a person's own, or those of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
 
-/// Where people's own entries stand in a structure.
+/// Name of the structure that holds the user's own entries.
 const EXTRA: &str = "extra";
 
 /// The entries of a structure, taken out one by one; what is left at the end is a person's own, or misspelt.
@@ -73,12 +73,12 @@ impl Entries {
         slips.min()
     }
 
-    /// Where the structure stands, for messages.
+    /// Returns the path of the structure, for messages.
     pub fn path(&self) -> &str {
         &self.path
     }
 
-    /// Where an entry stands, for messages.
+    /// Returns the path of an entry, for messages.
     pub fn path_of(&self, name: &str) -> String {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
@@ -159,8 +159,8 @@ impl Entries {
         }
     }
 
-    /// What nobody took: a person's own entries, which stand in `extra`, or of a newer schema what is not known. Entries that
-    /// stand beside `extra` are taken into it: files of before it have them there.
+    /// Returns the entries that were not read: the user's own, which belong in `extra`, or unknown ones of a newer
+    /// schema. Entries beside `extra` are moved into it, since older files have them there.
     ///
     /// # Errors
     /// [`ProfileError::Misspelt`] where one is the misspelt name of an entry that is not there.

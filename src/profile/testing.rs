@@ -1,4 +1,4 @@
-//! What the tests of profiles have in common, whatever the kind of device.
+//! Helpers for the tests of profiles of any kind of device.
 
 use super::{Carried, Document, Profile};
 

@@ -1,6 +1,6 @@
-//! How a plan is carried out, the same for every kind of device: its base is read again, then its operations are carried
-//! out one after the other, and the device is led back. A kind brings a [`Write`]. `worker::commit` alone calls this,
-//! because it keeps the before-image between the two.
+//! Carries out a plan, the same way for every kind of device: reads its base again, carries out the operations in
+//! order, and leads the device back. A kind supplies a [`Write`]. Only `worker::commit` calls this, because it saves
+//! the before-image in between.
 
 use std::fmt;
 use std::hash::Hash;
@@ -9,7 +9,7 @@ use super::{Consent, Operation, Plan, WriteRecord};
 
 /// A device into which a plan is written: what differs from kind to kind.
 pub trait Write {
-    /// What a plan rests upon.
+    /// The values that a plan is based on.
     type Base: Hash;
     /// An operation of a plan.
     type Op: Operation + Clone + Hash;
@@ -77,7 +77,7 @@ pub trait Write {
 
 /// Why an operation of a plan ended early.
 pub trait OperationError: fmt::Display {
-    /// What goes wrong with the device or on the way to it.
+    /// The error of the device or its link.
     type Device;
 
     /// Returns what went wrong with the device or on the way to it; `None` where it was neither.
@@ -87,7 +87,7 @@ pub trait OperationError: fmt::Display {
     fn is_only_cancelled(&self) -> bool;
 }
 
-/// What goes wrong with a device or on the way to it.
+/// An error of a device or its link.
 pub trait DeviceError: fmt::Display {
     /// The user cancelled it, and nothing else went wrong.
     fn is_only_cancelled(&self) -> bool;
@@ -115,7 +115,7 @@ pub struct Confirmed<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
 
-/// How far a write came that ended early, and why.
+/// How far an interrupted write came, and why it ended.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interrupted<Op, E, Done, Left> {
     /// What was written until then.

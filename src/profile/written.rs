@@ -1,4 +1,4 @@
-//! What a write came to, where every operation of a plan is done or not.
+//! The result of a write whose operations are each done or not.
 
 /// What was written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub struct Written {
     pub write_cycles: u64,
 }
 
-/// What a kind of device keeps of a write.
+/// The record of a write that a kind of device keeps.
 pub trait WriteRecord: Default {
     /// Operations carried out, of the plan's.
     fn ops(&self) -> usize;

@@ -1,5 +1,5 @@
-//! What goes wrong on purpose: noise on the line, slow and silent devices, a power cut in the middle of a store. Read
-//! from the text of `--fault` and `sim:?fault=`. Which device suffers from it, and how, is that device's business.
+//! Injected faults: noise on the line, slow and silent devices, a power cut during a store. Parsed from `--fault` and
+//! `sim:?fault=`. Each device defines how a fault affects it.
 
 use std::str::FromStr;
 use std::time::Duration;
@@ -74,10 +74,10 @@ pub enum FaultError {
     },
 }
 
-/// What becomes of one byte on a noisy line.
+/// The passage of one byte over a noisy line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Passage {
-    /// A byte that nobody sent, before it.
+    /// A byte of noise before it.
     pub inserted: Option<u8>,
     /// The byte itself; `None` when it got lost.
     pub carried: Option<Carried>,

@@ -9,7 +9,7 @@ use fastrand::Rng;
 use super::{ByteDevice, Faults};
 use crate::units::{CharacterFormat, Moment};
 
-/// What is on its way, by the moment that counts for it; of the same moment, as it was put in.
+/// Items in transit, ordered by their moment, and by insertion within the same moment.
 #[derive(Clone, Debug)]
 pub(crate) struct Queue<T>(VecDeque<(Moment, T)>);
 
@@ -25,7 +25,7 @@ impl<T> Queue<T> {
         self.0.insert(place, (at, item));
     }
 
-    /// How many there are.
+    /// Returns the number of items.
     pub(crate) fn len(&self) -> usize {
         self.0.len()
     }
@@ -58,29 +58,29 @@ pub(crate) struct Character {
     pub(crate) flipped: bool,
 }
 
-/// What becomes of bytes that are sent.
+/// The outcome of sent bytes.
 pub(crate) struct Sent {
-    /// What the others hear.
+    /// The characters that the others receive.
     pub(crate) heard: Vec<Character>,
-    /// What was put on the line, as it was: a converter may give that back, without the line's noise.
+    /// The characters as sent: an echoing converter returns them without the noise of the line.
     pub(crate) own: Vec<Character>,
     /// The last one is through.
     pub(crate) end: Moment,
 }
 
-/// What every line has. Made with a device's settings.
+/// The parts that every line has. Created with a device's settings.
 #[derive(Clone)]
 pub(crate) struct Wires {
     pub(crate) faults: Faults,
     pub(crate) rng: Rng,
-    /// How the host's UART is set.
+    /// Setting of the host's UART.
     pub(crate) host: CharacterFormat,
     pub(crate) now: Moment,
     /// The host's UART has sent everything then.
     host_done: Moment,
     /// Bytes that the host's UART still sends, with when the last of them is through.
     sending: VecDeque<(Moment, usize)>,
-    /// What has arrived at the host.
+    /// Bytes that have arrived at the host.
     pub(crate) inbox: Vec<u8>,
 }
 
@@ -101,7 +101,7 @@ impl Wires {
     /// protocols is longer, and at 9600 bit/s it takes half a second.
     const BUFFER: usize = 512;
 
-    /// So many bytes the host's UART can still take.
+    /// Returns how many bytes the host's UART can still accept.
     fn room(&mut self) -> usize {
         let now = self.now;
         while self.sending.pop_front_if(|(end, _)| *end <= now).is_some() {}
@@ -130,7 +130,7 @@ impl Wires {
 
 /// A line with what is on it. It is a [`ByteDevice`] by that.
 pub(crate) trait VirtualLine: Send {
-    /// What happens next; of events at the same moment the least one.
+    /// The next event; of events at the same moment the least comes first.
     type Event;
 
     fn wires(&self) -> &Wires;
@@ -144,7 +144,7 @@ pub(crate) trait VirtualLine: Send {
     /// Puts what the host sends on the line, from `start` on, and gives the moment when the last one is through.
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
-    /// Whoever has lost its power gets it back.
+    /// Restores the power of every device that has lost it.
     fn give_power(&mut self, now: Moment);
 
     /// Lets happen what is due by `to`.

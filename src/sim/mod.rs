@@ -33,8 +33,8 @@ pub trait ByteDevice: Send {
     /// When [`poll`](Self::poll) should be called next; `None`: nothing will happen by itself.
     fn poll_at(&self) -> Option<Moment>;
 
-    /// How the host's UART is set. Where it differs from the device's setting, what arrives is garbage in both
-    /// directions, and no valid frame comes of it.
+    /// Sets the format of the host's UART. If it differs from the device's setting, bytes arrive garbled in both
+    /// directions, and no valid frame results.
     fn set_host_format(&mut self, now: Moment, format: CharacterFormat);
 
     /// The host opened the link (again): what arrived before has no reader, and a device that lost its power gets it

@@ -1,5 +1,5 @@
-//! What turns a virtual shaft: a handle that anybody may hold. It has no clock: the shaft follows from the next moment on
-//! in which its encoder is asked for anything.
+//! The motor of a virtual shaft: a shared handle. It has no clock: a change takes effect at the next request to the
+//! encoder.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

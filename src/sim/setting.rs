@@ -11,7 +11,7 @@ pub enum ConfigError {
     /// No such key.
     #[error("{device} has no setting `{key}`; allowed are {known}")]
     Key {
-        /// What has no such key.
+        /// The device without such a key.
         device: VirtualDevice,
         /// The key as written.
         key: String,
@@ -25,7 +25,7 @@ pub enum ConfigError {
         key: String,
         /// The value as written.
         value: String,
-        /// What would do.
+        /// The allowed values.
         allowed: Expected,
     },
     /// The value of `fault`.

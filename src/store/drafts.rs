@@ -11,7 +11,7 @@ use super::files::{create_folder, read_text, write_atomically};
 
 const EXTENSION: &str = "ron";
 
-/// The right to keep a draft, which nobody else has while this lives; the system takes it back from a program that ends.
+/// The exclusive right to keep a draft while this value lives; the system releases it when a program ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: FileLock,

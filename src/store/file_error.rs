@@ -10,13 +10,11 @@ use std::path::{Path, PathBuf};
 pub struct FileError {
     /// The file or folder.
     pub path: PathBuf,
-    /// What was being done.
     pub task: FileTask,
-    /// What stood in the way.
     pub problem: FileProblem,
 }
 
-/// What was being done to a file.
+/// An operation on a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileTask {
     /// A file was read.
@@ -43,7 +41,7 @@ impl fmt::Display for FileTask {
     }
 }
 
-/// What stands in the way of reading or writing a file.
+/// What prevents reading or writing a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileProblem {
     /// There is no such file.
@@ -119,7 +117,7 @@ impl FileProblem {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// What a problem means while a new file is made: it cannot itself be the one that is missing.
+    /// Returns the problem of making a new file: the file itself cannot be the one that is missing.
     pub(super) fn while_making(error: io::Error) -> Self {
         match error.into() {
             FileProblem::NotFound => FileProblem::NoFolder,

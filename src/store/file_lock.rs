@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::{create_folder, read_text, write_atomically};
 
-/// How long another program may take to read a file and to write it.
+/// How long another program may take to read and write a file.
 const PATIENCE: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 

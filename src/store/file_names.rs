@@ -1,7 +1,6 @@
 //! Names of folders and files made from texts that are not ours: serial numbers, names of items.
 
-/// Whether a name has to differ where the texts differ only in upper and lower case, which Windows and macOS do
-/// not tell apart.
+/// Whether names that differ only in case are distinct; on Windows and macOS they are not.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Case {
     /// They are told apart by more than their case.

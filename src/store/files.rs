@@ -99,7 +99,7 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically(path, content)
 }
 
-/// Reads a text as [`read_text`] does, but only from a file: a pipe that nobody fills would be waited for for ever.
+/// Reads a text as [`read_text`] does, but only from a file: reading a pipe could block for ever.
 ///
 /// # Errors
 /// As [`read_text`]; or it is a pipe or a device.
@@ -136,7 +136,7 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A pipe that nobody reads would hold the program for ever: it is given up, with the thread that waits for it.
+/// Writes directly. A pipe that is not read would block for ever: it is given up, with the thread that waits for it.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const PATIENCE: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
@@ -200,7 +200,7 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// What any program's new file gets; a temporary file is its owner's alone otherwise. The umask is taken off.
+    /// The permissions of any new file; a temporary file is otherwise private to its owner. The umask applies.
     pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
     }

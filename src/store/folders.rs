@@ -1,4 +1,4 @@
-//! Where the paths that a person gives begin: one rule for the command line, for what is typed and for what is dropped.
+//! The folders that relative paths start from: one rule for the command line, for typed and for dropped paths.
 
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};

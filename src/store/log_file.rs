@@ -1,6 +1,6 @@
-//! The log file: what the log panel shows, kept beyond the window. A thread of its own writes it, so that a disk that
-//! hangs stops nobody: what does not fit into the queue is dropped and counted, and the count is written when the disk
-//! goes again. A file that has become large gives way to a new one; the one before is kept beside it.
+//! The log file: the content of the log panel, kept beyond the window. A thread of its own writes it, so that a disk
+//! that hangs blocks nothing: lines that do not fit into the queue are dropped and counted, and the count is written
+//! when the disk responds again. A file that has grown large is renamed and a new one begun.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -22,7 +22,7 @@ const LARGE: u64 = 1 << 20;
 /// Lines that wait for the disk, at most.
 const QUEUE: usize = 1024;
 
-/// How long the program's end waits for the last lines.
+/// How long the end of the program waits for the last lines.
 const PATIENCE: Duration = Duration::from_millis(500);
 
 /// Takes lines for the log file without ever waiting. Clones write into the same file.
@@ -119,7 +119,7 @@ impl Write for LogFile {
     }
 }
 
-/// A file that begins anew when it has become large.
+/// A file that starts again when it has grown large.
 struct Rotating {
     path: PathBuf,
     large: u64,

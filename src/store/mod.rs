@@ -31,14 +31,14 @@ pub use logbook::{Conclusion, DeviceKey, Entry, EntryId, Logbook, LogbookError, 
 
 use crate::profile::Cause;
 
-/// Where the program keeps what outlives it.
+/// The folder of the program's persistent data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Store {
     data: PathBuf,
     config: PathBuf,
 }
 
-/// Why the store cannot give what is asked for.
+/// Why the store cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
     /// The system names no home folder for this user.
@@ -75,7 +75,7 @@ impl Store {
         Backups::in_folder(self.data.join("backups"))
     }
 
-    /// What users have begun and not yet written.
+    /// Returns the drafts: edits that are not written yet.
     pub fn drafts(&self) -> Drafts {
         Drafts::in_folder(self.data.join("drafts"))
     }

@@ -83,7 +83,7 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
 
-/// Why an entry cannot be used, below it.
+/// Draws why an entry cannot be used, below it.
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
@@ -182,7 +182,7 @@ pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<eg
     response.widget_info(|| WidgetInfo::labeled(egui::Role::Label, true, word));
 }
 
-/// What would be here, and the one action that fills it.
+/// Draws an empty state with the one action that fills it.
 pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&str, &str, bool)>) -> bool {
     let mut pressed = false;
     ui.vertical_centered(|ui| {
@@ -297,7 +297,7 @@ pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate
     });
 }
 
-/// How much a notice matters: icon and colour.
+/// Returns the icon and colour of a severity.
 pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'static str, crate::app::Rgb) {
     use crate::app::Severity;
     let palette = theme.palette;

@@ -58,7 +58,7 @@ pub trait TypedDeviceView: Sync + 'static {
     /// The form in the connection dialog.
     type ConnectForm: TypedConnectForm;
 
-    /// Whether the keys of undo and redo act on the edits of the device: not where an editor has steps of its own.
+    /// Whether the keys of undo and redo act on the edits of the device; false where an editor has its own.
     const HAS_UNDO_KEYS: bool;
 
     /// Returns what tells one device from another of its kind; `None` where that is unknown or makes no difference.

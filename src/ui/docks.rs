@@ -10,11 +10,11 @@ use crate::app::{Action, Studio};
 /// A panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Pane {
-    /// What the open tab shows.
+    /// The content of the open tab.
     Workspace,
     /// Live values and their curve.
     Live,
-    /// What passes over the line.
+    /// The trace panel.
     Trace,
     /// Jobs.
     Jobs,

@@ -11,7 +11,7 @@ use crate::app::{Action, AnyDevice, DeviceCommand, Studio, Text};
 /// Width below which not all buttons of a profile, or those of a device and the count of edits, have room for their words.
 const NARROW: f32 = 660.0;
 
-/// What is counted as edits on a page.
+/// The kind of edits that a page counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edited {
     /// Bytes of a memory.
@@ -75,7 +75,7 @@ pub fn foot_ui(
     });
 }
 
-/// How many edits there are, in words, or as a number where the words have no room.
+/// Draws the number of edits, as a number alone where there is no room for words.
 fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());

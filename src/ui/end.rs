@@ -9,7 +9,7 @@ use crate::app::{Action, Brakes, Mailbox, Studio};
 
 /// A window that is drawn answers in this time.
 const ANSWERS: Duration = Duration::from_secs(2);
-/// What a program says that a signal has ended: 128 and the number of SIGTERM.
+/// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;
 
 /// Lets go of the drives when its thread ends, or when that thread ends the program.

@@ -45,7 +45,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
     });
 }
 
-/// What can be done at any time.
+/// Draws the tools that are always available.
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window the icons have to do; their words are the tooltips.
     // A STOP of twice its width needs the room of some.

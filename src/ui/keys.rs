@@ -7,7 +7,7 @@ use super::stop_debounce;
 use super::widgets::{has_hold_button_keyboard, is_hold_button_held};
 use crate::app::{FreshKeys, PressKey};
 
-/// What is known of the keys that press buttons, in the whole window.
+/// The known state of the keys that press buttons, in the whole window.
 pub(super) struct Keys {
     fresh: FreshKeys,
     /// In the last picture a consent was asked for.

@@ -186,7 +186,7 @@ fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done
     ui.add_space(theme.space.between);
 }
 
-/// What is there and what will be, on one line: where they have room beside what they are of.
+/// Draws old and new value on one line, if they fit beside their item.
 fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> Option<Arc<Galley>> {
     let mut job = LayoutJob::default();
     let font = FontId::monospace(theme.sizes.body);
@@ -249,7 +249,7 @@ fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     }
 }
 
-/// What has to be set up anew: in red, wherever the operations stand.
+/// Draws in red which values have to be set up again, above the operations.
 fn redo(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
     let Some(text) = &sheet.redo else { return };
     let colour = theme.palette.bad;
@@ -279,7 +279,7 @@ fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Questi
     });
 }
 
-/// What may be allowed beyond the usual, and writing although the device counts as worn.
+/// Draws the permits, and the choice to write to a worn device.
 fn options(ui: &mut Ui, theme: &Theme, device: &AnyDevice, sheet: &ReviewSheet, actions: &mut Vec<Action>) {
     if !sheet.toggles.is_empty() {
         ui.add_space(theme.space.inside);

@@ -4,7 +4,7 @@ use egui::{Context, Event, Id, Key, Response, Ui};
 
 use crate::app::StopPresses;
 
-/// Whether what was pressed at this time, by the clock of the pictures, means what moves, or has moved until just now.
+/// Returns whether a press at this time, by the clock of the frames, is meant for a motion that runs or has just ended.
 pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
     with(ctx, |presses| presses.means_motion(moves, pressed, now))

@@ -12,7 +12,7 @@ impl From<Rgb> for Color32 {
     }
 }
 
-/// How everything looks and which language it speaks.
+/// The appearance and the language.
 #[derive(Clone, Copy, Debug)]
 pub struct Theme {
     /// Colours by what they mean.

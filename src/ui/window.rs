@@ -24,7 +24,7 @@ pub struct Window {
     close_heard: bool,
     look: &'static ThemeData,
     dressed: Option<crate::app::ColorScheme>,
-    /// Which notice stands, and since when on the window's clock.
+    /// The notice that is shown, and since when, on the window's clock.
     notice_since: Option<(jiff::Zoned, f64)>,
 }
 
@@ -130,8 +130,8 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// The standing notice, at the foot and over nothing. What somebody has to act upon waits to be closed, the rest goes
-    /// by itself.
+    /// Draws the notice, at the bottom and over nothing. Notices that need an action stay until they are closed, the
+    /// others disappear by themselves.
     fn notice(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         let Some(notice) = self.studio.services.log.standing() else {
             self.notice_since = None;
@@ -156,8 +156,7 @@ impl Window {
         }
     }
 
-    /// What goes on where nothing is drawn as well: a window that is minimised hears that it is to close. It keeps nothing
-    /// alive that moves.
+    /// Runs even if nothing is drawn: a minimised window still has to be closed. It keeps nothing moving.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.hear_close(ctx);
         // What draws hears of it in this very picture.

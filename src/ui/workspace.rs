@@ -52,7 +52,7 @@ fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &
     });
 }
 
-/// What runs, how far it is, or what is to be known `instead`, and a way to end it.
+/// Draws the running job with its progress, or `instead`, and the button that stops it.
 pub(crate) fn running_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -103,7 +103,7 @@ pub(crate) fn running_ui(
     });
 }
 
-/// Why there is no connection, and the way back.
+/// Draws why there is no connection, and the way back.
 fn lost(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let (Phase::Lost(why) | Phase::Silent(why)) = device.phase() else { return };
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };

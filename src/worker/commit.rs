@@ -33,27 +33,27 @@ struct WriteIntent {
     entry: Result<(Logbook, EntryId), LogbookError>,
 }
 
-/// What a commit did.
+/// The result of a commit.
 #[derive(Clone, Debug, Default)]
 pub struct Committed<W> {
-    /// What was written, as its kind of device counts it.
+    /// What was written, as counted by the kind of device.
     pub written: W,
     /// The before-image; `None` when there was nothing to write.
     pub backup: Option<PathBuf>,
-    /// What the logbook could not take: the write itself is done.
+    /// What the logbook could not record; the write itself is done.
     pub logbook_warning: Option<LogbookError>,
 }
 
-/// Why a write was not begun, whatever the device says. Nothing was written.
+/// Why a write was not begun, for any kind of device. Nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub enum NotBegun {
     /// The consent is for another plan.
     #[error("the consent is for another plan")]
     OtherPlan,
-    /// How many write cycles the device has had cannot be read, or these cannot be counted.
+    /// The number of earlier write cycles cannot be read, or the new ones cannot be counted.
     #[error("the write cycles so far are not known, {cost} more would not be counted")]
     WearUnknown {
-        /// What the plan costs.
+        /// Write cycles of the plan.
         cost: u64,
     },
     /// The device counts as worn.
@@ -61,7 +61,7 @@ pub enum NotBegun {
     Worn {
         /// Seen so far.
         seen: u64,
-        /// What the plan costs.
+        /// Write cycles of the plan.
         cost: u64,
         /// The limit.
         limit: u64,
@@ -73,7 +73,7 @@ pub enum NotBegun {
 
 /// A plan that a job has made, with what was read for it: what a write has to know beside the wire.
 pub trait Planned {
-    /// What the plan rests upon.
+    /// The values that the plan is based on.
     type Base: Hash;
     /// An operation of it.
     type Op: Operation + Clone + Hash;
@@ -185,7 +185,7 @@ pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     }
 }
 
-/// Whether a write may begin that costs so many write cycles, as far as these are known.
+/// Returns whether a write of this cost may begin, as far as the earlier write cycles are known.
 ///
 /// # Errors
 /// [`NotBegun::WearUnknown`], [`NotBegun::Worn`].

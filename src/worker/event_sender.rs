@@ -1,4 +1,5 @@
-//! Events on their way out of a session's thread: none about a job is lost, progress is coalesced, nobody waits.
+//! Events leaving the thread of a session: none about a job is lost, progress is coalesced, and the thread never
+//! blocks.
 
 use std::sync::Arc;
 
@@ -63,7 +64,7 @@ impl<D: Device> EventSender<D> {
         }
     }
 
-    /// Sends what had to wait, and wakes whoever reads.
+    /// Sends the events that had to wait, and wakes the reader.
     pub(super) fn flush_late(&mut self) {
         if !self.is_empty() {
             self.flush();

@@ -1,11 +1,11 @@
-//! Why a job ends early where a device can be written: before anything was written, or on the way.
+//! Why a job ends early on a writable device: before the first write, or after it.
 
 use std::path::PathBuf;
 
 use super::NotBegun;
 use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
 
-/// Why a job ended early, of whatever kind of device.
+/// Why a job ended early, for any kind of device.
 pub trait EndedEarly {
     /// The user wished it.
     fn is_cancelled(&self) -> bool;
@@ -21,8 +21,8 @@ pub trait EndedEarly {
     }
 }
 
-/// Why a job ended early, of a device with errors `E`, errors of planning `P`, writes that end early as an [`Interrupted`] `I`,
-/// and changes of kind `K`.
+/// Why a job ended early, for a device with errors `E`, planning errors `P`, interrupted writes `I` (an
+/// [`Interrupted`]) and kinds of change `K`.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
     /// The device.
@@ -37,7 +37,7 @@ pub enum JobError<E, P, I, K> {
     /// It was begun and not finished.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
-        /// What was written, why it ended, and in which state the device was left.
+        /// What was written, why it ended, and the state the device was left in.
         interrupted: Box<I>,
         /// The before-image.
         backup: PathBuf,
@@ -49,7 +49,7 @@ pub enum JobError<E, P, I, K> {
 }
 
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K> {
-    /// What went wrong with the device or on the way to it, whether or not something was written before.
+    /// Returns the error of the device or its link, whether or not something was written before.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

@@ -1,5 +1,5 @@
-//! What a worker is wished while its thread runs: an end, how often to sample, and what to watch beside it. The latest
-//! wish counts; none waits in a queue and none waits for the thread.
+//! Requests to a worker while its thread runs: to end, how often to sample, what to watch. The latest request counts;
+//! none is queued.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -66,7 +66,7 @@ impl Live {
         self.lock().interval
     }
 
-    /// Which wish to poll is in force.
+    /// Returns the number of the polling request in force.
     pub(super) fn number(&self) -> u64 {
         self.lock().number
     }
@@ -79,8 +79,8 @@ impl Live {
         }
     }
 
-    /// Whoever calls this has wished what it is for before: the thread takes the token back first and looks for wishes
-    /// then, so that none is overlooked.
+    /// Interrupts a running sample. Make the request first: the thread takes the token back and then looks for
+    /// requests, so that none is missed.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
     }
@@ -104,7 +104,7 @@ impl Live {
     }
 }
 
-/// What is to be sampled between the samples, while it is polled. Clones share it.
+/// The values watched between samples while polling. Clones share them.
 pub(super) struct Watches<W> {
     list: Arc<Mutex<List<W>>>,
     live: Live,
@@ -148,14 +148,14 @@ impl<W: Clone + PartialEq> Watches<W> {
         self.live.wake();
     }
 
-    /// What is asked for, how often, when it has changed since `known`; which becomes the state of now.
+    /// Returns the watched values and their intervals if they have changed since `known`, which is updated.
     pub(super) fn news(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
         let list = self.lock();
         let changed = std::mem::replace(known, list.number) != list.number;
         changed.then(|| list.asked_for())
     }
 
-    /// What is asked for, and how often: what the device refused is not among it.
+    /// Returns the watched values and their intervals, without those that the device refused.
     pub(super) fn asked_for(&self) -> Vec<(W, Duration)> {
         self.lock().asked_for()
     }
@@ -187,7 +187,7 @@ impl<W> Clone for Watches<W> {
     }
 }
 
-/// A worker's stop, for whoever does not hold the worker. Clones reach the same one.
+/// Stops a worker from code that does not own it. Clones share the worker.
 #[derive(Clone)]
 pub struct Stopper(Live);
 

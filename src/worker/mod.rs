@@ -44,15 +44,15 @@ use crate::link::{Cancel, LinkError};
 
 /// A kind of device at the end of a session: its wire, what is known about it, and what can be done with it.
 pub trait Device: Send + 'static {
-    /// What it is asked to do.
+    /// A request to the device.
     type Job: Send + fmt::Debug;
-    /// What a job gives.
+    /// The result of a job.
     type Output: Send + fmt::Debug;
     /// Why a job ends early.
     type Error: EndedEarly + Send + fmt::Debug;
-    /// What the device says on the way, whatever it is asked.
+    /// A message that the device sends along with any reply.
     type DeviceMessage: Send + fmt::Debug;
-    /// What is taken again and again while it is polled; what belongs to a watched value says so.
+    /// One polled sample; samples of watched values identify themselves.
     type Sample: Send + fmt::Debug + 'static;
     /// A value that can be watched: asked for between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
@@ -97,7 +97,7 @@ pub trait Device: Send + 'static {
     /// When it is not.
     fn check(&mut self) -> Result<(), LinkError>;
 
-    /// How often an idle worker looks after the device and its wire.
+    /// Returns how often an idle worker checks the device and its wire.
     fn idle_interval(&self) -> Duration {
         IDLE
     }
@@ -107,7 +107,7 @@ pub trait Device: Send + 'static {
         None
     }
 
-    /// What [`idle`](Self::idle) does cannot wait until it is looked at the next time.
+    /// Returns whether [`idle`](Self::idle) cannot wait for the next check.
     fn is_urgent(&self) -> bool {
         false
     }
@@ -116,10 +116,10 @@ pub trait Device: Send + 'static {
     fn leave(&mut self, _desk: &mut SessionContext) {}
 }
 
-/// How often an idle worker looks after a device of which nothing is under way.
+/// How often an idle worker checks a device that has no work in progress.
 pub(crate) const IDLE: Duration = Duration::from_millis(500);
 
-/// What a device says when it is asked for a watched value.
+/// The reply to a request for a watched value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Watched<S> {
     /// The value, or why there is none at the moment.
@@ -132,14 +132,14 @@ pub enum Watched<S> {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct JobId(u64);
 
-/// How far a job is.
+/// The progress of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Progress<W> {
     /// Steps done.
     pub done: u64,
     /// Steps in all.
     pub total: u64,
-    /// What is being done.
+    /// The present step.
     pub what: W,
 }
 
@@ -150,23 +150,23 @@ impl<W> Progress<W> {
     }
 }
 
-/// What a job tells on its way.
+/// A report from a running job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Tell<R, W> {
-    /// How far it is.
+    /// Progress of the job.
     Progress(Progress<W>),
-    /// What the device said; each is passed on.
+    /// A message of the device; each is passed on.
     Remark(R),
 }
 
-/// What a worker tells.
+/// A report from a worker.
 #[derive(Debug)]
 pub enum Event<D: Device> {
     /// A job has begun.
     Started(JobId),
-    /// How far it is.
+    /// Progress of a job.
     Progress(JobId, Progress<D::JobStep>),
-    /// What the device said on the way, while the job runs or at its end.
+    /// A message of the device, during a job or at its end.
     Remark(D::DeviceMessage),
     /// It is done.
     Finished(JobId, Box<D::Output>),
@@ -180,7 +180,7 @@ pub enum Event<D: Device> {
     Lost(LinkError),
 }
 
-/// Why a job cannot be taken.
+/// Why a job cannot be accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SubmitError {
     /// The job slot is taken; jobs do not queue.
@@ -265,7 +265,7 @@ impl<D: Device> Worker<D> {
         self.live.stop();
     }
 
-    /// [`stop`](Self::stop) for whoever does not hold the worker.
+    /// Returns a handle that can [`stop`](Self::stop) without owning the worker.
     pub fn stopper(&self) -> Stopper {
         self.live.stopper()
     }
@@ -289,12 +289,12 @@ impl<D: Device> Worker<D> {
         self.watches.wish(wished);
     }
 
-    /// What is watched while the device is polled, in the order of the wish: all but what it has refused.
+    /// Returns the watched values in the requested order, without those that the device refused.
     pub fn watching(&self) -> Vec<(D::Watch, Duration)> {
         self.watches.asked_for()
     }
 
-    /// The samples taken, at most 4096 of them; nobody is woken for one.
+    /// Returns the samples, at most 4096 of them; a new sample wakes no one.
     pub fn samples(&self) -> &Ring<D::Sample> {
         &self.samples
     }
@@ -304,7 +304,7 @@ impl<D: Device> Worker<D> {
         self.busy.load(Ordering::SeqCst)
     }
 
-    /// What the worker tells. The channel ends with the worker.
+    /// Returns the events. The channel ends with the worker.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }
@@ -320,8 +320,8 @@ impl<D: Device> Worker<D> {
         Ending { events: self.events.clone(), ended: self.ended.clone() }
     }
 
-    /// [`end`](Self::end) for whoever cannot give the worker away: no job is taken any more. Waits at most `patience`; true
-    /// when the thread has ended and the wire is free.
+    /// Does the same as [`end`](Self::end) without taking the worker: no further jobs are accepted. Waits at most
+    /// `patience`; returns true when the thread has ended and the wire is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
         // The thread ends when nobody can order any more.
@@ -348,7 +348,7 @@ pub struct Ending<D: Device> {
 }
 
 impl<D: Device> Ending<D> {
-    /// What the worker still tells: how its last job ended.
+    /// Returns the remaining events: how the last job ended.
     pub fn events(&self) -> &Receiver<Event<D>> {
         &self.events
     }

@@ -32,7 +32,7 @@ pub enum OpenError {
     Recording {
         /// The file.
         path: String,
-        /// What is wrong with it.
+        /// The cause.
         cause: TraceFileError,
     },
     /// The user's table of encoder types.
@@ -40,8 +40,8 @@ pub enum OpenError {
     Store(#[from] StoreError),
 }
 
-/// How much later than the protocol's worst case a reply may come, by kind of wire: USB adapters deliver in packets,
-/// device servers over a network, and even a thread has to be woken up.
+/// Returns how much later than the protocol's worst case a reply may arrive, by kind of wire: USB adapters deliver in
+/// packets, device servers over a network, and even a thread has to be woken up.
 pub(crate) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
         Scheme::Serial => Duration::from_millis(50),

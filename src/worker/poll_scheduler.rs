@@ -1,9 +1,9 @@
-//! What a polled device is asked next and when: its sample, and between two samples at most one value that is watched.
-//! It has no clock.
+//! Schedules the requests to a polled device: its sample, and at most one watched value between two samples. It has no
+//! clock.
 
 use std::time::{Duration, Instant};
 
-/// What is asked for.
+/// The request that is due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Due<W> {
     /// The device's sample.
@@ -42,8 +42,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// What comes next and when: what is due first, the sample where several are. Watching rests while nothing is
-    /// sampled; a new wish begins now.
+    /// Returns the next request and its time: the earliest one, and the sample where several are due. Watching pauses
+    /// while sampling is off; a new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, Due<W>)> {
         let sample = self.sample.due(polling, now);
         let mut next: Option<(Instant, Due<W>)> = None;

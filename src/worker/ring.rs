@@ -1,5 +1,5 @@
-//! A bounded ring for what may be dropped: samples, frames of a trace. Whoever fills it never waits for whoever empties
-//! it; what did not fit is counted, and the oldest goes first.
+//! A bounded ring for data that may be dropped: samples, frames of a trace. The writer never waits for the reader; the
+//! oldest entries are dropped and counted.
 
 use std::collections::VecDeque;
 use std::fmt;

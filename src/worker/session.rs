@@ -7,7 +7,7 @@ use super::{Device, EndedEarly as _, Event, JobId, Tell, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
-/// What a job finds on its desk, whatever the device: time, the user's wish to end, who watches, and the folders.
+/// The context of a job, whatever the device: time, cancellation, trace, and the folders.
 pub struct SessionContext {
     /// The time of the session.
     pub clock: Arc<dyn Clock>,
@@ -67,7 +67,7 @@ impl<D: Device> Session<D> {
         self.device.check()
     }
 
-    /// How often an idle worker looks after the device and its wire.
+    /// Returns how often an idle worker checks the device and its wire.
     pub(super) fn idle_interval(&self) -> Duration {
         self.device.idle_interval()
     }
@@ -77,7 +77,7 @@ impl<D: Device> Session<D> {
         self.device.idle(&mut self.desk)
     }
 
-    /// What goes on without being asked needs a look now.
+    /// Returns whether unrequested work needs attention now.
     pub(super) fn is_urgent(&self) -> bool {
         self.device.is_urgent()
     }
@@ -125,12 +125,12 @@ impl<D: Device> Session<D> {
         self.device.watch(&mut self.desk, what)
     }
 
-    /// What the device said since the last time, where no event tells it.
+    /// Returns a message of the device since the last call that no event carries.
     pub(super) fn take_remark(&mut self) -> Option<D::DeviceMessage> {
         self.device.take_remark()
     }
 
-    /// Carries out a job here and now, for whoever wants nothing but its result.
+    /// Runs a job on this thread, for callers that need only its result.
     ///
     /// # Errors
     /// Those of the job.

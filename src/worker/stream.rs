@@ -1,5 +1,5 @@
-//! What streams without being asked: batches of samples from a thread of their own, through a bounded ring that drops the
-//! oldest and counts. The thread never waits for whoever reads, and wakes the window now and then, not for every batch.
+//! Streams of unrequested data: batches of samples from their own thread, through a bounded ring that drops the oldest
+//! and counts. The thread never waits for the reader, and wakes the window at intervals, not for each batch.
 //!
 //! Nothing here knows where samples come from: a [`Producer`] does.
 
@@ -22,7 +22,7 @@ use crate::analysis::Time;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
-/// How long a producer may wait at once: after so long at most a stop or a change is heard.
+/// How long a producer may wait at once: the longest delay until a stop or a change takes effect.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
 /// The window is woken so often at most.
 const WAKE: Duration = Duration::from_millis(50);
@@ -36,8 +36,7 @@ pub struct Batch<S> {
     pub time: Time,
     /// Nanoseconds from one sample to the next.
     pub period_ns: i64,
-    /// Samples between the batch before and this one that are lost, at the source or because nobody read: so many numbers
-    /// are missing.
+    /// Number of samples lost between the previous batch and this one, at the source or because they were not read.
     pub lost: u64,
     /// The samples.
     pub samples: S,
@@ -45,15 +44,15 @@ pub struct Batch<S> {
 
 /// Samples that can be counted.
 pub trait Counted: Send + 'static {
-    /// How many.
+    /// Returns the number of samples.
     fn count(&self) -> usize;
 }
 
-/// Where samples come from: a virtual source, an adapter.
+/// A source of samples: a virtual one, or an adapter.
 pub trait Producer: Send + 'static {
-    /// What can be changed while it runs.
+    /// A change while it runs.
     type Request: Send + 'static;
-    /// What a batch holds.
+    /// The samples of a batch.
     type Samples: Counted;
     /// Why it ends by itself.
     type Error: Send + 'static;
@@ -67,11 +66,11 @@ pub trait Producer: Send + 'static {
     /// When there will be no more.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
-    /// Nobody wants any more, or there are no more: what sends by itself is told so.
+    /// Ends the stream at the source, which otherwise keeps sending.
     fn end(&mut self, _clock: &dyn Clock) {}
 }
 
-/// The end of a stream, for whoever needs what it uses.
+/// Signals the end of a stream to code that needs its resources.
 #[derive(Clone, Debug)]
 pub struct End(Receiver<Never>);
 
@@ -149,12 +148,12 @@ impl<P: Producer> Stream<P> {
         batches.into()
     }
 
-    /// Samples lost since the beginning, at the source or because nobody read them in time.
+    /// Returns the number of samples lost since the start, at the source or because they were not read in time.
     pub fn lost(&self) -> u64 {
         lock(&self.shared.ring).lost
     }
 
-    /// Why it ended by itself; told once.
+    /// Returns why it ended by itself; once.
     pub fn take_error(&self) -> Option<P::Error> {
         lock(&self.shared.error).take()
     }
@@ -182,7 +181,7 @@ impl<P: Producer> Drop for Stream<P> {
 }
 
 impl<S: Counted> Ring<S> {
-    /// Adds a batch; what it pushes out is given back, to be taken apart by whoever holds no lock.
+    /// Adds a batch; returns the batches pushed out, to be dropped without the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
         self.held += batch.samples.count();

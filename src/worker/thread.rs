@@ -12,7 +12,7 @@ use super::poll_scheduler::{Due, PollScheduler};
 use super::{Device, EndedEarly as _, Event, JobId, Ring, Session, Watched};
 use crate::link::Cancel;
 
-/// How often it tries again to send what the full channel did not take.
+/// Interval between attempts to send to a full channel.
 const RETRY: Duration = Duration::from_millis(5);
 
 /// A job on its way to the thread.
@@ -157,7 +157,7 @@ impl<D: Device> Bench<D> {
         true
     }
 
-    /// What goes on without being asked, however often samples are taken.
+    /// Does unrequested work, however often samples are taken.
     fn look_after(&mut self) {
         // A job cuts it short, as it does a sample.
         self.session.set_cancel(self.live.sampling().clone());

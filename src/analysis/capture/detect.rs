@@ -1,15 +1,15 @@
-//! What a table is, from its first lines: delimiter, decimal sign, where the numbers begin, names, units, columns. Columns
-//! as SICK 8010701 names them.
+//! Detects the format of a table from its first lines: delimiter, decimal sign, first row of numbers, names, units,
+//! columns. Columns are named as in SICK 8010701.
 
 use super::CaptureError;
 use super::encoding::decode_head;
 use super::header::{Columns, TimeUnit, VoltUnit, is_unit, unit_of};
 use super::import::{Number, is_no_value, number, whole};
 
-/// So many bytes from the beginning are looked at.
+/// Number of bytes examined at the beginning.
 pub const HEAD: usize = 64 << 10;
 
-/// What stands between two columns.
+/// The delimiter between two columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delimiter {
     /// A comma.
@@ -20,7 +20,7 @@ pub enum Delimiter {
     Tab,
 }
 
-/// What is known about a table; what is `None` is to be found out.
+/// The known properties of a table; those that are `None` are detected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableHints {
     /// Delimiter.
@@ -35,7 +35,7 @@ pub struct TableHints {
     pub volts_per_unit: Option<f64>,
 }
 
-/// How a table is read.
+/// The format of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// Delimiter.
@@ -46,7 +46,7 @@ pub struct Layout {
     pub first_row: u64,
     /// Names of the columns; empty without a header.
     pub names: Vec<String>,
-    /// Which columns are taken.
+    /// The columns that are used.
     pub columns: Columns,
     /// Unit of the time.
     pub time_unit: TimeUnit,

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-/// How the characters of a table are encoded.
+/// The encoding of the characters of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Encoding {
     /// UTF-8, or one byte a character.

@@ -4,7 +4,7 @@
 /// Columns of a table, from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Columns {
-    /// Time; `None` where samples are evenly spaced and nobody says how far.
+    /// Time; `None` for evenly spaced samples at an unknown interval.
     pub time: Option<usize>,
     /// Sine, or SIN against ground.
     pub sine: usize,
@@ -154,8 +154,8 @@ fn bare_name(name: &str) -> String {
     bare.trim_end_matches([' ', '[', '(', '/', '_', ',']).trim().to_owned()
 }
 
-/// What stands behind a name in brackets, or after a space, a slash or an underscore: `ms` of `time_ms`. A name that is
-/// nothing but brackets, as in a line of units, is all unit. To be called with small letters.
+/// Returns the unit after a name, in brackets or after a space, a slash or an underscore: `ms` of `time_ms`. A name
+/// that consists of brackets only, as in a line of units, is all unit. Expects lower case.
 pub(super) fn unit_of(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);

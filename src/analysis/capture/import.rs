@@ -20,7 +20,7 @@ pub struct Import {
     ended: usize,
     last: Option<u8>,
     decoder: Decoder,
-    /// What is missing in the first row that was left out, and that row.
+    /// The first row that was left out, and the value missing in it.
     first_left_out: Option<(u64, CaptureError)>,
     taken: Taken,
     capture: Capture,
@@ -38,7 +38,7 @@ struct Taken {
     counts: bool,
 }
 
-/// What a field is.
+/// The content of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
     Finite(f64),
@@ -98,7 +98,7 @@ impl Import {
         }
     }
 
-    /// How the table is read.
+    /// Returns the format of the table.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -282,7 +282,7 @@ impl Taken {
         }
     }
 
-    /// What stands in a column, without the spaces around it.
+    /// Returns the content of a column, without surrounding spaces.
     fn field<'r>(&self, row: &'r [u8], ends: &[usize], line: u64, column: usize) -> Result<&'r [u8], CaptureError> {
         let at = column.saturating_sub(1);
         let start = at.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0);
@@ -292,7 +292,7 @@ impl Taken {
     }
 }
 
-/// What instruments write where they have no value: nothing, dashes, or that their input was overloaded.
+/// Returns whether a field is what instruments write without a value: nothing, dashes, or an overload.
 pub(super) fn is_no_value(field: &[u8]) -> bool {
     const WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
@@ -306,7 +306,7 @@ pub(super) fn whole(value: f64) -> Option<i64> {
     (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)
 }
 
-/// What SCPI instruments send for an overload (9.9E37) or where they have no number (9.91E37): SCPI-99, 7.2.1.
+/// The values that SCPI instruments send for an overload (9.9E37) or not a number (9.91E37): SCPI-99, 7.2.1.
 const NO_VALUE: std::ops::RangeInclusive<f64> = 9.9e37..=9.91e37;
 
 /// Reads a field without spaces around it.

@@ -42,7 +42,7 @@ impl Capture {
     }
 }
 
-/// Why a table is no capture.
+/// Why a table is not a capture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CaptureError {
     /// There is nothing in it.
@@ -77,7 +77,7 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// What stands there, shortened.
+        /// The text, shortened.
         text: String,
     },
     /// An absolute position is no whole number of steps.
@@ -87,7 +87,7 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// What stands there.
+        /// The text.
         text: String,
     },
     /// A number is NaN or infinite: a time, or a value of a table with too few rows.
@@ -97,7 +97,7 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// What stands there, shortened.
+        /// The text, shortened.
         text: String,
     },
     /// More than half of the rows have no measured value.
@@ -123,7 +123,7 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// What stands there, shortened.
+        /// The text, shortened.
         text: String,
     },
     /// A quotation mark is not closed, so that all that follows belongs to one field.

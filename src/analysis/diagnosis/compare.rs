@@ -1,19 +1,19 @@
-//! Two captures of one signal, as with the drive off and on: what became worse, what only changed, and what nobody can tell.
-//! Both have to be judged by the same limits.
+//! Comparison of two captures of one signal, as with the drive off and on: what became worse, what only changed, and
+//! what cannot be compared. Both have to be judged by the same limits.
 
 use std::mem::discriminant;
 
 use super::lines::Interference;
 use super::{Diagnosis, Finding, LEAST_LINE, OutOfLimits, Severity, What, severity};
 
-/// What changed from one capture to another.
+/// The changes from one capture to another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
-    /// What became worse or came up, the worst first.
+    /// Findings that became worse or are new, the worst first.
     pub worse: Vec<Finding>,
-    /// What is another without being worse.
+    /// Findings that changed without being worse.
     pub changed: Vec<Finding>,
-    /// What cannot be compared.
+    /// Findings that cannot be compared.
     pub untold: Vec<Untold>,
 }
 
@@ -37,7 +37,7 @@ const LEAST_NOISE: f64 = 0.001;
 /// An amplitude is another when it differs by this share.
 const AMPLITUDE: f64 = 0.02;
 
-/// What is worse, and what is another, in `after` than in `before`.
+/// Compares `after` with `before`.
 pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     let mut changes = Changes::default();
     let is_worse = |finding: &&Finding| is_worse(finding, before, after);
@@ -118,7 +118,7 @@ fn covers(earlier: &What, later: &What) -> bool {
     }
 }
 
-/// How much of it there is, to be compared with another of its kind.
+/// Returns the amount of a finding, comparable with another of its kind.
 fn amount(what: &What) -> f64 {
     let beyond = |value: f64, (least, most): (f64, f64)| (least - value).max(value - most).max(0.0);
     match *what {

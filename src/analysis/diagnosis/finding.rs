@@ -1,10 +1,10 @@
-//! What can be found in a signal, with the numbers that say how much of it there is.
+//! The possible findings in a signal, with their amounts.
 
 use super::OutOfLimits;
 use crate::analysis::ellipse::Channel;
 use crate::analysis::wiring::Wire;
 
-/// How bad it is.
+/// The severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Good to know; the signal is usable.
@@ -18,13 +18,11 @@ pub enum Severity {
 /// Something to look at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finding {
-    /// How bad it is.
     pub severity: Severity,
-    /// What it is.
     pub what: What,
 }
 
-/// What can be found. Shares are of the amplitude of the cosine channel.
+/// A kind of finding. Shares are of the amplitude of the cosine channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
     /// A parameter outside of the family's limits.
@@ -35,14 +33,14 @@ pub enum What {
     AtRest,
     /// One channel does not move while the other does.
     Dead {
-        /// Which.
+        /// The channel.
         channel: Channel,
-        /// Where its wires stand.
+        /// Level of its wires.
         stuck: Stuck,
     },
     /// One channel has half of the other's amplitude: one of its two wires is open.
     Half {
-        /// Which.
+        /// The channel.
         channel: Channel,
         /// Its amplitude over the other's.
         share: f64,
@@ -89,16 +87,16 @@ pub enum What {
     },
     /// The distance from the ellipse repeats so many times a period: harmonics one below and one above that.
     Harmonics {
-        /// How many times, 3 to 8.
+        /// Order, 3 to 8.
         order: usize,
         /// As a share, peak; so many radians are what it costs.
         share: f64,
     },
     /// A channel is cut off.
     Clipping {
-        /// Which.
+        /// The channel.
         channel: Channel,
-        /// Where, in volts.
+        /// Level in volts.
         volts: f64,
         /// Share of the samples that stand there.
         samples: f64,
@@ -110,14 +108,14 @@ pub enum What {
     },
     /// Single samples far off were left out.
     Spikes {
-        /// How many.
+        /// Number of samples.
         count: usize,
         /// The farthest, in volts off the ellipse.
         volts: f64,
     },
     /// Several samples in a row were far off and left out.
     LetsGo {
-        /// How many in all.
+        /// Total number.
         count: usize,
         /// The most in a row.
         longest: usize,
@@ -136,7 +134,7 @@ pub enum What {
     },
     /// The shaft turned back.
     Reversed {
-        /// How often.
+        /// Number of times.
         times: usize,
     },
     /// So few samples a period that the angle cannot be followed for certain.
@@ -190,7 +188,7 @@ pub enum What {
     },
 }
 
-/// Where the wires of a channel that does not move stand.
+/// The level of the wires of a channel that does not move.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stuck {
     /// Both at the same level: one is open, or they are shorted to each other.
@@ -199,6 +197,6 @@ pub enum Stuck {
     Ground(Wire),
     /// This wire is at a supply.
     Supply(Wire),
-    /// So many volts apart: one of them is shorted to something, or open where no resistor joins them.
+    /// This many volts apart: one of them is shorted, or open where no resistor joins them.
     Apart(f64),
 }

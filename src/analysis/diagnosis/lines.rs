@@ -40,7 +40,7 @@ const NEIGHBOURS: usize = 50;
 const ABOVE: f64 = 6.0;
 /// Most lines that are told.
 const MOST: usize = 8;
-/// What part of an interference moves the vector along the radius.
+/// Share of an interference that moves the vector along the radius.
 const RADIAL: Range<f64> = 0.25..0.75;
 /// Within this angle both channels are in phase.
 const IN_PHASE: f64 = TAU / 12.0;
@@ -64,7 +64,7 @@ struct Found {
     radial_v2: f64,
 }
 
-/// What a spectrum shows.
+/// The content of a spectrum.
 pub(super) struct Seen {
     /// The strongest first.
     pub(super) lines: Vec<Interference>,
@@ -72,7 +72,7 @@ pub(super) struct Seen {
     pub(super) noise_v: f64,
     /// Distance of two lines in hertz.
     pub(super) spacing_hz: f64,
-    /// What all lines together do to the distance from the ellipse, mean square in V².
+    /// Effect of all lines on the distance from the ellipse, mean square in V².
     pub(super) radial_v2: f64,
 }
 
@@ -143,7 +143,8 @@ fn height(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
-/// Which lines belong to the signal: its own and its harmonics, also where these are folded back at half the sample rate.
+/// Returns which lines belong to the signal: its own and its harmonics, also where they are folded back at half the
+/// sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = REACH.min(both.len());

@@ -1,7 +1,7 @@
-//! What an engineer should look at: what is wrong with a recorded signal, and what it points to — a broken wire, the
-//! screen, a drive, the scale. Limits of the parameters are those of the family (`quality`); what belongs to the wiring is
-//! told by how samples lie (sections 1 and 2 of the project's sine/cosine reference), by lines of the spectrum and by what
-//! repeats with the period or the revolution.
+//! Diagnosis of a recorded signal: what is wrong and its likely cause, such as a broken wire, the screen, a drive, the
+//! scale. The limits of the parameters are those of the family (`quality`); faults of the wiring are recognised by the
+//! distribution of the samples (sections 1 and 2 of the project's sine/cosine reference), by lines of the spectrum and
+//! by what repeats with the period or the revolution.
 //!
 //! Thresholds without a source are assumptions (U) and stand in one place, below.
 
@@ -27,7 +27,7 @@ pub const LEAST_LINE: f64 = 0.002;
 pub const WARNING_SHARE: f64 = 0.01;
 /// A channel whose amplitude is this share of the other's has lost one of its two wires.
 const HALF: (f64, f64) = (0.4, 0.6);
-/// What stays within so many volts of zero stands where both wires of a pair are equal.
+/// Volts from zero within which both wires of a pair count as equal.
 const SAME_LEVEL_V: f64 = 0.1;
 /// A wire below or above these is shorted to ground or to a supply, in volts.
 const RAILS_V: (f64, f64) = (0.5, 4.5);
@@ -41,7 +41,7 @@ const MODULATION: (f64, f64) = (0.03, 0.1);
 /// The part of the residual's mean square that other findings have to explain.
 const EXPLAINED: f64 = 0.7;
 
-/// What there is to judge by.
+/// The data to judge.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
     /// The samples, references taken off.
@@ -52,7 +52,7 @@ pub struct Record<'a> {
     pub periods: Option<u32>,
 }
 
-/// What was found, and what a later capture can be compared with.
+/// The findings, and the values that a later capture is compared with.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
     /// The findings, the worst first.
@@ -161,7 +161,7 @@ fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &m
     }
 }
 
-/// Where there is no ellipse, how the samples lie still tells why.
+/// Diagnoses samples without an ellipse: their distribution still shows the cause.
 fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, What)) {
     match error {
         AnalysisError::AtRest => say(Severity::Warning, What::AtRest),

@@ -1,5 +1,5 @@
-//! What repeats with the period or the revolution, or stands at an end of the range: harmonics of the scale, channels that
-//! are cut off, an amplitude that changes over the revolution. None of it needs even times.
+//! Effects that repeat with the period or the revolution, or occur at an end of the range: harmonics of the scale,
+//! clipped channels, an amplitude that changes over the revolution. None of them needs evenly spaced times.
 
 use std::f64::consts::TAU;
 
@@ -19,9 +19,9 @@ const OF_REVOLUTION: usize = 36;
 /// Samples a period that are enough to follow the angle.
 const FOLLOWED: f64 = 16.0;
 
-/// How near to its end a sample stands at it, as a share of the amplitude.
+/// Distance from the end of the range at which a sample counts as there, as a share of the amplitude.
 const AT_END: f64 = 0.002;
-/// So many times the share of a sine that is not cut off are needed: it has √(2·0.002)/π = 2 % there.
+/// Factor over the share of an unclipped sine, which has √(2·0.002)/π = 2 % there.
 const CUT_OFF: f64 = 3.0 * 0.0201;
 /// Fewest periods: a shaft that stands would leave its samples in one place.
 const LEAST_PERIODS: f64 = 2.0;
@@ -85,8 +85,8 @@ pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Chann
     found
 }
 
-/// How far the amplitude rises and falls over a revolution of so many periods, as a share; `None` where the capture covers
-/// less than one.
+/// Returns the rise and fall of the amplitude over a revolution of this many periods, as a share; `None` if the capture
+/// covers less than one.
 pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u32) -> Option<f64> {
     let revolution = f64::from(periods);
     if periods == 0 || analysis.coverage.periods < revolution {

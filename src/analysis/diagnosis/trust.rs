@@ -1,5 +1,5 @@
-//! What makes the numbers of an analysis doubtful: times with gaps, a shaft that turned back, few samples a period,
-//! disturbances in what the ellipse was fitted to, columns that are no differences.
+//! Reasons to doubt the numbers of an analysis: gaps in the times, a shaft that reversed, few samples a period,
+//! disturbances in the samples of the ellipse, columns that are not differences.
 
 use super::{Finding, OutOfLimits, Severity, WARNING_SHARE, What};
 use crate::analysis::ellipse::Ellipse;
@@ -14,7 +14,7 @@ const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
 const LARGER: f64 = 1.1;
 const LARGER_DEG: f64 = 0.2;
 
-/// What the times of the samples say.
+/// Reports findings about the times of the samples.
 pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, What)) {
     if let Some(sample) = analysis.continuity.back {
         say(Severity::Warning, What::TimeBack { sample });
@@ -40,7 +40,7 @@ pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, What
     }
 }
 
-/// What was found disturbs the ellipse itself: about by its share.
+/// Returns the uncertainty of the ellipse: about the share of the disturbances found.
 pub(super) fn uncertain(findings: &[Finding]) -> Option<What> {
     let share = |finding: &Finding| match finding.what {
         What::Hum { share, .. } | What::Interference { share, .. } | What::Harmonics { share, .. } => Some(share),

@@ -13,7 +13,7 @@ use super::{BLOCK, FAN};
 struct Level {
     /// Samples under a bucket.
     size: usize,
-    /// Where its first bucket lies among those of the block.
+    /// Index of its first bucket within the block.
     start: usize,
 }
 
@@ -41,7 +41,7 @@ impl Bucket {
         buckets.iter().fold(Bucket::EMPTY, |all, bucket| all.with(*bucket))
     }
 
-    /// What is around the extremes, if there are any.
+    /// Returns the bucket around the extremes, if any.
     fn around<T: Number>(extremes: Option<(T, T)>, base: T) -> Bucket {
         extremes.map_or(Bucket::EMPTY, |(min, max)| Bucket { low: min.down(base), high: max.up(base) })
     }
@@ -94,8 +94,8 @@ pub(super) struct Block<T> {
     buckets: Box<[Bucket]>,
     /// Of the whole block, when it is full.
     top: Bucket,
-    /// What the buckets are counted from: the median of the first few values, so that one odd value does not coarsen the
-    /// rest. `None` as long as there is no bucket with a value.
+    /// Base of the buckets: the median of the first few values, so that one outlier does not coarsen the rest. `None`
+    /// until there is a bucket with a value.
     base: Option<T>,
     flags: FlagBlock,
     /// Of the whole block, when it is full and has a value.
@@ -307,7 +307,7 @@ impl<T: Number> Block<T> {
         extremes.map_or(Extent::EMPTY, |(min, max)| Extent { min: min.below(), max: max.above() })
     }
 
-    /// How many samples from `at` on, before `end`, have no value, as far as one look tells.
+    /// Returns how many samples from `at` on, before `end`, have no value, as far as one look shows.
     fn nothing_from(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
@@ -316,7 +316,7 @@ impl<T: Number> Block<T> {
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
     }
 
-    /// How many samples before `end`, from `start` on, have no value, as far as one look tells.
+    /// Returns how many samples before `end`, from `start` on, have no value, as far as one look shows.
     fn nothing_before(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;
@@ -327,13 +327,13 @@ impl<T: Number> Block<T> {
     }
 }
 
-/// What is looked for in a block, and what of it is found.
+/// A search in a block, and its result.
 struct Search {
-    /// What samples gave.
+    /// Result of the samples.
     samples: Extent,
-    /// What buckets gave.
+    /// Result of the buckets.
     found: Bucket,
-    /// What lies in this widens nothing.
+    /// Values within this do not widen the result.
     enough: Bucket,
 }
 

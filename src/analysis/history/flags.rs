@@ -1,11 +1,10 @@
-//! What is remarkable about a sample, and the flags of a block of samples with their summary. Says nothing about values.
+//! Flags of samples, and of a block of samples with their summary, independent of values.
 
 use std::ops::{BitOr, BitOrAssign, Range};
 
 use super::BLOCK;
 
-/// What is remarkable about a sample: a set of [`BREAK`](Flags::BREAK), [`BAD`](Flags::BAD) and
-/// [`WARNING`](Flags::WARNING).
+/// The flags of a sample: a set of [`BREAK`](Flags::BREAK), [`BAD`](Flags::BAD) and [`WARNING`](Flags::WARNING).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(transparent)]
 pub struct Flags(u8);
@@ -25,7 +24,7 @@ impl Flags {
         self.0 & other.0 == other.0
     }
 
-    /// What follows from these flags, as it is kept.
+    /// Returns these flags with those that follow from them, as stored.
     pub(super) const fn completed(self) -> Flags {
         if self.contains(Flags::BAD) { Flags(self.0 | Flags::BREAK.0) } else { self }
     }
@@ -54,7 +53,7 @@ const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 /// in memory, are looked at only where there is something. Takes memory from the first flag on.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
-    /// What the block has.
+    /// The union over the block.
     any: Flags,
     /// For each kind of flag, a bit for each group that has it.
     groups: [u64; KINDS.len()],
@@ -66,7 +65,7 @@ impl FlagBlock {
         *self = FlagBlock::default();
     }
 
-    /// What any sample of the block has.
+    /// Returns the union of the flags of the block.
     pub(super) fn any(&self) -> Flags {
         self.any
     }
@@ -98,7 +97,7 @@ impl FlagBlock {
         }
     }
 
-    /// What the samples of `range` have, together.
+    /// Returns the union of the flags in `range`.
     pub(super) fn within(&self, range: Range<usize>) -> Flags {
         if self.any == Flags::NONE || range.is_empty() {
             return Flags::NONE;
@@ -116,7 +115,7 @@ impl FlagBlock {
         found
     }
 
-    /// Whether a look at its group is enough to know that the sample `at` has a value to believe.
+    /// Returns whether a look at its group suffices to know that sample `at` has a valid value.
     pub(super) fn is_surely_good(&self, at: usize) -> bool {
         !self.of_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
@@ -133,7 +132,7 @@ impl FlagBlock {
         self.kept.as_ref().map_or(0, |_| size_of::<[Flags; BLOCK]>())
     }
 
-    /// What any sample of these groups has.
+    /// Returns the union of the flags of these groups.
     fn of_groups(&self, groups: Range<usize>) -> Flags {
         if groups.is_empty() || self.any == Flags::NONE {
             return Flags::NONE;

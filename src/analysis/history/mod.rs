@@ -35,7 +35,7 @@ const BLOCK: usize = 4096;
 /// Samples under a bucket of the pyramid, and buckets under a bucket of the next level.
 const FAN: usize = 8;
 
-/// What the values of a column are.
+/// The kind of the values of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// `f64`.
@@ -99,7 +99,7 @@ pub enum Refused {
     /// A sample is earlier than the one before.
     #[error("the time goes back at sample {at} of the batch")]
     TimeGoesBack {
-        /// Which sample of the batch, from 0.
+        /// Index of the sample in the batch.
         at: usize,
     },
 }
@@ -113,7 +113,7 @@ pub struct Sample {
     pub time: Time,
     /// The value as it was appended.
     pub value: Value,
-    /// What is remarkable about it.
+    /// The flags.
     pub flags: Flags,
 }
 

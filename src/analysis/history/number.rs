@@ -19,7 +19,7 @@ impl Value {
     }
 }
 
-/// What a series is made of.
+/// The type of the values of a series.
 pub(super) trait Number: Copy + PartialOrd {
     /// Neither infinite nor NaN.
     fn is_number(self) -> bool;

@@ -44,22 +44,22 @@ impl Grid {
         self.width
     }
 
-    /// Where the pixel column `pixel` begins, which belongs to it; the one before it ends there.
+    /// Returns the start of pixel column `pixel`, which belongs to it; the previous column ends there.
     pub fn edge(&self, pixel: usize) -> Time {
         let edge = i128::from(self.start.nanoseconds()) + pixel as i128 * i128::from(self.width);
         Time::from_nanoseconds(i64::try_from(edge).unwrap_or(i64::MAX))
     }
 }
 
-/// Where a [`Grid`] cuts the samples of a history; the same for all of its columns. Samples that are appended later are
-/// not in it, and what is evicted is not drawn.
+/// The cut of a [`Grid`] through the samples of a history; the same for all of its columns. Samples appended later are
+/// not included, and evicted ones are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridCut {
     /// The beginning of each pixel column, and the end of the last one.
     edges: Vec<Edge>,
 }
 
-/// Where one pixel column ends and the next begins.
+/// The boundary between two pixel columns.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     /// Index of the first sample behind it.
@@ -70,7 +70,7 @@ struct Edge {
     after: Option<Time>,
 }
 
-/// What there is to draw of one pixel column.
+/// The content of one pixel column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// When the first sample with a value was taken, or without any value the first sample.
@@ -79,7 +79,8 @@ pub struct Pixel {
     pub to: Time,
     /// `None` when no sample has a value to believe.
     pub values: Option<Reduced>,
-    /// What any of the samples has; [`BREAK`](Flags::BREAK) when the line is broken in this column or before it.
+    /// The union of the flags of the samples; [`BREAK`](Flags::BREAK) if the line is broken in this column or before
+    /// it.
     pub flags: Flags,
     /// A line leads from the last value of the pixel column before to the first of this one: no break lies between them.
     pub joined: bool,
@@ -98,8 +99,8 @@ pub struct Reduced {
     pub last: f64,
 }
 
-/// What there is to draw: pixel columns that have samples, in the order of time. A line goes through first, min, max and
-/// last of each. The nearest samples to the left and right of the stretch are with them, so that a line leads there.
+/// The picture of a column: pixel columns that have samples, in order of time. A line goes through first, min, max and
+/// last of each. The nearest samples to the left and right are included, so that the line leads there.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     /// The pixel columns; see `raw`.
@@ -113,7 +114,7 @@ const FEW: u64 = 4;
 
 /// By no more than this part of its width a pixel column reaches over its edge, to begin where a bucket of the pyramid does.
 const REACH: i64 = 16;
-/// Where buckets begin, in samples, the largest first.
+/// Sizes of the buckets in samples, the largest first.
 const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as u64];
 
 impl History {
@@ -137,7 +138,7 @@ impl History {
         BUCKETS.iter().map(|size| exact - exact % size).find(is_near).unwrap_or(exact)
     }
 
-    /// What there is to draw of a column, into `picture`, whose memory is used again.
+    /// Draws a column into `picture`, whose memory is reused.
     pub fn picture(&self, column: usize, cut: &GridCut, picture: &mut Picture) {
         picture.pixels.clear();
         match self.columns.get(column) {

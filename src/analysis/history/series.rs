@@ -81,7 +81,7 @@ impl<T: Number> Series<T> {
         !(first..=last).any(flagged)
     }
 
-    /// What the samples of `range` have, together.
+    /// Returns the union of the flags in `range`.
     pub(super) fn flags(&self, range: Range<u64>) -> Flags {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
         // Mostly a single sample, or some of one block.

@@ -7,7 +7,7 @@ use super::number::Number;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spread<T> {
     pub(super) count: u64,
-    /// What `mean` is counted from.
+    /// The base of `mean`.
     pub(super) base: T,
     pub(super) mean: f64,
     pub(super) squares: f64,

@@ -7,7 +7,7 @@ use super::number::{Number, Value};
 use super::series::Series;
 use super::{Column, History};
 
-/// What is told of a stretch of samples. All but `bad` are of those that have a value.
+/// The statistics of a range of samples. All but `bad` are of those that have a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
     /// Samples with a value, at least 1.

@@ -32,7 +32,7 @@ impl Times {
         self.first + (self.blocks.len().saturating_sub(1) * BLOCK + last) as u64
     }
 
-    /// How many samples there is room for before a block has to be opened.
+    /// Returns how many samples fit before a block has to be opened.
     pub(super) fn room(&self) -> usize {
         self.blocks.back().map_or(0, |block| BLOCK - block.len())
     }
@@ -82,8 +82,8 @@ impl Times {
     }
 }
 
-/// Where in `times` the first lies that is at or after `time`. Samples mostly come evenly, so it is first looked for where
-/// it would be then.
+/// Returns the index of the first time at or after `time`. Samples are mostly evenly spaced, so the expected place is
+/// tried first.
 fn search_in(times: &[Time], time: Time) -> usize {
     const NEAR: usize = 4;
     let before = |other: &Time| *other < time;

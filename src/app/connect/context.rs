@@ -1,4 +1,4 @@
-//! What a search may use beside the connection form it belongs to.
+//! What a search may use besides the connection form it belongs to.
 
 use crossbeam_channel::Receiver;
 
@@ -9,7 +9,7 @@ use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
-/// What a search may use beside the connection form it belongs to.
+/// The context of a search: what it may use besides the connection form it belongs to.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
     tab: Tab,
@@ -18,7 +18,7 @@ pub struct FinderContext<'a> {
     problem: Option<Text>,
 }
 
-/// What the dialog does after a search was asked for something.
+/// The next act of the dialog after a request to a search.
 #[derive(Default)]
 pub(super) struct Next {
     /// Closes, and connects to this device.

@@ -16,7 +16,7 @@ use crate::link::LinkUrl;
 
 /// A link to a kind of device as entries to be filled in. Entries of another way to the device are kept.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
-    /// What looks for devices from the form; [`NoFinder`] for none.
+    /// The search for devices of the form; [`NoFinder`] for none.
     type Finder: Finder<Form = Self>;
 
     /// Returns the link to the virtual device that the window begins with.
@@ -42,9 +42,9 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
 pub trait Finder: Default + 'static {
     /// The form that it fills in.
     type Form;
-    /// What can be done with it.
+    /// The actions of the search.
     type Action: Any + Send;
-    /// What its tasks come back with.
+    /// The results of its tasks.
     type Done: Any + Send;
 
     /// Does what is asked.

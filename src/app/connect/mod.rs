@@ -25,7 +25,7 @@ use super::{Text, explain};
 use crate::app::action::Done;
 use crate::link::LinkUrl;
 
-/// What can be done in the dialog.
+/// An action of the dialog.
 pub enum Action {
     /// Open it.
     Open,
@@ -37,7 +37,7 @@ pub enum Action {
     Device(Tab),
     /// The form of a kind of device was edited; see [`Action::edit`].
     Edit(Payload),
-    /// What looks for devices is asked for something; see [`Action::find`].
+    /// A request to the search for devices; see [`Action::find`].
     Find(Payload),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
@@ -73,7 +73,7 @@ pub struct Connect {
     pub typed: Option<String>,
     /// The ports of this machine; `None` while they are being looked for.
     pub ports: Option<Result<Vec<Offer>, Text>>,
-    /// Why what was asked for was not done.
+    /// Why the last request was not carried out.
     pub problem: Option<Text>,
 }
 
@@ -113,7 +113,7 @@ impl Connect {
         }
     }
 
-    /// Why this is no link to the kind of device that is chosen, or the link.
+    /// Parses a link to the chosen kind of device.
     fn read(&self, link: &str) -> Result<LinkUrl, Text> {
         let url: LinkUrl = link.parse().map_err(|error| target::other(explain::url(&error)))?;
         target::checked(url, |url| self.kinds.of_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
@@ -141,7 +141,7 @@ impl Connect {
         }
     }
 
-    /// What a link to a device of the chosen kind looks like.
+    /// Returns an example of a link to a device of the chosen kind.
     pub fn example(&self) -> &'static str {
         self.own().map(AnyForm::example).unwrap_or_default()
     }

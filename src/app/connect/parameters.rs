@@ -15,12 +15,12 @@ pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> b
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
 
-/// What is typed into the entries of a form, by the keys of their parameters.
+/// The text of the entries of a form, by the keys of their parameters.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Typed(BTreeMap<&'static str, String>);
 
 impl Typed {
-    /// What is typed for a parameter; empty for what is usual.
+    /// Returns the text of a parameter; empty for the default.
     pub fn get(&self, key: &str) -> &str {
         self.0.get(key).map_or("", String::as_str)
     }
@@ -52,12 +52,12 @@ impl Parameters {
         self.0.push((name.to_owned(), value.to_owned()));
     }
 
-    /// What an entry says, unless it is empty.
+    /// Adds an entry to the text unless it is empty.
     pub(crate) fn entry(&mut self, name: &str, entry: &str) {
         self.0.extend(filled(entry).map(|value| (name.to_owned(), value)));
     }
 
-    /// What is typed into these entries; a German keyboard has a comma where a decimal point should be.
+    /// Adds the text of these entries; a decimal comma becomes a point.
     pub(crate) fn typed(&mut self, entries: &[Entry], typed: &Typed) {
         for entry in entries {
             match entry.is_decimal {

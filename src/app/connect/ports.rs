@@ -7,7 +7,7 @@ use crate::link::{LinkUrl, PortInfo, Scheme};
 pub struct Offer {
     /// Path or name, as a link takes it.
     pub path: String,
-    /// What the system says about the adapter; may be empty.
+    /// Description of the adapter by the system; may be empty.
     pub description: String,
     /// It was used before.
     pub used: bool,

@@ -1,4 +1,4 @@
-//! What is the same in the connection forms of all devices: an entry that must not be empty, host and port, and why a link
+//! Common parts of the connection forms of all devices: entries that must not be empty, host and port, and why a link
 //! cannot be used.
 
 use std::net::Ipv6Addr;
@@ -33,7 +33,7 @@ const MISSING: [&str; 6] = [
     "form.file_missing",
 ];
 
-/// Whether a sentence names something that is still to be entered, and nothing that is wrong.
+/// Returns whether a sentence only asks for a missing entry.
 pub fn is_missing(problem: &Text) -> bool {
     MISSING.contains(&problem.id())
 }
@@ -47,7 +47,7 @@ pub(crate) fn checked(url: LinkUrl, check: impl FnOnce(&LinkUrl) -> Result<(), O
     Ok(url)
 }
 
-/// Why a link cannot be used: in the words of the entry that stands for what is wrong, where there is one.
+/// Returns why a link cannot be used, in the words of the entry that is wrong if there is one.
 pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     let (name, value, allowed) = match error {
         OpenError::Url(UrlError::Value { name, value, allowed })
@@ -117,7 +117,7 @@ pub(crate) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
 /// Begins the target of a link to an adapter in the network.
 const TCP: &str = "tcp:";
 
-/// Where in the network an adapter is; `None` for one at a serial port.
+/// Returns the network address of an adapter; `None` for one at a serial port.
 pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }

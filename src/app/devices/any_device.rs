@@ -1,4 +1,4 @@
-//! What follows for every device from what is asked of it.
+//! Methods of every device that follow from its commands.
 
 use std::any::Any;
 use std::path::{Path, PathBuf};
@@ -36,17 +36,17 @@ impl AnyDevice {
         self.state().name()
     }
 
-    /// Where the data come from, in words that may be seen.
+    /// Returns the source of the data, without secrets.
     pub fn place(&self) -> String {
         self.state().place()
     }
 
-    /// Where the data come from.
+    /// Returns the source of the data.
     pub fn source(&self) -> &Source {
         &self.state().source
     }
 
-    /// How it stands with the connection.
+    /// Returns the state of the connection.
     pub fn phase(&self) -> &Phase {
         &self.state().phase
     }
@@ -64,7 +64,7 @@ impl AnyDevice {
         &mut self.state_mut().opening
     }
 
-    /// What has passed over the line.
+    /// Returns the trace of the line.
     pub fn trace(&self) -> &TraceLog {
         &self.state().trace
     }

@@ -1,4 +1,4 @@
-//! What every device can be asked for, whatever its kind.
+//! Commands that every device has, whatever its kind.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use super::AnyDevice;
 use crate::app::action::Action;
 use crate::app::studio::SessionId;
 
-/// What every device can be asked for.
+/// A command that every device has.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceCommand {
     /// Open the link again.

@@ -34,7 +34,7 @@ pub trait DeviceType: DeviceModel + Sized {
     /// Its form in the connection dialog.
     type Form: FormModel;
 
-    /// What its profiles are read with, beside their own text.
+    /// Tables that its profiles are read with, besides their own text.
     type Tables: Send + 'static;
 
     /// Checks whether a link can lead to such a device, as far as that can be told without opening it.

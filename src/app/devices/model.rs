@@ -27,10 +27,10 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The tab that shows it.
     const TAB: Tab;
 
-    /// What this kind alone can be asked for.
+    /// The actions of this kind alone.
     type Action: DeviceAction;
 
-    /// What its own tasks come back with.
+    /// The results of its own tasks.
     type Done: Any + Send;
 
     /// Returns what is done with a session before it goes to its thread.
@@ -201,10 +201,10 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     }
 }
 
-/// What is done with a session before it goes to its thread.
+/// Prepares a session before it goes to its thread.
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
-/// What an action of a device may use beside the device.
+/// The context of an action: what it may use besides the device.
 pub struct ActContext<'a> {
     /// The log, tasks, questions.
     pub(crate) services: &'a mut Services,

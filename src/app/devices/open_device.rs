@@ -23,7 +23,7 @@ use crate::store::FileError;
 /// A device, or a profile of one, of whatever kind.
 pub type AnyDevice = dyn OpenDevice;
 
-/// What is asked of every device. `DeviceModel` is what a kind implements; this follows from it.
+/// The interface of every device. A kind implements `DeviceModel`; this follows from it.
 pub trait OpenDevice: Any {
     /// Returns what is the same of every session.
     fn state(&self) -> &SessionState;

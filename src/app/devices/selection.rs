@@ -1,4 +1,4 @@
-//! Which device each tab shows.
+//! The device that each tab shows.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use crate::app::kinds::Kinds;
 use crate::app::studio::SessionId;
 use crate::app::tab::Tab;
 
-/// Which device each tab shows.
+/// The device that each tab shows.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     by_tab: HashMap<Tab, SessionId>,

@@ -1,5 +1,5 @@
-//! What is wrong with a link, a setting, a profile, a table or the logbook: the part of a sentence that says why. What
-//! the system or a library says is quoted as it is.
+//! Reasons why a link, a setting, a profile, a table or the logbook cannot be used, as parts of a sentence. Texts of
+//! the system or of a library are quoted unchanged.
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -1,9 +1,9 @@
-//! What a parameter, a setting or an entry may be.
+//! The values that a parameter, a setting or an entry may have.
 
 use crate::app::Text;
 use crate::expected::{Expected, Quantity};
 
-/// What would do where something else was written.
+/// Returns the values that would be valid instead.
 pub fn expected(expected: &Expected) -> Text {
     match expected {
         Expected::Words(words) => match &**words {

@@ -115,7 +115,7 @@ pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     }
 }
 
-/// What is to be known of a profile that was opened: of a newer schema, or with entries that the schema does not have.
+/// Returns remarks about an opened profile: a newer schema, or entries that the schema does not have.
 pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
     if document.is_newer() {
         return vec![newer_profile(path, document)];
@@ -135,7 +135,7 @@ pub fn newer_profile(path: &Path, document: &Document) -> Text {
         .with("entries", document.beyond.join(", "))
 }
 
-/// Why a write was not begun.
+/// Returns why a write was not begun.
 pub fn not_begun(why: &NotBegun) -> Text {
     match why {
         NotBegun::OtherPlan => Text::new("write.other_plan"),
@@ -147,7 +147,7 @@ pub fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// What the logbook could not take.
+/// Returns what the logbook could not record.
 pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
@@ -161,7 +161,7 @@ pub fn parity(parity: Parity) -> Text {
     })
 }
 
-/// What is the same in every language: a name, a number, bytes.
+/// Returns a text that is the same in every language: a name, a number, bytes.
 pub fn plain(words: impl ToString) -> Text {
     Text::new("plain.words").with("words", words)
 }

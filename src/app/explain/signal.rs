@@ -82,7 +82,7 @@ fn fit(path: &Path, error: &FitError) -> Text {
     }
 }
 
-/// Why there is no spectrum.
+/// Returns why there is no spectrum.
 pub fn spectrum(error: &SpectrumError) -> Text {
     match error {
         SpectrumError::TooFew { samples: 0 } => Text::new("spectrum.no_times"),
@@ -92,7 +92,7 @@ pub fn spectrum(error: &SpectrumError) -> Text {
     }
 }
 
-/// Why a reference tells no deviation over the revolution.
+/// Returns why a reference gives no deviation over the revolution.
 pub fn revolution(error: &RevolutionError) -> Text {
     match error {
         RevolutionError::Periods { found, given } => {
@@ -106,7 +106,7 @@ pub fn revolution(error: &RevolutionError) -> Text {
     }
 }
 
-/// What was found to look at in a signal.
+/// Returns the text of a finding in a signal.
 pub fn diagnosis(finding: &Finding) -> Text {
     let of = |id, which: Channel| {
         Text::new(id).with_text(
@@ -193,7 +193,7 @@ pub fn diagnosis(finding: &Finding) -> Text {
     }
 }
 
-/// What cannot be told of two captures.
+/// Returns why two captures cannot be compared.
 pub fn untold(untold: Untold) -> Text {
     Text::new(match untold {
         Untold::NoEllipseBefore => "compare.no_ellipse_before",
@@ -211,7 +211,7 @@ fn changed(id: &'static str, from: f64, to: f64, decimals: usize) -> Text {
     Text::new(id).with_number("from", from, decimals).with_number("to", to, decimals)
 }
 
-/// What of a signal's parameters is out of its limits.
+/// Returns the text of a parameter of a signal that is out of its limits.
 pub fn finding(finding: &Parameter) -> Text {
     let percent = |id, share: f64| Text::new(id).with_number("percent", share * 100.0, 1);
     match *finding {

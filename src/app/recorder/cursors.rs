@@ -26,7 +26,7 @@ impl Cursor {
     }
 }
 
-/// What the cursors tell of a line, in its unit. What is `None` has no sample to believe.
+/// The readings of the cursors on a line, in its unit. `None` where there is no valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// The raw sample nearest to cursor A.
@@ -57,7 +57,7 @@ pub struct Between {
 }
 
 impl Recorder {
-    /// Where a cursor stands.
+    /// Returns the time of a cursor.
     pub fn cursor(&self, cursor: Cursor) -> Option<Time> {
         match cursor {
             Cursor::A => self.cursors[0],
@@ -70,7 +70,7 @@ impl Recorder {
         Some(self.cursor(Cursor::B)?.nanoseconds_since(self.cursor(Cursor::A)?))
     }
 
-    /// What the cursors tell of a line; `None` without a cursor.
+    /// Returns the readings of the cursors on a line; `None` without a cursor.
     pub fn measure(&self, line: &Series) -> Option<Measured> {
         let [a, b] = self.cursors;
         if a.is_none() && b.is_none() {

@@ -20,7 +20,6 @@ const WAITING: usize = 2;
 /// A table that is being written. When it is dropped before all is handed over, nothing is written.
 #[derive(Debug)]
 pub struct Export {
-    /// Where to.
     pub path: PathBuf,
     number: ExportNumber,
     cancelled: Arc<AtomicBool>,
@@ -35,7 +34,7 @@ pub struct Export {
     until: Option<Time>,
 }
 
-/// Which table it is, of all that were ever written.
+/// The number of a table, unique in the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) struct ExportNumber(u64);
 
@@ -46,17 +45,16 @@ impl ExportNumber {
     }
 }
 
-/// How a table was written.
+/// The result of writing a table.
 #[derive(Debug)]
 pub struct Exported {
     pub(in crate::app) number: ExportNumber,
-    /// Where it is.
     pub path: PathBuf,
     /// Rows in it; `None`: it was given up, and there is none.
     pub rows: Result<Option<u64>, FileError>,
 }
 
-/// How far a group of samples has been handed over.
+/// The position up to which a group of samples has been handed over.
 #[derive(Debug)]
 struct Head {
     group: GroupId,
@@ -70,15 +68,15 @@ struct Column {
     head: usize,
     column: usize,
     factor: f64,
-    /// Where it has no value, that is no fault of the sample.
+    /// A missing value is not an error of the sample.
     derived: bool,
 }
 
-/// What is handed over.
+/// A portion of the samples that are handed over.
 #[derive(Debug)]
 enum Portion {
     Rows(Rows),
-    /// That was all. Without it the table is not whole.
+    /// The end: without it the table is incomplete.
     End,
 }
 
@@ -96,7 +94,7 @@ struct Cell {
     flags: Flags,
 }
 
-/// What remains to be done on a thread: writes the table as its rows come.
+/// The part that runs on a thread: writes the table as its rows arrive.
 pub(in crate::app) struct Writing {
     path: PathBuf,
     number: ExportNumber,

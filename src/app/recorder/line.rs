@@ -13,7 +13,7 @@ pub struct LineId(pub(super) u32);
 pub struct Scale {
     /// The unit's sign or word.
     pub unit: Text,
-    /// How much of it one of the samples' own unit is; not zero.
+    /// Size of one unit of the samples in this unit; not zero.
     pub factor: f64,
     /// Decimals that make sense.
     pub decimals: usize,
@@ -31,11 +31,10 @@ impl Scale {
 pub struct Series {
     /// Its number.
     pub id: LineId,
-    /// What it shows.
     pub name: Text,
     /// Its name as a column of a table.
     pub heading: String,
-    /// Which of the eight colours it has; beyond them they begin again.
+    /// The colour, one of eight; further lines start again.
     pub colour: usize,
     /// It is shown.
     pub shown: bool,
@@ -45,7 +44,7 @@ pub struct Series {
     pub ended: bool,
     /// Its values are calculated from another line: where there is none, that is no fault of the device.
     pub derived: bool,
-    /// What there is to know about it now: why it has no samples.
+    /// The present remark: why there are no samples.
     pub remark: Option<Text>,
     pub(super) group: GroupId,
     pub(super) column: usize,
@@ -95,7 +94,7 @@ impl Series {
         &self.scales
     }
 
-    /// Which of them is shown.
+    /// Returns the index of the scale that is shown.
     pub fn scale_number(&self) -> usize {
         self.scale
     }
@@ -105,7 +104,7 @@ impl Series {
         self.scales.get(self.scale)
     }
 
-    /// The unit that somebody has chosen; `None` where it is the usual one.
+    /// The unit that the user has chosen; `None` for the default.
     pub(super) fn chosen(&self) -> Option<Text> {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
@@ -115,7 +114,7 @@ impl Series {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
 
-    /// How much of the shown unit one of the samples' own unit is.
+    /// Returns the size of one unit of the samples in the shown unit.
     pub fn factor(&self) -> f64 {
         self.scale().map_or(1.0, |scale| scale.factor)
     }

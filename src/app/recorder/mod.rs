@@ -1,6 +1,5 @@
-//! A chart recorder: samples as they come, as lines over time, and what a person does with them. It follows or stands
-//! still, is zoomed, has two cursors, waits for a trigger and gives its samples away as a table. It knows no device and
-//! draws nothing; whose samples these are, in which unit and how many are kept is said by whoever fills it.
+//! A chart recorder: incoming samples as lines over time, with following, zoom, two cursors, a trigger and an export as
+//! a table. It knows no device and draws nothing; the owner sets origin, unit and depth of the samples.
 
 mod cursors;
 mod ended;
@@ -63,7 +62,7 @@ pub enum Action {
     CancelExport,
 }
 
-/// Nanoseconds that stand for the distance of two samples where nobody knows how far they are apart.
+/// Nanoseconds between two samples whose distance is not known.
 pub const SAMPLE: i64 = 1_000;
 
 /// Samples that are taken together.
@@ -99,7 +98,7 @@ impl Group {
         }
     }
 
-    /// Where there is nothing yet, the first sample goes on from nothing anyway.
+    /// Marks a gap before the next sample, unless there is none yet.
     fn break_before_next(&mut self) {
         if !self.history.all().is_empty() {
             self.history.break_before_next();
@@ -130,8 +129,8 @@ impl Recorder {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
 
-    /// The same for samples of which nobody knows when they were taken: their times are their numbers times
-    /// [`SAMPLE`]; so many of them are shown while it follows.
+    /// Creates a recorder for samples without times: time is the number of the sample times [`SAMPLE`], and this many
+    /// samples are shown while following.
     pub fn counting(samples: i64) -> Self {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }

@@ -4,7 +4,7 @@ use super::{GroupId, LineId, Recorder, TimeWindow};
 use crate::analysis::Time;
 use crate::analysis::history::{Flags, Sample};
 
-/// What a trigger waits for.
+/// The condition of a trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// A sample at the level or above it.
@@ -29,7 +29,7 @@ impl When {
     }
 }
 
-/// What to wait for, and what to show then.
+/// A trigger: its condition, and the range shown around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     /// In which line.
@@ -44,7 +44,7 @@ pub struct Trigger {
     pub repeat: bool,
 }
 
-/// How far a trigger is.
+/// The state of a trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriggerState {
     /// It waits.
@@ -61,7 +61,7 @@ pub enum TriggerState {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     trigger: Trigger,
-    /// What to wait for, and the level, in the samples' own unit.
+    /// The condition and the level, in the unit of the samples.
     when: When,
     level: f64,
     state: TriggerState,

@@ -1,4 +1,4 @@
-//! Which stretch of time is shown.
+//! The range of time that is shown.
 
 use super::Recorder;
 use crate::analysis::Time;
@@ -8,7 +8,7 @@ const SHORTEST: i64 = 100;
 /// Nanoseconds that a view never becomes longer than: a hundred days.
 const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
 
-/// Which stretch of time is shown.
+/// The range of time that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeWindow {
     /// The newest samples, over this many nanoseconds.
@@ -32,7 +32,7 @@ impl Default for TimeWindow {
 }
 
 impl Recorder {
-    /// How it is looked at.
+    /// Returns the range of time that is shown.
     pub fn view(&self) -> TimeWindow {
         self.view
     }

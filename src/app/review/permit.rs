@@ -1,8 +1,8 @@
-//! What a person may allow a write beyond the usual.
+//! Permits that the user may give for a write.
 
 use crate::profile::RestoreOptions;
 
-/// What the user may allow beyond the usual.
+/// A permit that the user may give for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Permit {
     /// To write what was made for another device.
@@ -20,7 +20,6 @@ pub enum Permit {
 /// Something that the user may allow beyond the usual, and that makes another plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Toggle {
-    /// What.
     pub permit: Permit,
     /// It is allowed.
     pub is_on: bool,
@@ -41,7 +40,7 @@ impl Permit {
         }
     }
 
-    /// What it means, as a row of the texts.
+    /// Returns the id of its explanation.
     pub const fn hint(self) -> Option<&'static str> {
         match self {
             Permit::OtherDevice | Permit::Copy(_) => None,

@@ -10,19 +10,19 @@ use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::Document;
 use crate::store::FileError;
 
-/// What is told where a profile could not be saved.
+/// Text id of the notice that a profile could not be saved.
 const NOT_SAVED: &str = "session.not_saved";
 
-/// What is kept of a device's edits.
+/// The persistent edits of a device.
 type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
-/// Whoever is shown in a session and can be edited.
+/// A session with edits.
 pub trait Drafted: HasSession {
     /// The type and the serial number of the device that was read: another type may have the same number. An empty number
     /// where the device does not say who it is; `None` where nothing has been read.
     fn type_and_serial(&self) -> Option<(String, String)>;
 
-    /// What is edited.
+    /// Returns the edits.
     fn edited(&self) -> Edits<Self>;
 
     /// Edits of an earlier time; those that make no sense any more are left out.

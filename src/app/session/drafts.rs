@@ -15,10 +15,10 @@ use crate::app::studio::SessionId;
 use crate::app::{Severity, Text, explain};
 use crate::store::{Claim, Drafts, FileError};
 
-/// What is told where edits of an earlier time stand again.
+/// Text id of the notice that edits of an earlier session were restored.
 pub(super) const DRAFT_BACK: &str = "session.draft_back";
 
-/// How long another session may take to give up its claim: one that was closed still writes.
+/// How long another session may take to release its claim: a closed one still writes.
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
@@ -41,7 +41,7 @@ impl DraftKey {
     }
 }
 
-/// What tasks come back with about drafts.
+/// The results of tasks about drafts.
 pub enum DraftDone {
     /// Edits of an earlier time.
     Looked {
@@ -56,12 +56,11 @@ pub enum DraftDone {
     Kept {
         /// Whose it is.
         key: DraftKey,
-        /// How it went.
         result: Result<(), FileError>,
     },
 }
 
-/// What is kept of edits: a list.
+/// Persistent edits: a list.
 pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
     /// There is nothing to keep.
     fn is_nothing(&self) -> bool;
@@ -73,11 +72,11 @@ impl<T: Serialize + DeserializeOwned + Clone + PartialEq + Send + 'static> Draft
     }
 }
 
-/// How it stands with the draft on disk.
+/// The state of the draft on disk.
 #[derive(Debug)]
 pub(crate) struct Drafting<E> {
     session: SessionId,
-    /// What was last handed over to be kept.
+    /// The edits that were handed over last.
     kept: E,
     /// A task is at it.
     busy: bool,
@@ -87,7 +86,7 @@ pub(crate) struct Drafting<E> {
     looked: bool,
     /// The right to keep it; without, it belongs to another window or session.
     claim: Option<Arc<Claim>>,
-    /// That it cannot be kept has been said.
+    /// The failure to keep it has been reported.
     told: bool,
 }
 
@@ -113,7 +112,7 @@ impl<E: DraftEdits> Drafting<E> {
         self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
 
-    /// Begins anew: what was just saved has no edits, those of an earlier time are for what it replaced.
+    /// Starts again: the saved profile has no edits, and earlier ones belong to the file it replaced.
     pub(in crate::app) fn begin(&mut self, key: DraftKey, services: &Services) {
         self.claim(key, services, |drafts, key| drafts.remove(&key.kind, &key.name).map(|()| None));
     }

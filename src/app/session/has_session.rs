@@ -2,12 +2,12 @@
 
 use super::{Kind, Session};
 
-/// Whoever is shown in a session. What is the same for all rests on this.
+/// A device with a session.
 pub trait HasSession {
     /// Its kind.
     type Device: Kind;
 
-    /// What every session has.
+    /// Returns the session.
     fn session(&self) -> &Session<Self::Device>;
 
     /// The same, to be changed.

@@ -1,4 +1,4 @@
-//! What a kind of device tells the studio of its types, so that opening, leaving and running are the same for all.
+//! The associated types and functions of a kind of device, so that opening, leaving and running are the same for all.
 
 #![warn(missing_docs)]
 
@@ -15,10 +15,10 @@ pub trait Kind: Device + Sized {
     /// Its name in profiles.
     const KIND: &'static str;
 
-    /// What is kept of its edits over a crash.
+    /// The edits that are kept over a crash.
     type Edits: DraftEdits;
 
-    /// What is kept of a session beside its thread.
+    /// The part of a session that stays outside its thread.
     type SessionHandle: Send;
 
     /// A write on its way: the [`Review`](crate::app::review::Review) of a kind with a memory.
@@ -33,7 +33,7 @@ pub trait Kind: Device + Sized {
     /// The link cannot be opened, or says what is not for such a device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
-    /// Why a link cannot be opened, and what to do.
+    /// Returns why a link cannot be opened, and what to do.
     fn open_error(error: &OpenError) -> Text {
         explain::open(error)
     }
@@ -57,18 +57,18 @@ pub trait Kind: Device + Sized {
     /// A step of a job in words.
     fn doing(what: &Self::JobStep) -> Text;
 
-    /// What a job that writes came to; `None` of any other.
+    /// Returns the result of a writing job; `None` for any other.
     fn told(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
 
-    /// Why a job ended early, and what to do.
+    /// Returns why a job ended early, and what to do.
     fn why(error: &Self::Error) -> Vec<Text>;
 
     /// The wire itself failed, so that nothing more can be asked over it: why.
     fn loss(error: &Self::Error) -> Option<Text>;
 
-    /// What an event of a session that was let go says about the end of its job.
+    /// Returns the last message about the job in an event of a released session.
     fn last_words(event: &Event<Self>) -> Option<LastWords> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
@@ -86,7 +86,7 @@ pub trait Kind: Device + Sized {
     }
 }
 
-/// How the last job of a session that was let go ended.
+/// How the last job of a released session ended.
 pub struct LastWords {
     pub(in crate::app) job: JobId,
     pub(in crate::app) end: JobEnd,

@@ -21,7 +21,7 @@ type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewed>::W
 /// A plan that a person consented to.
 pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewed>::Prepared>;
 
-/// Whoever has a memory.
+/// A device whose memory can be written.
 pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// A write on its way.
     fn review(&self) -> Option<&Review<Self::Device>> {
@@ -46,10 +46,10 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Returns the change that writes the edits; `None` where there are none.
     fn edited_change(&self) -> Option<Change<Self>>;
 
-    /// What is wanted was made for another device than this one.
+    /// Returns whether a change was made for another device than this one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
 
-    /// What is wanted was made for another type of device than this one, where that needs a permit of its own.
+    /// Returns whether a change was made for another type of device, where that needs its own permit.
     fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
         false
     }
@@ -69,17 +69,17 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// A review is about to stand over it.
     fn hands_off(&mut self) {}
 
-    /// Why a change cannot be, as far as that is known before the device is asked.
+    /// Returns why a change is not possible, as far as that is known without asking the device.
     fn objection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
 
-    /// Why a plan cannot be carried out.
+    /// Returns why a plan cannot be carried out.
     fn objection_to(&self, _prepared: &Prepared<Self>) -> Option<Text> {
         None
     }
 
-    /// What the plan that is being carried out changes is to be read again, however that ends.
+    /// Marks the values that the running plan changes to be read again, however it ends.
     fn reads_again(&mut self) {}
 
     /// The plan that is being carried out is done.
@@ -131,7 +131,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Whether it is written although the device counts as worn.
+    /// Sets whether to write although the device is worn.
     fn force_wear(&mut self, force: bool) {
         if let Some(review) = self.review_mut() {
             review.force_wear = force;

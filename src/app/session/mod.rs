@@ -1,5 +1,5 @@
-//! What every device on the desk has, whatever its kind: where its data come from, how it stands with the connection, its
-//! line, what has passed over it, its backups and writes. It knows no device; what a kind adds stands in its own room.
+//! The parts that every session has, whatever its device: source, connection, line, trace, backups and writes. It knows
+//! no device; the additions of a kind are in its own folder.
 
 mod drafted;
 mod drafts;
@@ -41,7 +41,7 @@ use crate::link::{LinkUrl, Scheme};
 use crate::profile::Document;
 use crate::worker::SubmitError;
 
-/// Where the data come from.
+/// The source of the data.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A device at the end of a link.
@@ -52,7 +52,7 @@ pub enum Source {
         path: PathBuf,
         /// The same for every way that leads to it.
         key: String,
-        /// What is in it, without the edits.
+        /// The document without the edits.
         document: Box<Document>,
         /// As it is written there: comments, order and line ends are its person's.
         text: String,
@@ -74,7 +74,7 @@ impl Source {
     }
 }
 
-/// How it stands with the connection.
+/// The state of the connection.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Phase {
     /// The link is being opened.
@@ -91,7 +91,7 @@ pub enum Phase {
 
 /// A link that is being opened.
 pub(crate) struct Opening {
-    /// Which attempt of the session it is.
+    /// The attempt to connect.
     pub(crate) attempt: Option<u32>,
     /// Ends when it is over.
     pub(crate) over: crossbeam_channel::Receiver<()>,
@@ -109,7 +109,7 @@ pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
-    /// How it stands with the draft of its edits.
+    /// The state of the draft of its edits.
     pub(crate) drafting: Drafting<D::Edits>,
     /// A write on its way.
     pub review: Option<D::Review>,
@@ -247,7 +247,7 @@ impl<D: Kind> Session<D> {
         false
     }
 
-    /// Why no plan can be made now; `None`: one can.
+    /// Returns why no plan can be made now; `None` if one can.
     pub(crate) fn why_not_ready(&self) -> Option<Text> {
         match &self.phase {
             _ if self.is_ready() => None,

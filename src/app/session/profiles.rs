@@ -28,7 +28,7 @@ impl SessionState {
         services.file_question = Some(FileQuestion::Save { session: self.id, suggested: self.suggested_file() });
     }
 
-    /// What the device has was read for a file; `edits` are not written to it, and `remarks` say what else is not in there.
+    /// Handles values read for a file; `edits` are not written to it, and `remarks` name what else is missing from it.
     pub fn write_read(&mut self, body: Body, edits: Option<usize>, remarks: Vec<Text>, services: &mut Services) {
         let Some(path) = self.save_to.take() else { return };
         let without = edits.map(|edits| Text::new("session.saved_without").with("count", edits));

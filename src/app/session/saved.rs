@@ -1,4 +1,4 @@
-//! What a memory holds, as profiles: saved, restored, and kept as backups.
+//! The content of a memory as a profile: saved, restored, and kept as backups.
 
 use std::path::{Path, PathBuf};
 
@@ -13,17 +13,17 @@ use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
-/// What was read as a profile, with what is to be said of it; or what is missing for one, a text each.
+/// A profile of what was read, with remarks; or a text for each missing part.
 pub type Known = Result<(Body, Vec<Text>), Vec<Text>>;
 
-/// That so many edits are not in what was read.
+/// Returns the remark that a number of edits is not included.
 pub fn without_edits(count: usize) -> Option<Text> {
     (count > 0).then(|| Text::new("session.saved_without").with("count", count))
 }
 
-/// Whoever can be saved and restored.
+/// A device that can be saved and restored.
 pub trait Saved: WithMemory {
-    /// How the logbook knows it; `None` before it was read.
+    /// Returns the key of the logbook; `None` before the device was read.
     fn key(&self) -> Option<DeviceKey>;
 
     /// The job that reads everything that can be restored.
@@ -32,13 +32,13 @@ pub trait Saved: WithMemory {
     /// The profile as the user wants it, where this is one.
     fn wanted_body(&self) -> Option<Body>;
 
-    /// What was read of a device that cannot be read now, and what is to be said of it; `None` where nothing was.
+    /// Returns the profile of what was read earlier, with remarks; `None` if nothing was.
     ///
     /// # Errors
     /// What a profile needs beyond what was read, a text each.
     fn known_body(&self) -> Option<Known>;
 
-    /// What was read is saved: the device does not answer any more.
+    /// Saves what was read earlier: the device no longer answers.
     fn saves_what_was_read(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.known_body().is_some()
     }
@@ -49,7 +49,7 @@ pub trait Saved: WithMemory {
     /// It is of another kind of device.
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
 
-    /// What is to be said of the profile as it is edited when it is saved.
+    /// Returns the remarks about the edited profile when it is saved.
     fn remarks(&self) -> Vec<Text> {
         Vec::new()
     }

@@ -29,12 +29,12 @@ impl ProfileFile {
     }
 }
 
-/// What a file has to say before it is written.
+/// The expected state of a file before it is written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guard {
-    /// Which file, whatever way leads to it.
+    /// Key of the file, whatever path leads to it.
     pub key: String,
-    /// What it said when it was opened.
+    /// Its content when it was opened.
     pub text: String,
 }
 
@@ -45,15 +45,14 @@ pub struct Saving {
     pub session: SessionId,
     /// The file.
     pub path: PathBuf,
-    /// What is to be in it.
     pub document: Box<Document>,
-    /// What is not in it.
+    /// What is missing from it.
     pub remarks: Vec<Text>,
     /// The file that is open; another one is replaced as it is.
     pub opened: Option<Guard>,
     /// A person knows that comments go.
     pub may_lose: bool,
-    /// What is edited is what others and this one agreed upon, and no edit any more.
+    /// The edits were merged with those of others and are no longer edits.
     pub is_merged: bool,
 }
 
@@ -85,7 +84,7 @@ impl Saving {
     }
 }
 
-/// What stands in a file that is not what was opened.
+/// The content of a file that differs from what was opened.
 #[derive(Debug)]
 pub(in crate::app) struct Found {
     /// As it is written; empty where it cannot be read.

@@ -1,5 +1,5 @@
-//! What a line tells: samples, results of jobs, why one ended early, and its loss. What is made of a result is a kind's own
-//! matter; how the end of a job is told is the same for all.
+//! Events of a line: samples, results of jobs, early ends, and loss. The kind handles results; the end of a job is
+//! reported the same way for all.
 
 #![warn(missing_docs)]
 
@@ -17,7 +17,7 @@ type DeviceMessage<T> = <<T as HasSession>::Device as Device>::DeviceMessage;
 type Sample<T> = <<T as HasSession>::Device as Device>::Sample;
 type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
-/// How what was asked for on a line came to an early end.
+/// How a request on a line ended early.
 pub enum EarlyEnd<'e, E> {
     /// As the user wished.
     Cancelled(&'e E),
@@ -27,7 +27,7 @@ pub enum EarlyEnd<'e, E> {
     Lost,
 }
 
-/// Whoever is at the end of a line.
+/// A device at the end of a line.
 pub trait SessionEvents: HasSession {
     /// Samples, and how many were dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
@@ -35,16 +35,16 @@ pub trait SessionEvents: HasSession {
     /// Frames that have passed, and how many are missing before them.
     fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64);
 
-    /// What the device says on the way.
+    /// Handles a message that the device sent meanwhile.
     fn remarked(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
     /// A job is done.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
-    /// The link is open, and nobody answers.
+    /// Returns whether the error means that the link is open but the device is silent.
     fn is_silence(&self, error: &Error<Self>) -> bool;
 
-    /// What was asked for on the line does not come any more.
+    /// Forgets pending requests: their replies will not come.
     fn forget_asked(&mut self);
 
     /// The line is about to be let go.
@@ -58,7 +58,7 @@ pub trait SessionEvents: HasSession {
         true
     }
 
-    /// What was asked for has ended early; true where that stands where it was asked for.
+    /// Handles the early end of a request; returns true if the review reports it.
     fn cut_off(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }

@@ -1,4 +1,4 @@
-//! What is the same of every session, whatever its device.
+//! The state of every session, whatever its device.
 
 use std::path::PathBuf;
 
@@ -9,19 +9,15 @@ use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text};
 use crate::store::{Backup, Entry, StatusEntry};
 
-/// What is the same of every session, whatever its device: who it is, where its data come from, how it stands with the
-/// connection.
+/// The state of every session, whatever its device: its identity, the source of its data, the connection.
 pub struct SessionState {
     /// Its number in the studio.
     pub id: SessionId,
-    /// Where the data come from.
     pub source: Source,
-    /// How it stands with the connection.
     pub phase: Phase,
     pub(crate) opening: Option<Opening>,
-    /// What the device calls itself, once it is known.
+    /// The title of the device, once known.
     pub title: Option<String>,
-    /// What has passed over the line.
     pub trace: TraceLog,
     /// Backups, or why there are none.
     pub backups: Option<Result<Vec<Backup>, Text>>,
@@ -33,7 +29,7 @@ pub struct SessionState {
     pub statuses: Vec<StatusEntry>,
     /// Nothing has been read since the link was opened.
     pub just_connected: bool,
-    /// Where the profile goes that is being read.
+    /// The file for the profile that is being read.
     pub(crate) save_to: Option<PathBuf>,
     /// A profile is on its way into a file: what that says next is not known before it is there.
     pub(crate) is_saving: bool,
@@ -63,7 +59,7 @@ impl SessionState {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
 
-    /// Where the data come from, in words that may be seen.
+    /// Returns the source of the data, without secrets.
     pub fn place(&self) -> String {
         match &self.source {
             Source::Link(url) => without_codes(url),
@@ -119,7 +115,7 @@ impl SessionState {
         self.statuses.clear();
     }
 
-    /// What was asked for cannot be.
+    /// Reports that a request is not possible.
     pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
         services.tell(Severity::Error, vec![why], Some(&self.name()));
     }

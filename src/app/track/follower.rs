@@ -10,7 +10,6 @@ const WINDOW: i64 = 250_000_000;
 /// Makes positions that go on from positions that go round.
 #[derive(Debug)]
 pub(super) struct Follower {
-    /// What they mean.
     pub(super) meaning: Meaning,
     unwrap: Unwrap,
     motion: Motion,
@@ -64,7 +63,7 @@ impl Follower {
         (self.last, self.has_missed) = (Some((time, steps)), false);
     }
 
-    /// How the next position goes on from the last is not known.
+    /// Records that the next position does not continue the last one.
     pub(super) fn lose_track(&mut self) {
         self.unwrap.gap();
         self.motion.reset();

@@ -1,9 +1,9 @@
-//! What positions mean: in which range they go round, how much a step is, and the units in which they are seen.
+//! The meaning of positions: their range, the size of a step, and their units.
 
 use crate::app::Text;
 use crate::app::recorder::{GroupId, Scale, Series};
 
-/// What the positions of a device are.
+/// The meaning of the positions of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meaning {
     /// Positions from one zero to the next, after which they go round; `None` for a linear one.
@@ -12,12 +12,12 @@ pub struct Meaning {
     pub scales: [Vec<Scale>; 3],
     /// It does not turn.
     pub(in crate::app) is_linear: bool,
-    /// How much a step is: of a turn, or of a millimetre. `None` where nobody knows.
+    /// Size of a step, in turns or millimetres; `None` if not known.
     step: Option<f64>,
 }
 
 impl Meaning {
-    /// Of steps whose place in a revolution nobody knows.
+    /// Creates the meaning of steps without a known place in a revolution.
     pub fn of_steps(range: Option<i64>) -> Self {
         let scales = [
             vec![Scale::new("unit.steps", 1.0, 0)],

@@ -7,12 +7,12 @@ use crate::app::Text;
 use crate::app::recorder::{GroupId, Series};
 use crate::units::Moment;
 
-/// What can be watched.
+/// A value that can be watched.
 pub trait Watchable: Clone + PartialEq {
     /// Its values are whole numbers.
     fn is_whole(&self) -> bool;
 
-    /// What it is called, and in which units it is seen.
+    /// Returns its name and units.
     fn line(&self, group: GroupId) -> Series;
 
     /// Samples of this go on as samples of the other, which may be seen in other units.
@@ -41,6 +41,6 @@ pub struct Watching {
     pub value: Option<Value>,
     /// The device warned with it.
     pub is_warned: bool,
-    /// Why there will be none, however long one waits.
+    /// Why there will never be any.
     pub never: Option<Text>,
 }

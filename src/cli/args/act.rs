@@ -10,9 +10,9 @@ use crate::cli::{Failure, Result};
 pub struct Do {
     /// The kind of device.
     pub(in crate::cli) device: String,
-    /// What to do.
+    /// Action to carry out
     pub(crate) action: String,
-    /// What the action takes, as said there.
+    /// Arguments of the action
     #[arg(allow_negative_numbers = true)]
     pub(crate) arguments: Vec<String>,
     #[command(flatten)]

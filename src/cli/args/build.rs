@@ -119,7 +119,7 @@ fn actions(commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(values.collect::<Vec<_>>())
 }
 
-/// Which commands are for which kinds of device.
+/// Returns which commands exist for which kinds of device.
 fn summary(commands: Commands) -> String {
     let devices = commands.devices();
     let list = |is: &dyn Fn(&dyn DeviceCommands) -> bool| {

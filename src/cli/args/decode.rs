@@ -1,4 +1,4 @@
-//! What can be written behind `decode`.
+//! The arguments of `decode`.
 
 use clap::{Args, ValueEnum};
 
@@ -23,7 +23,7 @@ pub(crate) struct DirectionOption {
     pub(crate) direction: Option<Direction>,
 }
 
-/// Which way a word went.
+/// Direction of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Direction {
     /// From the encoder.

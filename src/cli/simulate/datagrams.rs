@@ -12,7 +12,7 @@ use super::PATIENCE;
 use crate::link::{Clock, RealClock, wake_before_others};
 use crate::sim::DatagramDevice;
 
-/// How long the sender sleeps at most: a packet is due no sooner behind the request that asks for it.
+/// The longest sleep of the sender: no packet is due sooner after the request for it.
 const REST: Duration = Duration::from_millis(4);
 /// Ports that are tried where any will do.
 const TRIES: usize = 50;

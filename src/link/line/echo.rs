@@ -2,7 +2,7 @@
 
 use crate::parameter::Words;
 
-/// Whether the adapter gives our own bytes back.
+/// Whether the adapter echoes the bytes that are sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
     /// Not known yet: learned with the first exchange.
@@ -17,7 +17,7 @@ impl Echo {
     /// The values of `echo=`.
     pub(crate) const WORDS: Words<Echo> = Words(&[("auto", Echo::Unknown), ("on", Echo::On), ("off", Echo::Off)]);
 
-    /// What has come behind the echo of `sent`; `None` while it may still be the echo.
+    /// Returns the bytes after the echo of `sent`; `None` while it may still be the echo.
     pub(crate) fn strip<'l>(self, line: &'l [u8], sent: &[u8]) -> Option<&'l [u8]> {
         match self {
             Echo::Off => Some(line),
@@ -30,7 +30,7 @@ impl Echo {
         }
     }
 
-    /// What the first exchange with a right answer has taught.
+    /// Learns from the first exchange with a valid answer.
     pub(crate) fn learn(&mut self, echo_heard: bool) {
         if *self == Echo::Unknown {
             *self = if echo_heard { Echo::On } else { Echo::Off };

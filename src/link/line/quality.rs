@@ -1,9 +1,9 @@
-//! How good a line is: counts, and how long replies take.
+//! The quality of a line: counters, and reply times.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// How good a line is, counted since the session began.
+/// The quality of a line, counted since the session began.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LineQuality {
     /// Requests that were sent, repeated ones included.
@@ -18,7 +18,7 @@ pub struct LineQuality {
     pub silent: u64,
     /// Replies that came after their time.
     pub late: u64,
-    /// How long the newest replies took, from the first byte of the request to that of the reply.
+    /// The newest reply times, from the first byte of the request to that of the reply.
     answers: VecDeque<Duration>,
 }
 
@@ -31,7 +31,7 @@ impl LineQuality {
         self.troubles() != [0; 4]
     }
 
-    /// What changes when something goes wrong.
+    /// Returns the counters of errors.
     pub fn troubles(&self) -> [u64; 4] {
         [self.retries, self.damaged, self.silent, self.late]
     }

@@ -1,4 +1,4 @@
-//! What is known about a line, from one job to the next.
+//! The state of a line that is kept between jobs.
 
 use std::time::Duration;
 
@@ -9,19 +9,19 @@ use crate::units::Moment;
 /// No wire is slower than this.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
-/// How much later than the protocol's worst case a reply may come.
+/// How much later than the protocol's worst case a reply may arrive.
 pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
-/// What is known about a line, from one job to the next.
+/// The state of a line that is kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// How much longer than the protocol's worst case a reply may take: USB adapters and device servers deliver late.
+    /// How much later than the protocol's worst case a reply may arrive: USB adapters and device servers deliver late.
     pub margin: Duration,
     /// Whether the adapter echoes.
     pub echo: Echo,
     /// Exchanges that failed and had to be repeated or given up, since the session began.
     pub damaged: u64,
-    /// How good it is.
+    /// The quality of the line.
     pub quality: LineQuality,
     /// No request before this moment.
     pub(crate) quiet_until: Moment,
@@ -34,7 +34,7 @@ pub struct LineState {
 }
 
 impl LineState {
-    /// A line that nobody has used.
+    /// Creates the state of an unused line.
     pub(crate) fn new(margin: Duration) -> Self {
         LineState {
             margin,
@@ -77,7 +77,7 @@ impl LineState {
         self.quality.answered_after(at.since(self.last_sent));
     }
 
-    /// What came makes sense: patience begins anew.
+    /// Resets the patience after a valid reply.
     pub(crate) fn recovered(&mut self) {
         self.troubled_since = None;
     }

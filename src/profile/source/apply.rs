@@ -39,7 +39,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     }
 }
 
-/// What stands at a place of a text, and the steps to what stands before it, the nearest first.
+/// Finds the value at a path of a text, with the steps to its predecessors, the nearest first.
 pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)> {
     let root = read(text)?;
     let (last, way) = path.split_last()?;
@@ -178,7 +178,7 @@ fn one_line(value: &str) -> Option<String> {
     plain.then(|| value.lines().map(str::trim).collect::<Vec<_>>().join(" "))
 }
 
-/// How the lines of a text end.
+/// Returns the line ending of a text.
 fn line_end(text: &str) -> &'static str {
     if text.contains("\r\n") { "\r\n" } else { "\n" }
 }

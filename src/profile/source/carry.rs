@@ -1,4 +1,4 @@
-//! What changed between two texts of this program, carried into the text of a person.
+//! Changes between two texts of this program, carried over into the user's text.
 
 use super::apply::{apply, value_at};
 use super::changes::{Change, changes};
@@ -24,7 +24,7 @@ pub(in crate::profile) fn carry(text: &str, before: &str, after: &str) -> Option
     Some(Carried { text: carried, lost })
 }
 
-/// What has no place by itself is put there with what it stands in.
+/// Replaces the enclosing value where a part cannot be placed by itself.
 fn as_a_whole(text: &str, change: &Change, after: &str) -> Option<String> {
     (1..change.path.len()).rev().find_map(|length| {
         let path = change.path.get(..length)?.to_vec();

@@ -1,4 +1,4 @@
-//! What differs between two texts that this program wrote, entry by entry.
+//! The differences between two texts that this program wrote, entry by entry.
 
 use std::fmt;
 
@@ -24,13 +24,13 @@ pub enum Step {
 /// Something that is not the same in two texts.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Change {
-    /// Where.
+    /// The path.
     pub path: Vec<Step>,
-    /// What stands there on the left, as it is written; `None`: nothing does.
+    /// The source text on the left; `None` if there is none.
     pub from: Option<String>,
-    /// What stands there on the right; `None`: nothing does.
+    /// The source text on the right; `None` if there is none.
     pub to: Option<String>,
-    /// What stands before it in the same structure or list on the right, the nearest first.
+    /// The predecessors in the same structure or list on the right, the nearest first.
     pub behind: Vec<Step>,
     /// The comment behind it, on the left and on the right.
     #[serde(default)]
@@ -61,7 +61,7 @@ impl fmt::Display for Step {
     }
 }
 
-/// What is to be changed in `left` to make it `right`; `None` where one of them cannot be followed.
+/// Returns the changes that turn `left` into `right`; `None` if one of them cannot be parsed here.
 pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>> {
     let (from, to) = (read(left)?, read(right)?);
     let mut walk = Walk { left, right, path: Vec::new(), found: Vec::new() };

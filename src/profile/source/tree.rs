@@ -1,5 +1,5 @@
-//! RON with the places of its parts. It takes what the `ron` crate has read already, and gives nothing where it cannot
-//! follow: then the text is written anew.
+//! RON with the locations of its parts. It parses text that the `ron` crate has already accepted, and returns nothing
+//! where it cannot follow; the text is then written afresh.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ pub(super) struct Node {
     pub(super) kind: Kind,
 }
 
-/// What a value is made of.
+/// The structure of a value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Kind {
     /// A number, a text, a word; also a tuple.
@@ -25,7 +25,7 @@ pub(super) enum Kind {
 /// An element of a list, or an entry of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Part {
-    /// What stands before the colon.
+    /// The text before the colon.
     pub(super) key: Option<Range<usize>>,
     pub(super) value: Node,
     /// Behind its value, or behind the comma where there is one.
@@ -35,7 +35,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Where it begins.
+    /// Returns where it begins.
     pub(super) fn start(&self) -> usize {
         self.key.as_ref().map_or(self.value.span.start, |key| key.start)
     }
@@ -206,7 +206,7 @@ impl<'t> Reader<'t> {
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })
     }
 
-    /// What stands in `Some(…)`.
+    /// Parses the value inside `Some(…)`.
     fn wrapped(&mut self) -> Option<Node> {
         self.takes("(");
         self.skip();
@@ -218,7 +218,7 @@ impl<'t> Reader<'t> {
         self.takes(")").then_some(node)
     }
 
-    /// What stands between brackets, and whether it has keys.
+    /// Parses the values between brackets, and returns whether they have keys.
     fn parts(&mut self, open: char, close: char) -> Option<(Vec<Part>, bool)> {
         self.at += open.len_utf8();
         let (mut parts, mut named) = (Vec::new(), false);

@@ -1,4 +1,4 @@
-//! What can be written behind `analyse`.
+//! The arguments of `analyse`.
 
 use std::path::PathBuf;
 

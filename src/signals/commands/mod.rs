@@ -77,7 +77,7 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
     Ok(Done::Well)
 }
 
-/// What is to be known of how the table was read.
+/// Prints remarks on how the table was read.
 fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     if let Some(clock) = layout.clock {
         let text = TEXTS.text("columns.clock").with("start", clock.start_s).with("increment", clock.increment_s);

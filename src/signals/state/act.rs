@@ -158,7 +158,7 @@ impl Signals {
         &self.source
     }
 
-    /// What is known about the capture that it is compared with.
+    /// Returns the results of the capture that this one is compared with.
     pub fn comparison(&self) -> Option<&Arc<Results>> {
         self.comparison.as_ref()
     }
@@ -168,12 +168,12 @@ impl Signals {
         self.table.as_ref()
     }
 
-    /// Why the last table could not be read; what was shown before is still shown.
+    /// Returns why the last table could not be read; the previous capture is still shown.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
 
-    /// What is being read.
+    /// Returns the reading in progress.
     pub fn reading(&self) -> Option<&Reading> {
         self.reading.as_ref()
     }
@@ -183,12 +183,12 @@ impl Signals {
         &self.scope
     }
 
-    /// What there is to look at, the worst first.
+    /// Returns the findings, the worst first.
     pub fn findings(&self) -> &[Finding] {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
-    /// What changed since the capture that it is compared with, both judged by the same limits.
+    /// Returns the changes since the capture that this one is compared with, both judged by the same limits.
     pub fn changes(&self) -> Option<Changes> {
         let (kept, own) = (self.comparison.as_ref()?, self.measurement.as_ref()?);
         let before = kept.diagnosis.by_limits(kept.analysis.as_ref(), kept.levels_v, &own.judge.family.limits());
@@ -204,7 +204,7 @@ impl Signals {
         }
     }
 
-    /// What is being read will not come any more.
+    /// Forgets the reading in progress: its result will not come.
     pub(super) fn forget_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);

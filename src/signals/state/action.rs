@@ -1,4 +1,4 @@
-//! What a person asks of the Signals tab, and what its tasks come back with.
+//! The actions of the Signals tab, and the results of its tasks.
 
 use std::path::PathBuf;
 
@@ -42,27 +42,24 @@ pub enum Action {
     Synchronise(synchronise::Action),
 }
 
-/// What tasks come back with.
+/// The results of tasks.
 pub enum Done {
     /// A capture was read, or not.
     Read {
-        /// Which attempt: only the latest counts.
+        /// Number of the attempt: only the latest counts.
         number: u32,
-        /// What came of it.
         read: Box<Read>,
     },
     /// The capture that is shown was judged by something else.
     Judged {
-        /// Which attempt: only the latest counts.
+        /// Number of the attempt: only the latest counts.
         number: u32,
-        /// What came of it.
         measurement: Box<Measurement>,
     },
     /// The newest samples of the source were measured.
     Measured {
         /// Since which start: only the latest counts.
         number: u32,
-        /// What came of it.
         measurement: Box<Measurement>,
     },
     /// A task could not be started, or broke off.
@@ -71,18 +68,18 @@ pub enum Done {
     LetGo,
 }
 
-/// What did not come.
+/// A task that failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Failed {
     /// The capture of this attempt.
     Read(u32),
-    /// What is shown, judged by something else.
+    /// Judging the capture that is shown again.
     Judge,
     /// The measurement of this start.
     Measure(u32),
 }
 
-/// What came of reading a table.
+/// The result of reading a table.
 pub struct Read {
     /// Its first lines, and how they are understood.
     pub(super) table: Table,

@@ -59,7 +59,7 @@ pub(super) enum Feed {
     /// An adapter.
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
-        /// Who it is and how it samples, as soon as it is known.
+        /// The adapter and its actual setting, once known.
         streaming: Arc<OnceLock<Streaming>>,
         url: LinkUrl,
     },
@@ -130,7 +130,7 @@ impl Feed {
         Ok(Feed::Virtual(spawn(producer, clock, services)?))
     }
 
-    /// What has come since the last time.
+    /// Returns the batches since the last call.
     pub(super) fn take(&self) -> Vec<Batch<Channels>> {
         match self {
             Feed::Virtual(stream) => stream.take().into_iter().map(channels).collect(),
@@ -154,7 +154,7 @@ impl Feed {
         }
     }
 
-    /// Why it has ended by itself.
+    /// Returns why it ended by itself.
     pub(super) fn why_ended(&self) -> Text {
         match self {
             Feed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),
@@ -166,7 +166,7 @@ impl Feed {
         }
     }
 
-    /// Who samples and how; `None` for the virtual encoder, and until it is known.
+    /// Returns the adapter and its actual setting; `None` for the virtual encoder, and until it is known.
     pub(super) fn streaming(&self) -> Option<&Streaming> {
         match self {
             Feed::Virtual(_) => None,
@@ -198,7 +198,7 @@ impl Feed {
         }
     }
 
-    /// Lets it go: an adapter is told to stop, for which nobody here waits.
+    /// Ends it: an adapter is stopped without waiting for it.
     pub(super) fn let_go(self, services: &mut Services) {
         if let Feed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();

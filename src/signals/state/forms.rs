@@ -1,4 +1,4 @@
-//! What a person types in the Signals tab, read. An entry that cannot be used says what could be.
+//! Parses the entries of the Signals tab. An entry that cannot be used is answered with the possible values.
 
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};

@@ -26,13 +26,13 @@ pub struct Point {
     pub speed_rpm: f64,
     /// Frequency of the signals in hertz.
     pub frequency_hz: f64,
-    /// What the filter does there.
+    /// Response of the filter at that point.
     pub response: Response,
     /// The lag in degrees of the shaft.
     pub shaft_deg: f64,
 }
 
-/// What the entries come to.
+/// The circuit of the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
     /// At the speed that was typed.
@@ -79,7 +79,7 @@ impl Circuit {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
 
-    /// So many evenly spaced speeds above zero, the last at the encoder's bandwidth.
+    /// Returns this many evenly spaced speeds above zero, the last at the encoder's bandwidth.
     pub fn course(&self, count: u32) -> Vec<Point> {
         let speed = |at: u32| self.most_rpm * f64::from(at) / f64::from(count.max(1));
         (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()

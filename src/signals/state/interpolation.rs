@@ -11,7 +11,7 @@ use crate::signals::state::TEXTS;
 /// Sizes of tables that are told about.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
-/// How good a table is.
+/// The error of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableError {
     /// Its intervals in one octant.
@@ -35,7 +35,7 @@ pub struct Interpolated {
     pub difference_deg: f64,
 }
 
-/// How good the usual tables are.
+/// Returns the errors of the usual tables.
 pub fn table_errors() -> &'static [TableError] {
     static ERRORS: LazyLock<Vec<TableError>> = LazyLock::new(|| INTERVALS.map(table_error).to_vec());
     &ERRORS

@@ -1,5 +1,5 @@
-//! What samples on and on: the virtual encoder, or an adapter; its settings, its newest samples, and the measurement of
-//! them, which is made again a few times a second. Samples come from `worker::stream`; whoever draws never waits for them.
+//! A live source: the virtual encoder or an adapter; its settings, its newest samples, and their measurement, which is
+//! repeated a few times a second. Samples come from `worker::stream`; drawing never waits for them.
 
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 
-/// What a person asks of the source.
+/// An action on the source.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SourceAction {
     /// Let the virtual encoder turn.
@@ -29,7 +29,7 @@ pub enum SourceAction {
     StartAdapter,
     /// Another link to an adapter, as it is typed; the one that runs keeps its own.
     SetLink(String),
-    /// So many samples a second wished of an adapter; one that runs keeps its own.
+    /// Sets the requested sample rate of an adapter; a running one keeps its own.
     SetSampleRate(u32),
     /// The adapter is to supply an encoder of this family, or none; one that runs keeps its own.
     SetSupply(Option<Family>),
@@ -39,11 +39,11 @@ pub enum SourceAction {
     Hold(bool),
     /// Another value of a setting of the virtual encoder; one outside of its range is refused in words.
     Set(Quantity, f64),
-    /// Break a wire, or mend it.
+    /// Breaks or repairs a wire.
     SetOpenWire(Option<Wire>),
     /// With a resistor between the wires of a pair, or without.
     SetTerminated(bool),
-    /// What the references carry.
+    /// Sets the level of the references.
     SetReferences(References),
     /// Measure the newest samples of so many milliseconds, 10 to 10 000.
     SetWindow(u32),
@@ -51,7 +51,7 @@ pub enum SourceAction {
     Reset,
 }
 
-/// Which source.
+/// The kind of source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SourceKind {
     /// The virtual encoder.
@@ -63,7 +63,7 @@ pub enum SourceKind {
 
 /// The source, running or not.
 pub struct Source {
-    /// What was set last of the virtual encoder and could be.
+    /// The last valid settings of the virtual encoder.
     settings: Settings,
     problem: Option<Text>,
     /// The link to the adapter, as typed.
@@ -72,7 +72,7 @@ pub struct Source {
     /// Never remembered from one start to the next: another encoder may be at its end then.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
-    /// Which one was started last.
+    /// The kind that was started last.
     kind: SourceKind,
     window_ms: u32,
     runs: u32,
@@ -122,12 +122,12 @@ impl Source {
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
     }
 
-    /// What is set of the virtual encoder.
+    /// Returns the settings of the virtual encoder.
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Why the last setting was refused.
+    /// Returns why the last setting was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -142,17 +142,17 @@ impl Source {
         self.sample_hz
     }
 
-    /// Which family's encoder the adapter is to supply; `None`: it is supplied from elsewhere.
+    /// Returns the family of the encoder that the adapter supplies; `None` for an external supply.
     pub fn supply(&self) -> Option<Family> {
         self.supply
     }
 
-    /// Why the adapter samples no more, or could not be asked to.
+    /// Returns why the adapter stopped sampling, or could not start.
     pub fn adapter_problem(&self) -> Option<&Text> {
         self.adapter_problem.as_ref()
     }
 
-    /// Which source was started last.
+    /// Returns the kind of source that was started last.
     pub fn kind(&self) -> SourceKind {
         self.kind
     }
@@ -167,7 +167,7 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
     }
 
-    /// How many milliseconds of the newest samples are measured.
+    /// Returns the length of the measured window of newest samples, in milliseconds.
     pub fn window_ms(&self) -> u32 {
         self.window_ms
     }
@@ -177,7 +177,7 @@ impl Source {
         self.live.is_some()
     }
 
-    /// What is shown is kept while it goes on.
+    /// Returns whether the display is frozen while the source runs.
     pub fn is_held(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.held)
     }
@@ -192,8 +192,7 @@ impl Source {
         (longest_ms < f64::from(self.window_ms)).then_some(longest_ms)
     }
 
-    /// Samples that were lost since it was started last, on their way, because nobody read them in time or because nobody
-    /// could show them.
+    /// Returns the samples lost since the last start: in transit, not read in time, or not displayable.
     pub fn lost(&self) -> u64 {
         self.lost + self.live.as_ref().map_or(0, |live| live.feed.lost())
     }
@@ -205,7 +204,7 @@ impl Source {
         }
     }
 
-    /// Whether it could be.
+    /// Changes the settings; returns whether they are valid.
     fn change(&mut self, settings: Settings) -> bool {
         match settings.checked() {
             Ok(checked) => {
@@ -223,7 +222,7 @@ impl Source {
         }
     }
 
-    /// Whether the virtual encoder runs now.
+    /// Starts the virtual encoder; returns whether it runs.
     fn start_encoder(&mut self, services: &mut Services) -> bool {
         let checked = match self.settings.clone().checked() {
             Ok(checked) => checked,
@@ -244,7 +243,7 @@ impl Source {
         }
     }
 
-    /// Where the link of the adapter leads; `None` while it is none.
+    /// Returns the link of the adapter; `None` if it is not valid.
     pub(crate) fn adapter_url(&self) -> Option<LinkUrl> {
         self.link.parse().ok()
     }
@@ -263,7 +262,7 @@ impl Source {
         }
     }
 
-    /// Whether the adapter is being asked now. What is wrong with the link is told where that stands.
+    /// Starts the adapter; returns whether it is being opened. A wrong link is reported beside its entry.
     fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) -> bool {
         let link = match AdapterLink::read(&self.link) {
             Ok(link) => link,

@@ -18,7 +18,7 @@ use crate::analysis::spectrum::SpectrumError;
 use crate::app::{Language, Text, explain};
 use crate::signals::state::TEXTS;
 
-/// Where a capture comes from.
+/// The origin of a capture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// A table.
@@ -27,14 +27,14 @@ pub enum Origin {
     Virtual,
     /// An adapter.
     Adapter {
-        /// What it calls itself.
+        /// Its name.
         name: String,
         /// It lives in this process.
         is_virtual: bool,
     },
 }
 
-/// Where a table lies.
+/// The source of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableSource {
     /// A file.
@@ -79,16 +79,14 @@ pub struct Measurement {
     results: Arc<Results>,
 }
 
-/// What is known about a capture; needs its samples no more.
+/// The results of a capture; its samples are no longer needed.
 #[derive(Clone, Debug)]
 pub struct Results {
-    /// Where it comes from.
     pub origin: Origin,
     /// Rows of its table that were left out, because they have no value.
     pub rows_left_out: u64,
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
-    /// What there is to look at.
     pub diagnosis: Diagnosis,
     /// By what the diagnosis was made.
     pub judge: Judge,
@@ -111,7 +109,7 @@ pub struct Results {
 pub struct Judge {
     /// Whose limits.
     pub family: Family,
-    /// Signal periods in a revolution; `None` where nobody knows.
+    /// Signal periods in a revolution; `None` if not known.
     pub periods: Option<u32>,
 }
 
@@ -145,7 +143,7 @@ impl Measurement {
         Measurement { capture, results: Arc::new(results) }
     }
 
-    /// What is known about the capture, without its samples.
+    /// Returns the results, without the samples.
     pub fn results(&self) -> &Arc<Results> {
         &self.results
     }
@@ -172,7 +170,7 @@ impl Deref for Measurement {
 }
 
 impl Results {
-    /// Why there is no analysis, in words.
+    /// Returns why there is no analysis, in words.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))

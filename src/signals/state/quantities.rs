@@ -1,5 +1,5 @@
-//! What is measured of a signal, as a list: each number with its unit, its limit and whether it is inside. Limits as
-//! `signal::quality` has them; SICK 8010701 for amplitudes and bandwidth.
+//! The measured quantities of a signal as a list: each with its unit, its limit and its verdict. Limits as in
+//! `signal::quality`; SICK 8010701 for amplitudes and bandwidth.
 
 use super::Results;
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, speed_rpm_at};
@@ -9,7 +9,7 @@ use crate::analysis::signal_analysis::{Analysis, LEAST_OCTANTS};
 /// A number that was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// What it is, in the table of texts.
+    /// Id of its text.
     pub word: &'static str,
     /// The number, in its unit.
     pub value: f64,
@@ -19,9 +19,9 @@ pub struct Quantity {
     pub unit: Unit,
     /// The same in another unit, to be read beside it.
     pub also: Option<(f64, usize, Unit)>,
-    /// Where it should be.
+    /// Its limit.
     pub bound: Option<Bound>,
-    /// Whether it is there; `None` without a limit.
+    /// Whether it is within the limit; `None` without a limit.
     pub verdict: Option<Verdict>,
 }
 
@@ -50,7 +50,7 @@ pub enum Unit {
     Milliseconds,
 }
 
-/// Where a number should be, in its unit.
+/// A limit, in the unit of the quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// From the first to the second.
@@ -82,7 +82,7 @@ impl Unit {
 }
 
 impl Bound {
-    /// Whether a number is there; one on the limit is.
+    /// Returns whether a value is within the limit; a value on the limit is.
     pub fn holds(self, value: f64) -> bool {
         /// Rounding must not turn a value on the limit into one beyond it.
         const SLACK: f64 = 1e-9;
@@ -118,8 +118,8 @@ impl Quantity {
     }
 }
 
-/// What was measured, judged by the limits of a family; `periods` a revolution turn the frequency into a speed. Nothing
-/// where there is no ellipse.
+/// Returns the quantities, judged by the limits of a family; `periods` per revolution turn the frequency into a speed.
+/// Empty without an ellipse.
 pub fn quantities(measurement: &Results, family: Family, periods: Option<u32>) -> Vec<Quantity> {
     let Ok(analysis) = &measurement.analysis else { return Vec::new() };
     let mut list = of_ellipse(analysis, family);

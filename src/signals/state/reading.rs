@@ -47,16 +47,14 @@ impl Example {
 /// A capture that is being read.
 #[derive(Debug)]
 pub struct Reading {
-    /// Which attempt.
     pub(super) number: u32,
-    /// What is read.
     pub place: TableSource,
     /// The table before, for when this one is given up.
     pub(super) settled: Option<Table>,
     progress: Arc<Progress>,
 }
 
-/// What the task and the window both see.
+/// The progress, shared between the task and the window.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     done: AtomicU64,
@@ -70,7 +68,7 @@ impl Reading {
         (Reading { number, place, settled, progress: progress.clone() }, progress)
     }
 
-    /// How much is read, from 0 to 1; `None` where nobody knows how much there is.
+    /// Returns the share that has been read, 0 to 1; `None` if the total is not known.
     pub fn share(&self) -> Option<f64> {
         let (done, total) = (self.progress.done.load(Ordering::Relaxed), self.progress.total.load(Ordering::Relaxed));
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
@@ -86,7 +84,7 @@ impl Reading {
     }
 }
 
-/// Nobody waits for a reading that was dropped.
+/// A dropped reading is cancelled.
 impl Drop for Reading {
     fn drop(&mut self) {
         self.cancel();

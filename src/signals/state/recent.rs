@@ -1,5 +1,5 @@
-//! The newest samples of a running source, without a gap and without being copied: the batches as they came, shared with
-//! whoever measures them.
+//! The newest samples of a running source, without gaps and without copying: the batches as they came, shared with the
+//! measurement.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
-//! What a capture tells beside a second measurement of the same shaft: DNL and INL beside a reference encoder, and by how
-//! much an absolute position is ahead. SICK 8010701, definitions of errors and forming the absolute position; sections 4 and
-//! 6 of the project's sine/cosine reference.
+//! Comparison of a capture with a second measurement of the same shaft: DNL and INL against a reference encoder, and
+//! the lead of an absolute position. SICK 8010701, definitions of errors and forming the absolute position; sections 4
+//! and 6 of the project's sine/cosine reference.
 
 use super::quantities::{Quantity, Unit};
 use crate::analysis::arctan::{Phase, exact};
@@ -37,18 +37,18 @@ pub struct Part {
     pub mean: Vec<(f64, f64)>,
 }
 
-/// How an absolute position lies to the analogue one.
+/// The offset of an absolute position against the analogue one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AbsoluteOffset {
-    /// How much the absolute position is ahead on average, in 1/32 period.
+    /// Average lead of the absolute position, in 1/32 period.
     pub offset_steps: f64,
-    /// How far a sample is from that at most, in 1/32 period.
+    /// Largest distance of a sample from it, in 1/32 period.
     pub farthest_steps: f64,
     /// Samples that it is told from.
     pub samples: usize,
 }
 
-/// Why it cannot be told.
+/// Why it cannot be determined.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoOffset {
     /// There is no sample with a signal.

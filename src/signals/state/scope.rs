@@ -20,7 +20,7 @@ pub struct Scope {
     group: GroupId,
 }
 
-/// Why the times of a capture are no axis.
+/// Why the times of a capture cannot be an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoTimes {
     /// They go back.
@@ -106,7 +106,7 @@ impl Scope {
         self.append(&times, &sine, &cosine, wires.as_ref())
     }
 
-    /// What comes next does not join what is there: something in between is not recorded.
+    /// Marks a gap: the following samples do not continue the previous ones.
     pub(super) fn interrupt(&mut self) {
         self.recorder.break_before_next(self.group);
     }

@@ -82,7 +82,7 @@ fn median(values: &[f64]) -> f64 {
 
 /// An amplitude as a level: decibels of its rms value above one volt.
 pub fn dbv(peak_v: f64) -> f64 {
-    /// What a double still tells from zero beside one volt.
+    /// Smallest level in dB that a double can distinguish from zero beside one volt.
     const LEAST: f64 = -160.0;
     (20.0 * (peak_v / std::f64::consts::SQRT_2).log10()).max(LEAST)
 }

@@ -9,7 +9,7 @@ use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::signals::state::TEXTS;
 
-/// What can be done.
+/// An action.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// An entry was edited.
@@ -27,7 +27,7 @@ pub enum Action {
 pub struct Form {
     /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
-    /// How the analogue position is told.
+    /// How the analogue position is entered.
     pub told_as: ToldAs,
     /// The phase, in periods or degrees.
     pub phase: String,
@@ -39,17 +39,17 @@ pub struct Form {
     pub periods: String,
     /// Revolutions.
     pub turns: String,
-    /// How much the absolute position is ahead when both are right, in 1/32 period.
+    /// Lead of the absolute position when both are right, in 1/32 period.
     pub offset: String,
     /// The absolute position means the middle of its step.
     pub half_step: bool,
     /// A quadrature counter, in quarters of a period; empty: none.
     pub quarters: String,
-    /// How uncertain the moment of a check without latch is, in milliseconds.
+    /// Uncertainty of the time of a check without latch, in milliseconds.
     pub jitter_ms: String,
 }
 
-/// How the analogue position is told.
+/// How the analogue position is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ToldAs {
     /// A part of a period, 0 to 1.
@@ -65,7 +65,7 @@ pub enum ToldAs {
 pub struct Synchronise {
     /// The entries.
     pub form: Form,
-    /// Why the last reading of an encoder gave nothing.
+    /// Why the last reading of an encoder failed.
     pub problem: Option<Text>,
     /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
@@ -73,7 +73,7 @@ pub struct Synchronise {
     whose: Option<SineCosineOrigin>,
 }
 
-/// What the entries come to.
+/// The result of the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchronisation {
     /// The absolute position.
@@ -84,8 +84,8 @@ pub struct Synchronisation {
     pub period: u64,
     /// Its place in the period, 0 to 31.
     pub step: u64,
-    /// How far it is ahead of the analogue position inside the period, in 1/32 period; offset and half step count in the
-    /// result only.
+    /// Lead over the analogue position within the period, in 1/32 period; offset and half step count in the result
+    /// only.
     pub difference_steps: f64,
     /// The fine position, or that there is none.
     pub result: Result<Synchronised, Unsynchronisable>,

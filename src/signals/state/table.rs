@@ -6,13 +6,12 @@ use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_he
 /// The beginning of a table, and how it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Where it comes from.
     pub place: TableSource,
     /// Its first lines as text; long ones are cut.
     pub head: Vec<String>,
-    /// What was said about it.
+    /// The settings made by the user.
     pub wishes: TableHints,
-    /// How it is read; `None` where that cannot be found out.
+    /// Format of the table; `None` if it cannot be detected.
     pub layout: Option<Layout>,
     /// REFSIN and REFCOS while only one of them is chosen.
     pub half_chosen: (Option<usize>, Option<usize>),
@@ -58,7 +57,7 @@ impl Table {
         Table { place, head: lines, wishes, layout, half_chosen: (None, None) }
     }
 
-    /// What stands between two columns.
+    /// Returns the delimiter between two columns.
     pub fn delimiter(&self) -> Option<Delimiter> {
         self.wishes.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
     }
@@ -82,7 +81,7 @@ impl Table {
         }
     }
 
-    /// How many columns can be chosen from.
+    /// Returns the number of columns.
     pub fn width(&self) -> usize {
         let delimiter = self.delimiter().map_or(',', |delimiter| char::from(delimiter.byte()));
         let fields = |line: &String| match delimiter {

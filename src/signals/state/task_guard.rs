@@ -4,7 +4,7 @@ use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
 use crate::app::tasks::{Mailbox, Tasks};
 
-/// What is told when the task does not come back by itself.
+/// Sent if the task does not return by itself.
 struct Promise {
     mailbox: Mailbox,
     failed: Option<Done>,

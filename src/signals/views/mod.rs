@@ -48,10 +48,10 @@ impl TabPage for Page {
     ];
 }
 
-/// What is typed and does not count yet, with the reason where it cannot.
+/// Entered text that does not take effect yet, with the reason if it cannot.
 type Draft = Option<(String, Option<Text>)>;
 
-/// What the tab remembers while the window is open: text buffers and selections.
+/// The state of the tab between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SignalsUiState {
     /// The open page.

@@ -12,7 +12,7 @@ use crate::ui::{Theme, controls};
 const WIDE: f32 = 390.0;
 /// Width from which limits have a column; else they are the tooltips of the marks.
 const LEAST: f32 = 350.0;
-/// What the column of limits takes of it.
+/// Width that the column of limits takes.
 const LIMITS: f32 = 110.0;
 
 /// Draws the rows; with a second list also its values, and how far the first is from them.
@@ -96,7 +96,7 @@ fn rounded(value: f64, decimals: usize) -> f64 {
     if (value * scale).abs() < 0.5 { 0.0 } else { value }
 }
 
-/// Where a number should be.
+/// Returns the text of a limit.
 fn bound_words(theme: &Theme, bound: Bound, unit: Unit) -> String {
     let plain = |value: f64| theme.plain((value * 1e6).round() / 1e6);
     let words = match bound {

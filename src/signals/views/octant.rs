@@ -9,7 +9,7 @@ use crate::signals::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, choice, entry, labelled_entry, paragraph, problem, row, split};
 
-/// What is typed.
+/// The entered text.
 pub(super) struct OctantUiState {
     sine: String,
     cosine: String,

@@ -139,7 +139,7 @@ fn figure_of(
     Figure { picture, curve: measurement.analysis.as_ref().map(curve).unwrap_or_default(), colour, dashed }
 }
 
-/// Why there is nothing to be measured in a capture, and what there is to look at.
+/// Draws why a capture cannot be measured, and its findings.
 pub(super) fn refused_ui(ui: &mut Ui, theme: &Theme, measurement: &Results) {
     let Some(why) = measurement.refusal(theme.language) else { return };
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
@@ -167,7 +167,7 @@ fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &Finding) {
     line(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
 }
 
-/// What is wrong, in words.
+/// Draws the verdict in words.
 fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
@@ -187,7 +187,7 @@ fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurem
     });
 }
 
-/// What changed since another capture. That nothing became worse is said only where everything could be compared.
+/// Draws the changes since another capture. That nothing became worse is shown only if everything could be compared.
 fn changes_ui(ui: &mut Ui, theme: &Theme, name: &Text, changes: &Changes) {
     let under = |ui: &mut Ui, id| {
         ui.add_space(theme.space.inside);

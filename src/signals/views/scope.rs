@@ -15,7 +15,7 @@ use crate::ui::{Theme, plot};
 const TRACE: f32 = 300.0;
 const SPECTRUM: f32 = 200.0;
 
-/// What is remembered of the page.
+/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct ScopeView {
     plot: plot::PlotUiState,

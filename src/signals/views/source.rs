@@ -1,4 +1,4 @@
-//! Where the samples come from: above every page that is about them. Reading, its progress, and why it failed.
+//! The source of the samples, above every page about them: reading, its progress, and why it failed.
 
 use egui::{RichText, Ui};
 
@@ -13,13 +13,13 @@ use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name
 use crate::ui::widgets::series;
 use crate::ui::{Theme, icons};
 
-/// What is remembered of it.
+/// The state of the source between frames.
 #[derive(Default)]
 pub(super) struct SourceUiState {
     table: table::TableUiState,
     /// The virtual encoder's settings are shown.
     settings: bool,
-    /// Where the adapter is can be said.
+    /// The settings of the adapter are open.
     adapter: bool,
 }
 
@@ -82,7 +82,7 @@ fn live(signals: &Signals) -> Option<SourceKind> {
     }
 }
 
-/// What is being read, how far it is, and a way to end it.
+/// Draws the reading in progress, with the button that stops it.
 fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(reading) = signals.reading() else { return };
     ui.horizontal(|ui| {
@@ -99,7 +99,7 @@ fn reading(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Acti
     ui.add_space(theme.space.between);
 }
 
-/// Why a capture could not be read. The other pages say it too.
+/// Draws why a capture could not be read; other pages show it as well.
 pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let Some(problem) = signals.problem() else { return };
     ui.horizontal_top(|ui| {
@@ -149,7 +149,7 @@ fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// Which source, whether it runs, and what it lost.
+/// Draws the kind of source, whether it runs, and the lost samples.
 fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     let source = signals.source();
@@ -241,7 +241,7 @@ fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Acti
     }
 }
 
-/// What the capture is compared with.
+/// Draws the capture that this one is compared with.
 fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let Some(kept) = signals.comparison() else { return };
     ui.horizontal(|ui| {

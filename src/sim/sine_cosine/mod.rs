@@ -45,7 +45,7 @@ struct Segment {
     from: u64,
     /// Nanoseconds from the start to that.
     elapsed: u64,
-    /// Where the shaft is then, in parts of a turn.
+    /// Position of the shaft at that moment, in parts of a turn.
     turn: u64,
     checked: Checked,
 }
@@ -167,7 +167,7 @@ impl Wheel {
         self.at -= if self.at >= self.whole { self.whole } else { 0 };
     }
 
-    /// Where it is, from 0 up to 1.
+    /// Returns the position in the turn, 0 to below 1.
     fn share(self) -> f64 {
         self.at as f64 / self.whole as f64
     }

@@ -1,4 +1,4 @@
-//! What can be set of the virtual sine/cosine source: plain data, and the ranges in which it makes sense.
+//! The settings of the virtual sine/cosine source: plain data, and their ranges.
 
 use crate::analysis::wiring::Wire;
 
@@ -25,7 +25,7 @@ pub struct Settings {
     pub level_v: f64,
     /// Third harmonic in percent of the amplitude.
     pub third_harmonic_percent: f64,
-    /// How far the amplitude rises and falls once a revolution, in percent.
+    /// Rise and fall of the amplitude once a revolution, in percent.
     pub modulation_percent: f64,
     /// White noise of each differential channel in volts rms.
     pub noise_v: f64,
@@ -43,13 +43,13 @@ pub struct Settings {
     pub open_wire: Option<Wire>,
     /// The receiver has a resistor between the wires of a pair (120 Ω), as the manuals ask for.
     pub terminated: bool,
-    /// What the references carry.
+    /// Level of the references.
     pub references: References,
-    /// Where the noise begins: the same seed gives the same noise.
+    /// Seed of the noise: the same seed gives the same noise.
     pub seed: u64,
 }
 
-/// What REFSIN and REFCOS carry.
+/// The level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum References {
     /// Their mean level, as HIPERFACE encoders do: the signal is on SIN and COS alone.
@@ -101,9 +101,9 @@ pub enum Quantity {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
-    /// Which.
+    /// The quantity.
     pub quantity: Quantity,
-    /// What was set.
+    /// The value as set.
     pub value: f64,
     /// Least value.
     pub least: f64,
@@ -190,7 +190,7 @@ impl Settings {
         self
     }
 
-    /// What a sample takes, in whole nanoseconds: 100 kHz are 10 000 ns, and 44.1 kHz become 22 676 ns.
+    /// Returns the sample period in whole nanoseconds: 100 kHz gives 10 000 ns, 44.1 kHz gives 22 676 ns.
     pub fn period_ns(&self) -> i64 {
         (1e9 / self.rate_hz).round() as i64
     }
@@ -235,7 +235,7 @@ impl Settings {
 }
 
 impl Checked {
-    /// What was checked.
+    /// Returns the checked settings.
     pub fn settings(&self) -> &Settings {
         &self.0
     }

@@ -13,11 +13,10 @@ use crate::store::FileError;
 pub struct LogbookError {
     /// The logbook's file.
     pub path: PathBuf,
-    /// What stood in the way.
     pub problem: LogbookProblem,
 }
 
-/// What stands in the way of using the logbook.
+/// What prevents using the logbook.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LogbookProblem {
     /// Its folder cannot be made.
@@ -38,7 +37,7 @@ pub enum LogbookProblem {
     /// It is no database, or a damaged one.
     #[error("it is damaged: {what}")]
     Damaged {
-        /// What the database says.
+        /// The message of the database.
         what: String,
     },
     /// A newer version of the program made it. It was left alone.

@@ -27,7 +27,7 @@ pub struct Logbook {
     database: Connection,
 }
 
-/// Which device an entry is about.
+/// The device that an entry is about.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct DeviceKey {
     /// Kind of device: `hiperface`.
@@ -40,7 +40,7 @@ pub struct DeviceKey {
     pub is_virtual: bool,
 }
 
-/// Which entry of the logbook.
+/// Identifies an entry of the logbook.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryId(i64);
 
@@ -68,13 +68,13 @@ pub struct Entry {
     pub id: EntryId,
     /// When it was about to begin.
     pub at: Timestamp,
-    /// What was to be written, in words.
+    /// The planned write, in words.
     pub what: String,
     /// Write cycles that were to be spent.
     pub planned_cycles: u64,
     /// The backup taken before; in its path, what is not Unicode is replaced.
     pub backup: Option<PathBuf>,
-    /// How it ended; `None` while it runs, and for ever if the program died meanwhile.
+    /// The end of the write; `None` while it runs, and for ever if the program died meanwhile.
     pub conclusion: Option<Conclusion>,
 }
 
@@ -83,7 +83,6 @@ pub struct Entry {
 pub struct Conclusion {
     /// When.
     pub at: Timestamp,
-    /// How.
     pub outcome: Outcome,
     /// Write cycles that were spent; not zero for what failed half-way.
     pub cycles_spent: u64,
@@ -174,8 +173,9 @@ impl Logbook {
         }
     }
 
-    /// Write cycles that this program has spent on a device. An intent without a conclusion counts as planned: whether
-    /// the program died before or after the last byte nobody knows. Other programs' writing is not in it: "at least".
+    /// Returns the write cycles that this program has spent on a device. An intent without a conclusion counts as
+    /// planned, as it is not known whether the program died before or after the last byte. Writes by other programs are
+    /// not included: "at least".
     ///
     /// # Errors
     /// Where the logbook cannot be read.

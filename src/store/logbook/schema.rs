@@ -11,7 +11,7 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, TransactionBehavior};
 use super::LogbookProblem;
 use crate::store::files::create_folder;
 
-/// What leads from each schema to the next. Steps are added, never changed: logbooks made by them exist.
+/// The steps from each schema to the next. Steps are added, never changed: logbooks made by them exist.
 const STEPS: [&str; 2] = [
     "
     CREATE TABLE entry (
@@ -108,7 +108,7 @@ fn migrate(database: &mut Connection) -> Result<(), LogbookProblem> {
     Ok(transaction.commit()?)
 }
 
-/// How many of the steps this database has behind it.
+/// Returns how many of the steps this database has had.
 fn check_version(database: &Connection) -> Result<usize, LogbookProblem> {
     let found: i64 = database.pragma_query_value(None, "user_version", |row| row.get(0))?;
     match usize::try_from(found) {

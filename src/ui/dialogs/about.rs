@@ -1,4 +1,4 @@
-//! What this program is and what it is made of; and what the open page is about, with the manual's section.
+//! The about dialog: the program and its components; and the help of the open page, with the manual's section.
 
 use egui::{ScrollArea, Ui};
 

@@ -1,5 +1,5 @@
-//! Connecting: a link as a form, what was used before, the ports of this machine, and the search for an encoder whose
-//! settings nobody remembers.
+//! The connection dialog: a link as a form, recent links, the ports of this machine, and the search for an encoder with
+//! unknown settings.
 
 pub(crate) mod entries;
 pub(in crate::ui) mod form;
@@ -19,11 +19,11 @@ use crate::ui::{TabViews, Theme, icons};
 pub use form::ConnectForm;
 pub use form::TypedConnectForm;
 
-/// What the dialog remembers.
+/// The state of the dialog between frames.
 #[derive(Default)]
 pub(in crate::ui) struct ConnectView {
     forms: HashMap<Tab, Box<dyn ConnectForm>>,
-    /// What is rarely needed is unfolded.
+    /// The rarely used settings are unfolded.
     more: bool,
 }
 
@@ -123,7 +123,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, a
     });
 }
 
-/// Why it cannot go on. Two lines stand free for it, so that the buttons do not jump away under the pointer.
+/// Draws why the dialog cannot go on. Two lines are reserved for it, so that the buttons do not move under the pointer.
 fn why_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();
     match why {

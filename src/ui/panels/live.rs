@@ -15,13 +15,13 @@ const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
 /// Likewise where an adapter streams them.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
-/// What is read where nothing that can be read is chosen.
+/// Polling rate if no readable one is chosen.
 const USUAL: u64 = 50_000;
 
 /// Height in points below which the numbers beside the position stand in one line.
 pub(crate) const LOW: f32 = 460.0;
 
-/// Seconds after which somebody notices that the position stays as it is.
+/// Seconds after which an unchanged position is marked.
 const NOTICED: f32 = 0.4;
 
 /// Draws the panel.

@@ -1,5 +1,5 @@
-//! What passes over the line of the session that is shown: time, direction, bytes, meaning. The newest is at the bottom,
-//! and stays in sight until one scrolls away from it.
+//! The trace panel of the session that is shown: time, direction, bytes, meaning. The newest entry is at the bottom and
+//! stays visible until the user scrolls away.
 
 use egui::{RichText, Ui};
 use egui_extras::{Column, TableBuilder};

@@ -120,7 +120,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
     figures
 }
 
-/// Why there are no samples, and how many were not to be believed.
+/// Draws why there are no samples, and how many were invalid.
 fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured>) {
     let caption = |words: String, colour: crate::app::Rgb| RichText::new(words).size(theme.sizes.caption).color(colour);
     if let Some(remark) = &line.remark {

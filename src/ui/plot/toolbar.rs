@@ -70,7 +70,7 @@ fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &st
     response.on_hover_text(&word).on_disabled_hover_text(&word).clicked()
 }
 
-/// How long a stretch is shown: one of those to choose from, or what zooming made of it.
+/// Draws the choice of the span: a preset, or the result of zooming.
 fn span(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts() {
@@ -107,7 +107,7 @@ fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-/// Which lines are shown, each in which unit.
+/// Draws the menu of the lines and their units.
 fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let mut actions = Vec::new();
@@ -160,7 +160,7 @@ fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot
     context.actions.extend(chosen);
 }
 
-/// What is going on: a trigger that waits, a table that is being written.
+/// Draws what is in progress: a waiting trigger, a table that is being written.
 fn state(ui: &mut Ui, context: &mut Context<'_>) {
     let (theme, recorder) = (context.theme, context.recorder);
     if let Some((_, state)) = recorder.trigger() {

@@ -31,7 +31,8 @@ impl TimeAxis {
         self.left + (time.nanoseconds_since(self.from) as f64 * self.scale) as f32
     }
 
-    /// Where the pixel column begins that a time lies in. A column's samples lie anywhere in it; it does not move with them.
+    /// Returns the left edge of the pixel column of a time. Samples may be anywhere within a column; the column does
+    /// not move with them.
     fn column(&self, time: Time) -> f32 {
         self.left + ((self.x(time) - self.left) / self.pixel).floor() * self.pixel
     }
@@ -69,15 +70,15 @@ impl ValueAxis {
     }
 }
 
-/// How a line is seen.
+/// The appearance of a line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pen {
     pub(super) colour: Color32,
     /// From the samples' own unit to the one that is shown.
     pub(super) factor: f64,
-    /// What is remarkable is marked.
+    /// Flagged samples are marked.
     pub(super) marks: bool,
-    /// What is bad, and what comes with a warning.
+    /// Colours of invalid samples, and of those with a warning.
     pub(super) bad: Color32,
     pub(super) warning: Color32,
 }

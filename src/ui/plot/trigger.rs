@@ -7,7 +7,7 @@ use crate::app::recorder::{Action, LineId, Recorder, Trigger, When};
 use crate::ui::controls::{entry, options, primary, text_entry};
 use crate::ui::{Theme, icons};
 
-/// What is being typed.
+/// The text being entered.
 pub(super) struct Form {
     line: LineId,
     when: When,

@@ -11,7 +11,7 @@ pub(crate) struct BitCell<'a> {
     pub(crate) ink: Color32,
     /// The bit; `None`: not known.
     pub(crate) bit: Option<bool>,
-    /// What stands in the place of a bit that is not known.
+    /// The text in place of an unknown bit.
     pub(crate) blank: &'a str,
     /// It tells of something wrong: filled with its colour.
     pub(crate) alarm: bool,

@@ -14,7 +14,7 @@ use egui_plot::{AxisHints, Bar, BarChart, GridMark, HoverPosition, Line, LineSty
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// What is drawn.
+/// A chart to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
     /// Series, the first of them the main one.
@@ -33,7 +33,7 @@ pub struct Chart<'a> {
     pub x_range: Option<(f64, f64)>,
     /// Distance of the ticks of the horizontal axis; `None` fits.
     pub x_step: Option<f64>,
-    /// What stands at the lower end of the vertical axis in any case.
+    /// The lowest value that the vertical axis always includes.
     pub y_floor: Option<f64>,
     /// Words at places: peaks.
     pub marks: &'a [(f64, f64, String)],
@@ -48,7 +48,7 @@ pub struct Trace {
     pub name: String,
     /// Points.
     pub points: Vec<(f64, f64)>,
-    /// Which of the series' colours.
+    /// Index of the series' colour.
     pub colour: usize,
     /// Its line is dashed, its bars are hollow.
     pub dashed: bool,

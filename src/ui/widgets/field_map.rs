@@ -33,7 +33,7 @@ pub struct MapField {
     pub label: String,
     /// Shown below the number; of its parts, separated by ` · `, as many as fit.
     pub caption: String,
-    /// Which of the eight series' colours.
+    /// Index of the colour, one of eight.
     pub colour: usize,
     /// Write protected.
     pub locked: bool,
@@ -64,12 +64,12 @@ pub struct FieldMap<'a> {
     pub resize: Option<RangeInclusive<usize>>,
 }
 
-/// What the user wants.
+/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapEvent {
     /// A field.
     Select(u8),
-    /// What is free.
+    /// Selects the free space.
     SelectFree,
     /// Another size of the last field; it is not the present one.
     ResizeLast {

@@ -25,13 +25,13 @@ use place::{Placed, Want, place};
 /// A field of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
-    /// What it is called, below its bits.
+    /// The name, below its bits.
     pub name: String,
-    /// What it says, below its name.
+    /// The value, below its name.
     pub value: String,
-    /// How many bits it has, 1 at least.
+    /// Number of bits, at least 1.
     pub bits: usize,
-    /// Which of the eight series' colours; `None`: it only frames the others.
+    /// Index of the colour, one of eight; `None`: it only encloses the others.
     pub colour: Option<usize>,
     /// It tells of something: a fault, a warning, or that all is well.
     pub lit: Option<Verdict>,

@@ -38,7 +38,7 @@ pub struct HexModel<'a> {
     pub wanted: &'a [u8],
     /// Ranges that mean something.
     pub marks: &'a [HexMark<'a>],
-    /// Why nothing can be edited; `None` where it can.
+    /// Why the bytes cannot be edited; `None` if they can.
     pub read_only: Option<&'a Text>,
     /// Most lines shown at once.
     pub lines: usize,
@@ -49,11 +49,10 @@ pub struct HexModel<'a> {
 pub struct HexMark<'a> {
     /// Addresses.
     pub range: Range<usize>,
-    /// What it is.
     pub words: &'a str,
 }
 
-/// What the user wants.
+/// A request of the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum HexEdit {
     /// Other bytes from an address on; they fit.
@@ -197,7 +196,7 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
     }
 }
 
-/// What a screen reader and a test find.
+/// Sets the accessible name and value for screen readers and tests.
 fn tell(ui: &Ui, response: &Response, label: &str, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     let selected = view.selection();
     let value = model.wanted.get(selected.clone()).filter(|bytes| !bytes.is_empty()).map(|bytes| {
@@ -217,7 +216,7 @@ fn tell(ui: &Ui, response: &Response, label: &str, grid: &Grid, model: &HexModel
     });
 }
 
-/// Where the cursor is, or why something was not done.
+/// Draws the location of the cursor, or why something was not done.
 fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &HexView) {
     ui.horizontal(|ui| {
         ui.set_min_height(grid.row);

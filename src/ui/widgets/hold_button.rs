@@ -18,12 +18,12 @@ use crate::app::{HoldEvent, HoldInput, HoldScene, HoldState};
 use crate::ui::keys::press_key;
 use crate::ui::{Theme, stop_debounce};
 
-/// What is drawn.
+/// A hold button to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct HoldButton<'a> {
-    /// What stands large.
+    /// The large text.
     pub word: &'a str,
-    /// What stands small, below it.
+    /// The small text below it.
     pub caption: &'a str,
     /// Accessible name.
     pub label: &'a str,
@@ -31,7 +31,7 @@ pub struct HoldButton<'a> {
     pub enabled: bool,
 }
 
-/// What the window tells its hold buttons before it draws them.
+/// What the window passes to its hold buttons before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldSurroundings {
     /// Something stands over the window: none of them can be pressed.
@@ -40,7 +40,7 @@ pub(in crate::ui) struct HoldSurroundings {
     pub(in crate::ui) moving: bool,
 }
 
-/// What a button keeps from one picture to the next.
+/// The state of a button between frames.
 #[derive(Clone, Copy, Default)]
 struct HoldMemory {
     state: HoldState,
@@ -50,7 +50,7 @@ struct HoldMemory {
     modifiers: Modifiers,
 }
 
-/// What the window asks about the buttons of the picture before.
+/// The hold buttons of the previous frame, for the window.
 #[derive(Clone, Copy, Default)]
 struct Drawn {
     /// The one that has the keyboard, and in which pass.
@@ -149,7 +149,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     event
 }
 
-/// What an event means for the button at this place. `pressed_here`: a press of the pointer that lasts began on it.
+/// Translates an event for the button at this place. `pressed_here`: a pointer press that is still held began on it.
 fn translated(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInput> {
     Some(match event {
         Event::WindowFocused(has) => HoldInput::WindowFocus(*has),

@@ -18,7 +18,7 @@ use crate::app::Text;
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// What is drawn.
+/// A Lissajous figure to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Lissajous<'a> {
     /// One signal, or two to be compared.
@@ -40,7 +40,7 @@ pub struct Figure {
     pub picture: Option<(TextureId, Square)>,
     /// The fitted curve, closed, as (cosine, sine) in volts.
     pub curve: Vec<(f64, f64)>,
-    /// Which of the series' colours.
+    /// Index of the series' colour.
     pub colour: usize,
     /// Its curve is dashed.
     pub dashed: bool,
@@ -104,7 +104,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
 
 /// The picture of a density in one colour: brighter where there are more samples, and none invisible.
 pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
-    /// What a single sample has of the full brightness.
+    /// Brightness of a single sample, as a share of the full one.
     const LEAST: f32 = 0.4;
     let side = density.side();
     let scale = f64::from(density.most()).ln_1p().max(f64::MIN_POSITIVE);
@@ -193,7 +193,7 @@ fn curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) 
     }
 }
 
-/// Where the pointer is: both voltages, length and angle.
+/// Draws the values under the pointer: both voltages, length and angle.
 fn told(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) {
     let (x, y) = place.volts(pos);
     let muted = Stroke::new(1.0, Color32::from(theme.palette.muted).gamma_multiply(0.6));

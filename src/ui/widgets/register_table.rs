@@ -34,7 +34,7 @@ use lines::{LineKind, Lines};
 pub use view::RegisterView;
 use view::Selected;
 
-/// Where a register stands: its group, and its number in that.
+/// The location of a register: its group, and its index in the group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterLocation {
     /// Number of the group.
@@ -52,11 +52,11 @@ pub struct RegisterTable<'a> {
     pub groups: &'a [RegisterGroup],
     /// A register of a group; asked for what is in sight or unfolded.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
-    /// What the values are.
+    /// The kind of the values.
     pub kind: RegisterKind,
 }
 
-/// What the values of a table are: by that it has its columns.
+/// The kind of the values of a table; it determines the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// Bytes, in hexadecimal digits and as numbers.
@@ -73,7 +73,7 @@ pub enum RegisterKind {
 pub struct RegisterGroup {
     /// Its heading.
     pub title: String,
-    /// What there is to know about it, at the end of its heading.
+    /// A note at the end of the heading.
     pub note: String,
     /// Registers in it.
     pub rows: usize,
@@ -82,19 +82,18 @@ pub struct RegisterGroup {
 /// A register as it is shown.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
-    /// Where it is: `0x04:0x1F`; or the number that it has.
+    /// The address, such as `0x04:0x1F`, or a number.
     pub address: String,
-    /// What it is called.
     pub name: String,
     /// Its value as it is typed: bytes in hexadecimal digits, or a number; empty where it was not read.
     pub value: String,
     /// Of bytes: the same as a number.
     pub decimal: String,
-    /// What it means, with its unit.
+    /// The meaning of the value, with its unit.
     pub meaning: String,
     /// `R`, `W`, `RW`.
     pub access: String,
-    /// As delivered, written like the value; empty where nobody knows.
+    /// The factory setting, in the form of the value; empty if not known.
     pub default: String,
     /// Of numbers: what it may be.
     pub range: String,
@@ -102,7 +101,7 @@ pub struct RegisterRow {
     pub differs: bool,
     /// It is not as it was at the reading before.
     pub changed: bool,
-    /// What it was then; empty where that is not told.
+    /// The earlier value; empty if not known.
     pub before: String,
     /// Its value was edited and is not written.
     pub edited: bool,
@@ -110,7 +109,7 @@ pub struct RegisterRow {
     pub cost: Option<String>,
     /// It is kept without supply: what there is to know about that, in words.
     pub kept: Option<String>,
-    /// Why its value cannot be edited; `None` where it can.
+    /// Why the value cannot be edited; `None` if it can.
     pub read_only: Option<String>,
     /// Its bit fields.
     pub fields: Vec<RegisterBits>,
@@ -119,29 +118,26 @@ pub struct RegisterRow {
 /// A bit field of a register.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterBits {
-    /// Which bits: `b3…b0`.
+    /// The bits, such as `b3…b0`.
     pub bits: String,
-    /// What it is called.
     pub name: String,
     /// Its value.
     pub value: String,
-    /// What that means.
     pub meaning: String,
     /// It tells of something that matters.
     pub lit: bool,
 }
 
-/// What the user wants.
+/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterEvent {
     /// The device's value back in an edited register.
     Revert(RegisterLocation),
 }
 
-/// What came of drawing the table.
+/// The result of drawing the table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RegisterOutput {
-    /// What the user wants.
     pub event: Option<RegisterEvent>,
     /// The groups that are in sight.
     pub groups: Range<usize>,
@@ -165,7 +161,7 @@ fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
 }
 
 impl RegisterRow {
-    /// What a screen reader says of it.
+    /// Returns the text for a screen reader.
     fn words(&self, theme: &Theme) -> String {
         let mut parts = vec![self.value.clone(), self.decimal.clone(), self.meaning.clone()];
         parts.extend(self.differs.then(|| theme.say("widget.register_differs")));
@@ -372,7 +368,7 @@ fn told(role: Role, label: &str, value: &str) -> WidgetInfo {
     info
 }
 
-/// What a screen reader hears of the whole.
+/// Sets the text of the whole table for a screen reader.
 fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &RegisterView) {
     let value = match view.selected {
         Some(Selected::Row(place)) => {

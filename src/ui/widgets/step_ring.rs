@@ -14,7 +14,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, Sense, Shape, Stroke, Ui, Vec
 use crate::ui::Theme;
 use crate::ui::widgets::series;
 
-/// What is drawn.
+/// A ring of steps to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct StepRing<'a> {
     /// The step of the absolute position, 0 to 31.

@@ -23,21 +23,19 @@ use crate::ui::{Theme, icons};
 /// A step of a procedure.
 #[derive(Clone, Debug, Default)]
 pub struct Step {
-    /// What it is.
     pub title: String,
-    /// How far it is.
     pub state: StepState,
-    /// How far it is, in a word, for whoever does not see it.
+    /// The state in a word, for screen readers.
     pub word: String,
-    /// What to do now, what came of it, why it failed; empty where there is nothing to say.
+    /// What to do now, the result, or why it failed; may be empty.
     pub note: String,
-    /// What is measured while it counts.
+    /// The values measured for it.
     pub gauges: Vec<Gauge>,
-    /// How much of it is done, 0 to 1; `None` where it does not run or nobody knows.
+    /// The completed share, 0 to 1; `None` if it does not run or the share is not known.
     pub progress: Option<f32>,
 }
 
-/// How far a step is.
+/// The state of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StepState {
     /// Its turn has not come.
@@ -58,17 +56,17 @@ pub enum StepState {
 /// A measured value and what it may be.
 #[derive(Clone, Debug)]
 pub struct Gauge {
-    /// What is measured.
+    /// Name of the measured value.
     pub name: String,
     /// The value; `None` where there is none now.
     pub value: Option<f64>,
     /// The value with its unit.
     pub shown: String,
-    /// What it may be.
+    /// The allowed range.
     pub allowed: RangeInclusive<f64>,
-    /// What is best of that; `None`: all is as good.
+    /// The best range; `None` if all values are equally good.
     pub best: Option<RangeInclusive<f64>>,
-    /// What it may be, in words: `498…502 rpm`.
+    /// The allowed range in words: `498…502 rpm`.
     pub limits: String,
     /// Ends of the scale; they reach beyond what is allowed.
     pub scale: RangeInclusive<f64>,
@@ -79,13 +77,13 @@ pub struct Gauge {
 pub struct Steps<'a> {
     /// Its steps, the first first.
     pub steps: &'a [Step],
-    /// What starts what waits: its word, and why it may not be pressed. It stands in the step that waits.
+    /// The start button of the waiting step: its label, and why it is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
-    /// What leaves the step out that waits.
+    /// The label of the button that skips the waiting step.
     pub skip: Option<&'a str>,
 }
 
-/// What the user wants.
+/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepsEvent {
     /// Begin with what waits.
@@ -240,7 +238,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> 
     event
 }
 
-/// How much is done.
+/// Draws the completed share.
 fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width().max(0.0), 6.0), Sense::hover());

@@ -13,7 +13,7 @@ use super::focus_ring;
 use crate::bits::{self, TypedKind, TypedRow};
 use crate::ui::{Theme, icons};
 
-/// How long a copied value says so, in seconds.
+/// Seconds for which a copied value is marked.
 const COPIED: f64 = 1.2;
 
 /// Widths of the columns and height of a line.

@@ -10,9 +10,9 @@ use crate::link::Clock;
 use crate::sim::sine_cosine::{Checked, Source};
 use crate::units::Moment;
 
-/// What a batch lasts, where the machine keeps up.
+/// Nanoseconds of a batch at full rate.
 const BATCH_NS: i64 = 10_000_000;
-/// What is made up for.
+/// Nanoseconds of delay that are caught up.
 const LATE_NS: i64 = 250_000_000;
 
 /// Settings of samples that are due are forgotten: the source was changed too often meanwhile.

@@ -1,6 +1,5 @@
-//! An adapter as a producer: it is opened, asked who it is and set on the stream's own thread, so that nobody waits for it;
-//! and its stream is ended there when nobody wants it any more. What came damaged or not at all is missing before the batch
-//! that follows.
+//! An adapter as a producer: it is opened, identified and configured on the stream's own thread, so that nothing waits
+//! for it; its stream is ended there as well. Samples damaged or lost are reported as missing before the next batch.
 
 mod open;
 
@@ -18,15 +17,15 @@ use crate::worker::stream::{Batch, Counted, Producer};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// What an adapter is to stream, and what its samples are.
+/// The configuration of a stream, and its samples.
 pub trait Stretch: Send + 'static {
-    /// What a batch holds.
+    /// The samples of a batch.
     type Samples: Counted;
 
-    /// How the adapter is set.
+    /// Returns the requested setting of the adapter.
     fn wanted(&self) -> Wanted;
 
-    /// What a packet says; `None` where it is none of this stream.
+    /// Returns the samples of a packet; `None` if it does not belong to this stream.
     fn read(&self, data: Data, streaming: &Streaming) -> Option<Self::Samples>;
 }
 
@@ -46,7 +45,7 @@ pub struct Pair {
     pub cosine_v: Vec<f64>,
 }
 
-/// Why an adapter streams no more, or not at all.
+/// Why an adapter does not stream, or no longer.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
     /// The link.
@@ -77,7 +76,7 @@ impl<S: Stretch> Bridge<S> {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
     }
 
-    /// Who streams and how, as soon as it does.
+    /// Returns the adapter and the actual setting as soon as it streams.
     pub fn streaming(&self) -> Arc<OnceLock<Streaming>> {
         self.streaming.clone()
     }

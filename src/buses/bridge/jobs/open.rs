@@ -13,20 +13,20 @@ use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
 
-/// What a link to the virtual adapter may say as it does for a session; there is no other here.
+/// A parameter of links to the virtual adapter that sessions need; here there is no other device.
 const BRIDGE: &str = "bridge";
-/// What the serial port of an adapter is set to, which matters only behind a converter.
+/// The format of an adapter's serial port, which matters only behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 
 parameters! {
     struct LinkParameters: UrlError {
-        /// How much later a reply may come than the protocol says; `None`: as usual for the link.
+        /// How much later than the protocol's worst case a reply may arrive; `None` for the default of the link.
         margin: Option<Duration> = None, "margin" => Maybe(MARGIN);
     }
 }
 
-/// How late the replies of an adapter may be, and what opens the wire to it, on whichever thread. These devices hang on a
-/// virtual one.
+/// Returns the margin for late replies, and the function that opens the wire on any thread. These devices are attached
+/// to a virtual adapter.
 ///
 /// # Errors
 /// A link that does not lead to an adapter, or a parameter that it does not take; nothing has been opened.

@@ -1,13 +1,13 @@
-//! What an adapter samples when is told by its own clock, which runs a little faster or slower than ours. A packet cannot
-//! have been sampled after it came: the one that was least under way tells how the clocks stand, and a stretch of time later
-//! another one. Ours is followed slowly, so that samples stay at equal distances and no time goes back.
+//! The drift of an adapter's clock against ours. A packet cannot have been sampled after its arrival: the one with the
+//! shortest transit shows the offset of the clocks, and another one some time later the drift. The offset is followed
+//! slowly, so that samples stay equidistant and no time goes backwards.
 
 use crate::analysis::Time;
 
-/// How the clock of an adapter that streams stands to ours.
+/// The offset of the clock of a streaming adapter against ours.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drift {
-    /// What is added to the adapter's time, in nanoseconds; `None` before the first packet.
+    /// Added to the adapter's time, in nanoseconds; `None` before the first packet.
     ahead_ns: Option<i128>,
     /// The least that packets have told in this stretch, and in the one before.
     least: Option<(i128, Option<i128>)>,
@@ -19,12 +19,12 @@ pub(super) struct Drift {
 
 /// Among the packets of so long one was hardly under way.
 const STRETCH_NS: i128 = 10_000_000_000;
-/// What packets are more or less under way with USB.
+/// Nanoseconds by which transit times over USB vary.
 const SLACK_NS: i128 = 2_000_000;
 /// One part of so many is made up for at most: more than oscillators differ by, so little that no speed looks another, and
 /// less than one of the 255 samples of a packet.
 const SLOWNESS: i128 = 4000;
-/// That is no drift: one of both clocks stood still, or was set.
+/// Nanoseconds beyond which a jump is not drift: a clock stood still, or was set.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl Drift {

@@ -1,5 +1,5 @@
-//! What an adapter sends by itself: the samples of one stream in their order, and how many are missing before them
-//! (reference "bridge", 3), by our clock (`drift`).
+//! The data that an adapter streams: the samples of one stream in order, and how many are missing before them
+//! (reference "bridge", 3), in our time (`drift`).
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Rep
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// What an adapter is to send by itself. What it clocks or samples how was said before.
+/// The kind of stream. Its clock and sampling have been configured before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Streamed {
     /// Words of SSI, so many microseconds apart.
@@ -54,7 +54,7 @@ pub(crate) struct Flow {
     drift: Drift,
 }
 
-/// Who sends nothing for so long, and for so many samples, has ended.
+/// Silence after which a stream counts as ended.
 const SILENT: Duration = Duration::from_secs(2);
 const SILENT_SAMPLES: u32 = 256;
 
@@ -124,7 +124,7 @@ impl Flow {
         })
     }
 
-    /// What it streams.
+    /// Returns the kind of stream.
     pub(crate) const fn streamed(&self) -> Streamed {
         self.streamed
     }

@@ -30,10 +30,10 @@ pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 /// Clocks that can be asked for; an adapter takes the nearest that it has.
 pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
 
-/// What goes on for so long behind the time of a reply, be it noise or a stream, brings none.
+/// Data that continues for this long after the reply time, be it noise or a stream, contains no reply.
 const ENDLESS: Duration = Duration::from_secs(1);
 
-/// What is known about an adapter, from one job to the next.
+/// The state of an adapter that is kept between jobs.
 #[derive(Clone, Debug, Default)]
 pub struct AdapterState {
     receiver: Receiver,
@@ -44,7 +44,7 @@ pub struct AdapterState {
     power: Power,
 }
 
-/// Why an adapter gives no reply that can be used.
+/// Why an adapter gives no usable reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AdapterError {
     /// Nothing comes, asked twice.
@@ -61,25 +61,25 @@ pub enum AdapterError {
     /// It has not what this needs.
     #[error("the adapter {name} cannot do BiSS")]
     NoBiss {
-        /// What it calls itself.
+        /// Name of the adapter.
         name: String,
     },
     /// It has not what this needs.
     #[error("the adapter {name} cannot do SSI")]
     NoSsi {
-        /// What it calls itself.
+        /// Name of the adapter.
         name: String,
     },
     /// It has not what this needs.
     #[error("the adapter {name} cannot sample analogue signals")]
     NoAnalog {
-        /// What it calls itself.
+        /// Name of the adapter.
         name: String,
     },
     /// It has not what this needs.
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply {
-        /// What it calls itself.
+        /// Name of the adapter.
         name: String,
     },
     /// It gives more than the encoder stands; it was told to switch that off.
@@ -95,21 +95,21 @@ pub enum AdapterError {
     /// A stream that ran brings nothing any more.
     #[error("the adapter sends nothing any more")]
     Mute,
-    /// The numbers of a stream's samples have begun anew.
+    /// The sample numbers of a stream started again.
     #[error("the adapter has started anew")]
     Restarted,
-    /// What it sends by itself is none of this version.
+    /// Streamed data is not of this version.
     #[error("what the adapter sends cannot be read: {cause}")]
     Data {
-        /// What is wrong with it.
+        /// The cause.
         cause: BodyError,
     },
     /// It refuses a request.
     #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
     Refused {
-        /// What was asked.
+        /// The requested operation.
         operation: Operation,
-        /// Why.
+        /// The error code.
         code: ErrorCode,
         /// In its own words.
         text: String,
@@ -117,17 +117,17 @@ pub enum AdapterError {
     /// Its reply is none of this version.
     #[error("the adapter's reply to operation 0x{:02X} cannot be read: {cause}", operation.byte())]
     Reply {
-        /// What was asked.
+        /// The requested operation.
         operation: Operation,
-        /// What is wrong with it.
+        /// The cause.
         cause: BodyError,
     },
     /// It answers another question.
     #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", asked.byte(), got.byte())]
     Other {
-        /// What was asked.
+        /// The requested operation.
         asked: Operation,
-        /// What was answered.
+        /// The operation of the reply.
         got: Operation,
     },
 }
@@ -166,22 +166,23 @@ pub(crate) struct Answered {
 }
 
 impl AdapterState {
-    /// Who it is; `None` before it was asked.
+    /// Returns the adapter's identity; `None` before it was read.
     pub const fn hello(&self) -> Option<&Hello> {
         self.hello.as_ref()
     }
 
-    /// How the encoder's supply is left at the end of the session.
+    /// Sets how the encoder's supply is left at the end of the session.
     pub fn leave_supply(&mut self, after: SupplyAfter) {
         self.power.after = after;
     }
 
-    /// It is asked anew who it is. What is known of the encoder's supply stays: HELLO does not switch it.
+    /// Forgets the identity, so that it is read again. The known state of the encoder's supply stays: HELLO does not
+    /// switch it.
     pub(crate) fn forget(&mut self) {
         *self = AdapterState { power: self.power, ..AdapterState::default() };
     }
 
-    /// Whether the encoder had power before the session; `None` where nothing has told yet.
+    /// Returns whether the encoder had power before the session; `None` while not known.
     pub(crate) const fn found_supplied(&self) -> Option<bool> {
         self.power.found
     }
@@ -359,8 +360,8 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// How far the adapter's clock is behind ours, in nanoseconds: between these two, as far as replies have told. What an
-/// adapter samples it samples after the request left us and before the reply came.
+/// The offset of the adapter's clock behind ours, in nanoseconds, between these two bounds: an adapter samples after
+/// the request left and before the reply arrived.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clocks {
     bounds: Option<(i128, i128)>,

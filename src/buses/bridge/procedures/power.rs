@@ -2,7 +2,7 @@
 
 use crate::parameter::Words;
 
-/// How the supply is left at the end of a session.
+/// The state of the supply at the end of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfter {
     /// As it was found: what this session switched on goes off.
@@ -17,12 +17,12 @@ pub enum SupplyAfter {
 impl SupplyAfter {
     /// The parameter of a link whose session leaves the supply on, with its value.
     pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
-    /// What the parameter takes.
+    /// The values of the parameter.
     pub const WORDS: Words<SupplyAfter> =
         Words(&[("as-found", SupplyAfter::AsFound), ("on", SupplyAfter::On), ("off", SupplyAfter::Off)]);
 }
 
-/// What is known of an adapter's supply.
+/// The known state of an adapter's supply.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Power {
     /// The user's choice.

@@ -33,7 +33,7 @@ pub enum Wanted {
 /// Until the signals of an encoder mean something: HIPERFACE, figure 38, up to 900 ms.
 const POWER_UP: Duration = Duration::from_secs(1);
 
-/// Who streams, and how in fact.
+/// The streaming adapter and its actual setting.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Streaming {
     /// The adapter.
@@ -46,7 +46,7 @@ pub struct Streaming {
     pub supplied: Option<(u16, u16)>,
 }
 
-/// Why there is no stream, or none any more.
+/// Why there is no stream, or no longer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TapError {
     /// The user wished it.
@@ -81,7 +81,7 @@ impl From<Failure> for TapError {
 }
 
 impl Tap {
-    /// An adapter that nobody has asked; a reply may come so much later than the protocol says.
+    /// Creates a tap on an unidentified adapter; replies may arrive later than the protocol says by this margin.
     pub fn new(margin: Duration) -> Self {
         Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }

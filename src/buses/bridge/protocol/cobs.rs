@@ -4,7 +4,7 @@
 /// Bytes that one code byte can be followed by.
 const BLOCK: usize = 254;
 
-/// Why bytes are no stuffed ones.
+/// Why bytes are not COBS-encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CobsError {
     /// 00 ends a packet and never stands within one.

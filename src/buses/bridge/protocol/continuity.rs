@@ -1,22 +1,22 @@
-//! Whether the packets of a stream follow each other without a gap. A gap is never bridged silently (reference 3).
+//! Checks whether the packets of a stream follow each other without a gap. A gap is never bridged silently (reference
+//! 3).
 
 use super::data::Data;
 
-/// Where a stream stands.
+/// The position in a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Continuity {
     next: u32,
 }
 
-/// What is missing before a packet.
+/// The gap before a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gap {
     /// Nothing.
     None,
-    /// So many samples.
+    /// Number of missing samples.
     Missing(u32),
-    /// The packet's samples come before those that were there already: the stream was started anew, or the packet is
-    /// late.
+    /// The packet's samples precede earlier ones: the stream was restarted, or the packet is late.
     Backwards,
 }
 
@@ -26,7 +26,7 @@ impl Continuity {
         Continuity { next: 0 }
     }
 
-    /// What is missing before these samples; the next packet is expected behind them.
+    /// Returns the gap before these samples; the next packet is expected after them.
     pub fn follow(&mut self, data: &Data) -> Gap {
         let (first, count, lost) = data.extent();
         let ahead = first.wrapping_sub(self.next);

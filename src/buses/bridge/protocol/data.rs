@@ -1,4 +1,4 @@
-//! What streams bring, without being asked (reference 3).
+//! Packets of streams, sent without a request (reference 3).
 
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;

@@ -1,6 +1,6 @@
 //! Bodies field by field: integers with their low byte first, texts with their length before them.
 
-/// Why a body is not that of its operation.
+/// Why a body does not belong to its operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
     /// Another length than the operation has.
@@ -19,9 +19,9 @@ pub enum BodyError {
     Value {
         /// The operation.
         op: u8,
-        /// Which field.
+        /// Name of the field.
         field: &'static str,
-        /// What stood there.
+        /// The value.
         got: u8,
     },
     /// Bytes that are no UTF-8.
@@ -40,7 +40,7 @@ pub enum BodyError {
     },
 }
 
-/// What is left of a body to be read.
+/// The rest of a body to be read.
 pub(super) struct Fields<'a> {
     op: u8,
     whole: usize,

@@ -16,7 +16,7 @@ pub struct Packet {
     pub body: Vec<u8>,
 }
 
-/// Why bytes are no packet.
+/// Why bytes are not a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
     /// The stuffing is broken.
@@ -28,9 +28,9 @@ pub enum PacketError {
     /// The checksum does not fit.
     #[error("CRC {got:04X} where {expected:04X} was expected")]
     Crc {
-        /// What the other bytes give.
+        /// The checksum calculated from the other bytes.
         expected: u16,
-        /// What stood there.
+        /// The checksum received.
         got: u16,
     },
 }
@@ -85,7 +85,7 @@ pub fn crc16(bytes: &[u8]) -> u16 {
     })
 }
 
-/// What eight bits at the register's upper end leave behind.
+/// The remainder of eight bits at the upper end of the register.
 const TABLE: [u16; 256] = table();
 
 #[expect(clippy::indexing_slicing, reason = "iterators cannot run while compiling; the index is that of the loop")]

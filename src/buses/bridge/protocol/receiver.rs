@@ -2,11 +2,11 @@
 
 use super::packet::{Packet, PacketError};
 
-/// What has come and is no whole packet yet.
+/// Bytes received that are not a whole packet yet.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
-    /// Where the search for the next 00 goes on.
+    /// Where the search for the next 00 continues.
     searched: usize,
     /// The packet under way is too long to be one: its bytes are let go until it ends.
     overlong: bool,

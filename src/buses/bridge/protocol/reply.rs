@@ -1,4 +1,4 @@
-//! What an adapter answers, and everything else that comes from it (reference 2 and 3).
+//! The replies of an adapter, and everything else it sends (reference 2 and 3).
 
 use super::VERSION;
 use super::data::Data;
@@ -6,7 +6,7 @@ use super::fields::{BodyError, Fields, push_text};
 use super::packet::Packet;
 use super::request::Operation;
 
-/// What comes from an adapter.
+/// A message from an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Message {
     /// The answer to the request with the same sequence number.
@@ -15,19 +15,19 @@ pub enum Message {
     Error {
         /// The request's operation.
         op: u8,
-        /// Why.
+        /// The error code.
         code: ErrorCode,
         /// In words, for a person.
         text: String,
     },
-    /// What a stream has brought.
+    /// Data of a stream.
     Data(Data),
 }
 
 /// A reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// Who is there.
+    /// The identity of the adapter.
     Hello(Hello),
     /// The encoder's supply.
     Supply {
@@ -38,7 +38,7 @@ pub enum Reply {
         /// Measured.
         milliampere: u16,
     },
-    /// How SSI is clocked in fact.
+    /// The actual clock of SSI.
     SsiConfig {
         /// Clock in hertz.
         clock_hz: u32,
@@ -55,7 +55,7 @@ pub enum Reply {
         /// Microseconds from one to the next in fact.
         period_us: u32,
     },
-    /// How BiSS is clocked in fact.
+    /// The actual clock of BiSS.
     BissConfig {
         /// Clock in hertz.
         clock_hz: u32,
@@ -64,7 +64,7 @@ pub enum Reply {
     BissRead {
         /// Microseconds of the adapter's clock.
         t_us: u64,
-        /// Whether there is a frame.
+        /// Status of the frame.
         status: BissStatus,
         /// Data and CRC, right-justified; the CRC is not checked.
         raw: u64,
@@ -84,11 +84,11 @@ pub enum Reply {
         /// Microseconds from one to the next in fact.
         period_us: u32,
     },
-    /// How analogue signals are sampled in fact.
+    /// The actual sampling of analogue signals.
     AnalogConfig {
         /// Samples a second.
         sample_hz: u32,
-        /// What a value of 32 767 stands for.
+        /// Full scale: the voltage of a value of 32 767.
         full_scale_microvolt: u32,
         /// Bits of the converter.
         bits: u8,
@@ -98,12 +98,12 @@ pub enum Reply {
         /// On or off.
         on: bool,
     },
-    /// How the serial line is set in fact.
+    /// The actual setting of the serial line.
     UartConfig {
         /// Bits a second.
         baud: u32,
     },
-    /// What the serial line has brought.
+    /// Bytes received on the serial line.
     UartTransfer {
         /// When the reply's first start bit began, by the clock of the analogue samples.
         t_us: u64,
@@ -112,16 +112,16 @@ pub enum Reply {
     },
 }
 
-/// Who an adapter is and what it can do.
+/// The identity and the capabilities of an adapter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Hello {
-    /// What it can do.
+    /// The capabilities.
     pub capabilities: Capabilities,
     /// Fastest clock in hertz.
     pub max_clock_hz: u32,
     /// Most samples a second.
     pub max_sample_hz: u32,
-    /// What it is called.
+    /// The name.
     pub name: String,
     /// Its serial number.
     pub serial: String,
@@ -129,15 +129,15 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// What an adapter can do; bits that this version does not know are kept.
+/// The capabilities of an adapter; unknown bits are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
-/// Whether an adapter got a BiSS frame; a status that this version does not know is kept.
+/// The status of reading a BiSS frame; an unknown status is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
-/// Why an adapter refuses; a code that this version does not know is kept.
+/// Why an adapter refuses; an unknown code is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u8);
 
@@ -182,7 +182,7 @@ impl Capabilities {
 impl BissStatus {
     /// There is a frame.
     pub const OK: BissStatus = BissStatus(0);
-    /// Nobody acknowledged.
+    /// No encoder acknowledged.
     pub const NO_ACKNOWLEDGE: BissStatus = BissStatus(1);
     /// The data line stays at 0.
     pub const STUCK_LOW: BissStatus = BissStatus(2);
@@ -261,7 +261,7 @@ impl Message {
 }
 
 impl Reply {
-    /// Which operation it answers.
+    /// Returns the operation that it answers.
     pub const fn operation(&self) -> Operation {
         match self {
             Reply::Hello(_) => Operation::Hello,

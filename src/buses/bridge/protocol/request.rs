@@ -1,4 +1,4 @@
-//! What a host asks of an adapter (reference 2).
+//! The requests of a host to an adapter (reference 2).
 
 use super::fields::{BodyError, Fields};
 use super::packet::Packet;
@@ -7,17 +7,17 @@ use super::packet::Packet;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Operation {
-    /// Who is there.
+    /// Requests the identity.
     Hello = 0x01,
     /// The encoder's supply.
     Supply = 0x02,
-    /// How SSI is clocked.
+    /// Configures the clock of SSI.
     SsiConfig = 0x10,
     /// One SSI word.
     SsiRead = 0x11,
     /// SSI words without being asked.
     SsiStream = 0x12,
-    /// How BiSS is clocked.
+    /// Configures the clock of BiSS.
     BissConfig = 0x20,
     /// One BiSS frame.
     BissRead = 0x21,
@@ -27,11 +27,11 @@ pub enum Operation {
     BissRegisterWrite = 0x23,
     /// BiSS frames without being asked.
     BissStream = 0x24,
-    /// How analogue signals are sampled.
+    /// Configures the sampling of analogue signals.
     AnalogConfig = 0x30,
     /// Analogue samples without being asked.
     AnalogStream = 0x31,
-    /// How the serial line is set.
+    /// Configures the serial line.
     UartConfig = 0x40,
     /// Bytes out and in on the serial line.
     UartTransfer = 0x41,
@@ -40,7 +40,7 @@ pub enum Operation {
 /// A request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// Who is there.
+    /// Requests the identity.
     Hello,
     /// The encoder's supply. HELLO leaves it as it is.
     Supply {
@@ -49,7 +49,7 @@ pub enum Request {
         /// Its voltage. Only one that the encoder's description allows may be asked for.
         millivolt: u16,
     },
-    /// How SSI is clocked.
+    /// Configures the clock of SSI.
     SsiConfig {
         /// Bits of a word, 1…64.
         clocks: u8,
@@ -67,7 +67,7 @@ pub enum Request {
         /// Microseconds from one to the next; 0 ends it.
         period_us: u32,
     },
-    /// How BiSS is clocked.
+    /// Configures the clock of BiSS.
     BissConfig {
         /// Clock in hertz.
         clock_hz: u32,
@@ -101,7 +101,7 @@ pub enum Request {
         /// Microseconds from one to the next; 0 ends it.
         period_us: u32,
     },
-    /// How analogue signals are sampled.
+    /// Configures the sampling of analogue signals.
     AnalogConfig {
         /// Samples a second.
         sample_hz: u32,
@@ -111,7 +111,7 @@ pub enum Request {
         /// On or off.
         on: bool,
     },
-    /// How the serial line is set.
+    /// Configures the serial line.
     UartConfig {
         /// Bits a second.
         baud: u32,
@@ -189,7 +189,7 @@ impl Operation {
 }
 
 impl Request {
-    /// Which operation it is.
+    /// Returns the operation.
     pub const fn operation(&self) -> Operation {
         match self {
             Request::Hello => Operation::Hello,

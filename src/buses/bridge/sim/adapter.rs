@@ -115,7 +115,7 @@ impl Adapter {
         device.downcast_mut()
     }
 
-    /// What turns the shaft that all encoders share.
+    /// Returns the motor of the shaft that all encoders share.
     pub fn motor(&self) -> Motor {
         self.bus.motor()
     }
@@ -212,7 +212,7 @@ impl Adapter {
         self.send(self.replied, &reply);
     }
 
-    /// How long the adapter is at it, beside the way of the bytes.
+    /// Returns how long the adapter works on a request, without the transmission.
     fn time(&self, request: &Request) -> Duration {
         let frame = self.biss.map_or(Duration::ZERO, |setting| setting.frame());
         match request.operation() {

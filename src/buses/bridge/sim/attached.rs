@@ -1,5 +1,5 @@
-//! What hangs on the adapter: devices on its clocked buses and at its serial line, as the adapter sees them. Which ones
-//! there are is no matter of the adapter; each reads its own settings of a `sim:` link.
+//! Devices attached to the adapter: on its clocked buses and its serial line. The adapter does not know which ones
+//! exist; each reads its own settings of a `sim:` link.
 
 use std::any::Any;
 
@@ -15,10 +15,10 @@ pub trait BissDevice: Any + Send {
     /// The bits behind the control bit of the frame taken at a moment, and how many; `None` while it does not acknowledge.
     fn frame(&mut self, at: Moment) -> Option<(u64, u8)>;
 
-    /// Where its shaft is, in steps, and how many a revolution has; `None` without power.
+    /// Returns the position of its shaft in steps, and the steps per revolution; `None` without power.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)>;
 
-    /// What turns the shaft.
+    /// Returns the motor of the shaft.
     fn motor(&self) -> Motor;
 
     /// Turns it at another speed from `now` on.
@@ -58,7 +58,7 @@ pub trait SsiDevice: Send {
     fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8);
 }
 
-/// What is at the end of the serial line.
+/// The device at the end of the serial line.
 pub trait SerialDevice: ByteDevice {
     /// Another one like it.
     fn another(&self) -> Box<dyn SerialDevice>;

@@ -1,5 +1,5 @@
-//! What one frame of BiSS or SSI carries: the bits that the adapter clocks out of the encoder, whatever it takes them
-//! for. Damaged wires and noise are here.
+//! The bits of one frame of BiSS or SSI, as the adapter clocks them out of the encoder, whatever their meaning. Damaged
+//! wires and noise are applied here.
 
 use fastrand::Rng;
 
@@ -15,7 +15,7 @@ use crate::units::Moment;
 pub(super) struct Bus {
     pub(super) biss: Option<Box<dyn BissDevice>>,
     pub(super) ssi: Option<Box<dyn SsiDevice>>,
-    /// What turns where nothing hangs on BiSS.
+    /// The shaft that turns while nothing is attached to BiSS.
     shaft: Shaft,
     /// The encoders have power.
     pub(super) is_supplied: bool,
@@ -38,7 +38,7 @@ impl Bus {
         }
     }
 
-    /// What turns the shaft that all encoders share.
+    /// Returns the motor of the shaft that all encoders share.
     pub(super) fn motor(&self) -> Motor {
         self.biss.as_ref().map_or_else(|| self.shaft.motor().clone(), |device| device.motor())
     }
@@ -57,7 +57,7 @@ impl Bus {
         self.shaft.follow(now);
     }
 
-    /// Where the shaft is, in steps, and how many a revolution has; `None` without power.
+    /// Returns the position of the shaft in steps, and the steps per revolution; `None` without power.
     fn place(&mut self, at: Moment) -> Option<(u64, u64)> {
         match &mut self.biss {
             Some(device) => device.place(at),

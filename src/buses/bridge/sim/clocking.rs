@@ -1,4 +1,4 @@
-//! How the clocked buses are clocked: which clocks the adapter has, and how long a frame takes with one.
+//! The clocking of the buses: the available clocks, and the duration of a frame.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ const CRYSTAL_HZ: u32 = 60_000_000;
 /// Longest time that the encoder works on a frame.
 const ACKNOWLEDGE_US: u32 = 7;
 
-/// How BiSS is clocked.
+/// The setting of BiSS.
 #[derive(Clone, Copy)]
 pub(super) struct BissSetting {
     pub(super) clock_hz: u32,
@@ -29,7 +29,7 @@ impl BissSetting {
     }
 }
 
-/// How SSI is clocked.
+/// The setting of SSI.
 #[derive(Clone, Copy)]
 pub(super) struct SsiSetting {
     pub(super) clock_hz: u32,

@@ -7,8 +7,7 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
 
 parameters! {
-    /// What a virtual adapter shall be like. The default has nothing wrong with it, and the encoder's supply comes from
-    /// elsewhere.
+    /// The settings of a virtual adapter. By default it has no faults, and the encoder's supply is external.
     pub(super) struct Config: ConfigError {
         /// The wires to the encoder.
         pub(super) line: EncoderWiring = EncoderWiring::Good,
@@ -23,7 +22,7 @@ parameters! {
 }
 
 parameters! {
-    /// What a device that hangs on it may take as well: where noise begins, and faults of the line and the device.
+    /// Settings that attached devices may use as well: the seed of the noise, and faults of the line and the device.
     pub(super) struct Shared: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -41,7 +40,7 @@ parameters! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum EncoderWiring {
     Good,
-    /// Nobody acknowledges.
+    /// No encoder acknowledges.
     Open,
     /// The data line stays at 0.
     Low,

@@ -20,12 +20,12 @@ pub fn keys(devices: &[&dyn Attachable]) -> Vec<&'static str> {
     keys
 }
 
-/// What a person types of an adapter: the speed of the shaft, be it the adapter's or a device's, and faults.
+/// Returns the entries of an adapter: the speed of the shaft, whether its own or a device's, and faults.
 pub fn entries() -> Vec<Entry> {
     [Shaft::entries(), Shared::entries()].concat()
 }
 
-/// Whether the shaft is the adapter's own: no device on it has a setting for its speed.
+/// Returns whether the shaft is the adapter's own: no attached device has a setting for its speed.
 fn turns_itself(devices: &[&dyn Attachable]) -> bool {
     devices.iter().all(|device| Shaft::KEYS.iter().all(|key| !device.keys().contains(key)))
 }

@@ -43,7 +43,7 @@ impl Shaft {
         }
     }
 
-    /// Where it is, in steps, and how many a revolution has.
+    /// Returns the position in steps, and the steps per revolution.
     pub(super) fn place(&mut self, at: Moment) -> (u64, u64) {
         self.follow(at);
         // Not negative, below 2^41.

@@ -10,17 +10,17 @@ use crate::units::Moment;
 
 /// Longest wait for a packet to fill.
 const FLUSH: Duration = Duration::from_millis(5);
-/// What the adapter keeps for a host that does not fetch.
+/// The data that the adapter buffers for a host that does not fetch it.
 const BACKLOG: Duration = Duration::from_secs(1);
 
-/// Which clocked bus.
+/// The clocked bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Ssi,
     Biss,
 }
 
-/// Where a stream is.
+/// The progress of a stream.
 #[derive(Clone, Debug)]
 struct Pace {
     start: Moment,

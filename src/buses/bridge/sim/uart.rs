@@ -14,7 +14,7 @@ pub(super) struct Uart {
     format: Option<CharacterFormat>,
 }
 
-/// What a transfer has brought.
+/// The result of a transfer.
 pub(super) struct Transfer {
     /// When the first start bit began; without a reply the end of the wait.
     pub(super) start: Moment,

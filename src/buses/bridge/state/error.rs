@@ -1,4 +1,4 @@
-//! What an adapter does not do, in words, whatever bus is behind it.
+//! Errors of an adapter in words, for any bus behind it.
 
 use crate::app::Text;
 use crate::buses::bridge::procedures::AdapterError;

@@ -1,4 +1,4 @@
-//! What an adapter says and does not do, in words, whatever bus is behind it.
+//! Messages and errors of an adapter in words, for any bus behind it.
 
 mod error;
 mod texts;

@@ -1,4 +1,4 @@
-//! What passes over the line to an adapter, in words, whatever bus is behind it.
+//! The traffic to an adapter in words, for any bus behind it.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -24,7 +24,7 @@ pub fn received(bytes: &[u8]) -> Option<Explained> {
     }
 }
 
-/// What an adapter is asked, whatever is behind it.
+/// Returns the text of a request.
 pub fn asked(request: &Request) -> Text {
     match request {
         Request::BissRead | Request::SsiRead => Text::new("trace.position"),
@@ -33,7 +33,7 @@ pub fn asked(request: &Request) -> Text {
     }
 }
 
-/// What an adapter says; `None` for what is no message of one.
+/// Returns the text of a packet from an adapter; `None` if it is not a message.
 pub fn said(packet: &Packet) -> Option<Text> {
     Some(match Message::parse(packet).ok()? {
         Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => plain(format!("0x{raw:X}")),

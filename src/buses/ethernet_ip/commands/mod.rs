@@ -15,7 +15,7 @@ use crate::cli::commands::ProtocolDecoder;
 use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::{Output, count};
 
-/// What bytes say.
+/// Decoded bytes.
 pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
     /// Further keys for a script.
@@ -24,7 +24,7 @@ pub(crate) struct DecodedBytes {
     pub(crate) data: Option<(Vec<u8>, bool)>,
 }
 
-/// What the data of an attribute of a class say: its name, and its value or why there is none.
+/// Returns the name of an attribute of a class and its value, or why there is none.
 pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
 /// Whose packets they are.
@@ -71,7 +71,7 @@ fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// What a packet says; `None` for bytes that do not begin like one.
+/// Decodes a packet; `None` for bytes that do not begin like one.
 pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     if let Some(said) = cyclic(bytes) {
         return Some(Ok(said));
@@ -111,8 +111,8 @@ fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     Some(DecodedBytes { lines, more, data: Some((data, to_target)) })
 }
 
-/// Frames behind each other; `None` where not even the first command is known. Process data of drives that are left alone
-/// begin like NOP, which nobody captures.
+/// Decodes consecutive frames; `None` if not even the first command is known. Process data of idle drives begin like
+/// NOP, which does not occur in captures.
 fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
     let [low, high, ..] = bytes else { return None };
     let command = Command::new(u16::from_le_bytes([*low, *high]));

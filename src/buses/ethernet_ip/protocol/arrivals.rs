@@ -1,6 +1,6 @@
-//! Which packets of a cyclic connection count: none twice, and none that a newer one has overtaken.
+//! Decides which packets of a cyclic connection count: none twice, and none overtaken by a newer one.
 
-/// What has come of one connection.
+/// The packets received on one connection.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Arrivals {
     newest: Option<u32>,
@@ -8,7 +8,7 @@ pub struct Arrivals {
     stale: u64,
 }
 
-/// What becomes of a packet.
+/// The verdict on a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
     /// Its data count.

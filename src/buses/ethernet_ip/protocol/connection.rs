@@ -53,12 +53,12 @@ pub enum Trigger {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ConnectionTimeout(u8);
 
-/// How long a request may take: two bytes, priority with the length of a tick, and ticks.
+/// The time-out of a request: two bytes, priority with the length of a tick, and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RequestTimeout {
     /// Bits 3 to 0: a tick is 2ⁿ milliseconds; the others are kept.
     pub priority_and_tick: u8,
-    /// How many ticks.
+    /// Number of ticks.
     pub ticks: u8,
 }
 
@@ -107,7 +107,7 @@ impl NetworkParameters {
         }
     }
 
-    /// How urgent it is.
+    /// Returns the priority.
     pub const fn priority(self) -> NetworkPriority {
         match self.0 >> 10 & 3 {
             0 => NetworkPriority::Low,
@@ -197,7 +197,7 @@ impl RequestTimeout {
     /// 250 ticks of 8 ms: two seconds.
     pub const TWO_SECONDS: RequestTimeout = RequestTimeout { priority_and_tick: 3, ticks: 250 };
 
-    /// How long it is.
+    /// Returns the duration.
     pub const fn duration(self) -> Duration {
         let tick_ms = 1u64 << (self.priority_and_tick & 0x0F);
         Duration::from_millis(tick_ms * self.ticks as u64)

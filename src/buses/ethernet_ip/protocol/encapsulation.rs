@@ -4,14 +4,14 @@ use super::fields::{Fields, PacketError};
 use super::items::{Item, Items};
 use super::status::EncapsulationStatus;
 
-/// What a frame is for. Commands that are not known are kept.
+/// The command of a frame. Unknown commands are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Command(u16);
 
 /// A frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// What it is for; the same in the reply.
+    /// The command; the same in the reply.
     pub command: Command,
     /// Given by the target with the reply to RegisterSession; 0 before and without one.
     pub session: u32,
@@ -21,11 +21,11 @@ pub struct Frame {
     pub context: [u8; 8],
     /// 0.
     pub options: u32,
-    /// What follows the header, at most [`Frame::MAX_DATA`] bytes: [`Frame::emit`] cuts what is longer.
+    /// The data after the header, at most [`Frame::MAX_DATA`] bytes: [`Frame::emit`] truncates longer data.
     pub data: Vec<u8>,
 }
 
-/// What a frame carries.
+/// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
     /// Nothing: a list that is asked for, the end of a session, a reply that says no.
@@ -67,11 +67,11 @@ const NAMES: [(Command, &str); 8] = [
 impl Command {
     /// Nothing is asked for.
     pub const NOP: Command = Command(0x00);
-    /// Which services there are.
+    /// Requests the list of services.
     pub const LIST_SERVICES: Command = Command(0x04);
-    /// Who is there; also by broadcast.
+    /// Requests the identity; also by broadcast.
     pub const LIST_IDENTITY: Command = Command(0x63);
-    /// Which interfaces beside CIP there are.
+    /// Requests the list of interfaces besides CIP.
     pub const LIST_INTERFACES: Command = Command(0x64);
     /// A session begins.
     pub const REGISTER_SESSION: Command = Command(0x65);
@@ -111,7 +111,7 @@ impl Frame {
         Frame { command, session: 0, status: EncapsulationStatus::OK, context, options: 0, data: body.emit() }
     }
 
-    /// Who is there.
+    /// Creates a request for the identity.
     pub fn list_identity(context: [u8; 8]) -> Self {
         Frame::request(Command::LIST_IDENTITY, context, &Body::Empty)
     }
@@ -146,8 +146,8 @@ impl Frame {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
 
-    /// Whether it is a reply to that request, and not one to an earlier one: command and context are the same, and so is the
-    /// session once there is one.
+    /// Returns whether this is the reply to that request: command and context are equal, and the session as well once
+    /// there is one.
     pub fn answers(&self, request: &Frame) -> bool {
         let session = request.session == 0 || request.session == self.session;
         self.command == request.command && self.context == request.context && session
@@ -199,7 +199,7 @@ impl Frame {
         bytes
     }
 
-    /// What it carries.
+    /// Parses the content.
     ///
     /// # Errors
     /// [`PacketError`] where the data are not those of its command.

@@ -1,12 +1,12 @@
 //! Packets field by field.
 
-/// Why bytes are not what they should be.
+/// Why bytes cannot be parsed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
     /// They end too early.
     #[error("{what} is cut off: there are {got} bytes of it")]
     Short {
-        /// What was read.
+        /// The structure being parsed.
         what: &'static str,
         /// Bytes there were.
         got: usize,
@@ -14,7 +14,7 @@ pub enum PacketError {
     /// Something is left.
     #[error("{what} is followed by {left} bytes that do not belong to it")]
     Long {
-        /// What was read.
+        /// The structure being parsed.
         what: &'static str,
         /// Bytes left over.
         left: usize,
@@ -22,16 +22,16 @@ pub enum PacketError {
     /// A value that its field cannot have.
     #[error("{what}: {field} cannot be 0x{got:X}")]
     Value {
-        /// What was read.
+        /// The structure being parsed.
         what: &'static str,
-        /// Which field.
+        /// Name of the field.
         field: &'static str,
-        /// What stood there.
+        /// The value.
         got: u32,
     },
 }
 
-/// What is left to be read.
+/// The rest of the bytes to be parsed.
 #[derive(Clone)]
 pub(super) struct Fields<'a> {
     what: &'static str,

@@ -8,7 +8,7 @@ use super::fields::{Fields, PacketError};
 use super::message::{Reply, Request, Service};
 use super::path::Path;
 
-/// Who has opened a connection, and which: the same in every message about it.
+/// Identifies a connection and its originator: the same in every message about it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Owner {
     /// Chosen by the originator, another for each connection.
@@ -22,23 +22,23 @@ pub struct Owner {
 /// A connection is asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardOpen {
-    /// How long the request may take.
+    /// Time-out of the request.
     pub timeout: RequestTimeout,
     /// 0: the target chooses.
     pub to_target_id: u32,
-    /// What packets to the originator are to carry.
+    /// Connection id of packets to the originator.
     pub to_originator_id: u32,
-    /// Who asks, and which connection it is.
+    /// The originator and the connection.
     pub owner: Owner,
     /// When it has ended without data.
     pub connection_timeout: ConnectionTimeout,
     /// Microseconds between two packets to the target.
     pub to_target_interval_us: u32,
-    /// What goes to the target.
+    /// Parameters towards the target.
     pub to_target: NetworkParameters,
     /// Microseconds between two packets to the originator.
     pub to_originator_interval_us: u32,
-    /// What goes to the originator.
+    /// Parameters towards the originator.
     pub to_originator: NetworkParameters,
     /// When data are sent.
     pub transport: Transport,
@@ -49,9 +49,9 @@ pub struct ForwardOpen {
 /// A connection has begun.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardOpened {
-    /// What packets to the target have to carry.
+    /// Connection id of packets to the target.
     pub to_target_id: u32,
-    /// What packets to the originator carry.
+    /// Connection id of packets to the originator.
     pub to_originator_id: u32,
     /// Whose connection it is.
     pub owner: Owner,
@@ -59,7 +59,7 @@ pub struct ForwardOpened {
     pub to_target_interval_us: u32,
     /// Microseconds between two packets to the originator, as they will come.
     pub to_originator_interval_us: u32,
-    /// What the application adds.
+    /// Data of the application.
     pub application: Vec<u16>,
 }
 
@@ -75,7 +75,7 @@ pub struct ForwardRefused {
 /// A connection is to end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ForwardClose {
-    /// How long the request may take.
+    /// Time-out of the request.
     pub timeout: RequestTimeout,
     /// Whose connection it is.
     pub owner: Owner,
@@ -88,7 +88,7 @@ pub struct ForwardClose {
 pub struct ForwardClosed {
     /// Whose connection it was.
     pub owner: Owner,
-    /// What the application adds.
+    /// Data of the application.
     pub application: Vec<u16>,
 }
 

@@ -1,16 +1,16 @@
-//! Who a device is: the identity object (class 1) and the item with which ListIdentity is answered (`P ODVA`).
+//! The identity of a device: the identity object (class 1) and the item that answers ListIdentity (`P ODVA`).
 
 use super::fields::{Fields, PacketError, push_short_text, text};
 use super::items::SocketAddress;
 
-/// What the identity object says, attributes 1 to 7.
+/// The identity object, attributes 1 to 7.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// The maker, of ODVA's list. Halstrup-Walcher is 1010.
     pub vendor: u16,
-    /// What kind of device.
+    /// Device type.
     pub device_type: u16,
-    /// Which product, of the maker's list.
+    /// Product code, assigned by the manufacturer.
     pub product_code: u16,
     /// Of the device.
     pub revision: Revision,
@@ -36,9 +36,9 @@ pub struct Revision {
 pub struct IdentityItem {
     /// The version of the encapsulation protocol: 1.
     pub version: u16,
-    /// Where explicit messages are taken.
+    /// Address for explicit messages.
     pub socket: SocketAddress,
-    /// Who it is.
+    /// The identity.
     pub identity: Identity,
     /// Attribute 8: 3 is operational, 255 unknown.
     pub state: u8,

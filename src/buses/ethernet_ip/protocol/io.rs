@@ -18,7 +18,7 @@ pub struct IoPacket {
     pub data: Vec<u8>,
 }
 
-/// What stands before the data: the device's description (EDS) says it (`U`: a header to the target, none back).
+/// The header before the data, as the device's EDS defines it (`U`: a header to the target, none back).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RealTimeFormat {
     /// 32 bits.

@@ -101,7 +101,7 @@ impl Items {
         })
     }
 
-    /// Where to send what goes to the target.
+    /// Returns the address for data to the target.
     pub fn socket_to_target(&self) -> Option<SocketAddress> {
         self.0.iter().find_map(|item| match item {
             Item::SocketToTarget(address) => Some(*address),
@@ -109,7 +109,7 @@ impl Items {
         })
     }
 
-    /// Where to send what goes to the originator.
+    /// Returns the address for data to the originator.
     pub fn socket_to_originator(&self) -> Option<SocketAddress> {
         self.0.iter().find_map(|item| match item {
             Item::SocketToOriginator(address) => Some(*address),
@@ -117,7 +117,7 @@ impl Items {
         })
     }
 
-    /// Who is there.
+    /// Returns the identity item.
     pub fn identity(&self) -> Option<&IdentityItem> {
         self.0.iter().find_map(|item| match item {
             Item::Identity(identity) => Some(identity),

@@ -4,31 +4,31 @@ use super::fields::{Fields, PacketError};
 use super::path::{LogicalKind, Path};
 use super::status::GeneralStatus;
 
-/// What is asked of an object. Services that are not known are kept.
+/// The service requested of an object. Unknown services are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Service(u8);
 
 /// A request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
-    /// What is asked.
+    /// The service.
     pub service: Service,
     /// Of whom.
     pub path: Path,
-    /// What the service takes.
+    /// Data of the service.
     pub data: Vec<u8>,
 }
 
 /// A reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
-    /// What was asked.
+    /// The service requested.
     pub service: Service,
-    /// Whether it was done.
+    /// The status.
     pub status: GeneralStatus,
     /// Words that say more, as a service has them; up to 255.
     pub extended: Vec<u16>,
-    /// What was asked for.
+    /// Data of the reply.
     pub data: Vec<u8>,
 }
 
@@ -58,7 +58,7 @@ const CLASSES: [(u16, &str); 6] = [
     (0xF6, "Ethernet link"),
 ];
 
-/// What an object of a class is; `None` for what is not known, as every maker's own.
+/// Returns the name of a class; `None` if it is unknown, such as a manufacturer's own.
 pub fn class_name(class: u16) -> Option<&'static str> {
     CLASSES.iter().find(|(number, _)| *number == class).map(|(_, name)| *name)
 }
@@ -68,7 +68,7 @@ impl Service {
     pub const GET_ALL: Service = Service(0x01);
     /// All attributes are set.
     pub const SET_ALL: Service = Service(0x02);
-    /// The device starts anew.
+    /// Restarts the device.
     pub const RESET: Service = Service(0x05);
     /// An attribute is read.
     pub const GET: Service = Service(0x0E);

@@ -1,4 +1,5 @@
-//! Where a CIP request goes: segments of class, instance, attribute and connection point, of 8 or 16 bits (reference 7).
+//! The path of a CIP request: segments of class, instance, attribute and connection point, of 8 or 16 bits (reference
+//! 7).
 
 use super::fields::{Fields, PacketError};
 
@@ -13,20 +14,20 @@ pub enum Segment {
     Logical {
         /// Of what.
         kind: LogicalKind,
-        /// Which one.
+        /// The number.
         number: u16,
-        /// How it is sent. A number above 255 is always sent wide.
+        /// The width in which it is sent. A number above 255 is always sent wide.
         width: Width,
     },
     /// 34h: what device it has to be.
     Key(ElectronicKey),
     /// 80h: words for whom the path leads to, up to 255.
     Data(Vec<u16>),
-    /// Another segment, with all that follows it: of an unknown one nobody knows where it ends.
+    /// An unknown segment with all that follows, as its end is not known.
     Unknown(Vec<u8>),
 }
 
-/// What the number of a logical segment is of.
+/// The kind of a logical segment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LogicalKind {
     /// 20h.
@@ -39,7 +40,7 @@ pub enum LogicalKind {
     Attribute,
 }
 
-/// How a number is sent.
+/// The width in which a number is sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Width {
     /// In the byte behind the segment's type.
@@ -48,7 +49,7 @@ pub enum Width {
     Word,
 }
 
-/// What a device is compared with before a connection is opened; 0 fits all.
+/// The values that a device is compared with before a connection is opened; 0 matches all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElectronicKey {
     /// As in the identity object.

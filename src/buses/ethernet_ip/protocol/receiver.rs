@@ -3,12 +3,12 @@
 use super::encapsulation::Frame;
 use super::fields::PacketError;
 
-/// What has come and is no whole frame yet.
+/// Bytes received that are not a whole frame yet.
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
     broken: Option<PacketError>,
-    /// What was no frame, until it is taken.
+    /// Bytes that are not a frame, until they are taken.
     rest: Vec<u8>,
 }
 

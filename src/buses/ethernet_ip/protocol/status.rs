@@ -1,5 +1,5 @@
-//! What the two layers say when something was not done: encapsulation status, CIP general status, and the words behind it
-//! when a connection was not opened (reference 7; names as ODVA has them, `P`; remedies `U`).
+//! The statuses of the two layers: encapsulation status, CIP general status, and the words that follow it when a
+//! connection was not opened (reference 7; names as in ODVA, `P`; remedies `U`).
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ pub struct GeneralStatus(u8);
 pub struct StatusRow<C> {
     /// The code.
     pub code: C,
-    /// What it says.
+    /// The meaning.
     pub meaning: &'static str,
     /// What to do.
     pub remedy: &'static str,
@@ -31,7 +31,7 @@ pub struct ExtendedStatusRow {
     pub general: GeneralStatus,
     /// The first word behind it.
     pub code: u16,
-    /// What it says.
+    /// The meaning.
     pub meaning: &'static str,
     /// What to do.
     pub remedy: &'static str,
@@ -44,7 +44,7 @@ const fn row<C>(code: C, meaning: &'static str, remedy: &'static str) -> StatusR
 const AGAIN: &str = "try again; where it comes back, restart the device";
 const DEFECT: &str = "this program has sent something wrong: report it with a trace";
 
-/// What a frame may come back with.
+/// The statuses of a frame.
 pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::OK, "success", "nothing"),
     row(EncapsulationStatus(0x01), "command not supported", "ask for something else: the device does not have it"),
@@ -55,7 +55,7 @@ pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::VERSION, "version not supported", "the device speaks another version of EtherNet/IP"),
 ];
 
-/// What a request may come back with.
+/// The statuses of a request.
 pub const GENERAL_STATUS: [StatusRow<GeneralStatus>; 31] = [
     row(GeneralStatus::OK, "success", "nothing"),
     row(GeneralStatus::CONNECTION, "connection failure", "see what stands behind it"),
@@ -197,7 +197,7 @@ impl GeneralStatus {
     }
 }
 
-/// What the first word behind a status says: of the connection manager's services alone is something known.
+/// Returns the meaning of the first word after a status; only those of the connection manager's services are known.
 pub fn extended_row(service: Service, status: GeneralStatus, code: u16) -> Option<&'static ExtendedStatusRow> {
     let connections = [Service::FORWARD_OPEN, Service::FORWARD_CLOSE].contains(&service);
     EXTENDED_STATUS.iter().find(|row| connections && row.general == status && row.code == code)

@@ -61,7 +61,7 @@ pub enum AddressError {
     GatewayOutside {
         /// As given.
         gateway: Ipv4Addr,
-        /// Where the device would be.
+        /// Network of the device.
         network: Ipv4Addr,
         /// Ones of its mask.
         prefix: u32,
@@ -95,7 +95,7 @@ impl ConfigurationControl {
         self.0.to_le_bytes()
     }
 
-    /// Where the address comes from.
+    /// Returns the origin of the address.
     pub const fn source(self) -> AddressSource {
         match self.0 & 0x0F {
             0 => AddressSource::Stored,
@@ -139,8 +139,8 @@ impl InterfaceConfiguration {
         fields.end(InterfaceConfiguration { address: own, mask, gateway, name_servers, domain })
     }
 
-    /// That a device could be reached with it: its address is a device's in a network of this mask, the gateway another one
-    /// in it or none.
+    /// Checks that a device could be reached at this address: it is a valid address in a network of this mask, with the
+    /// gateway in the same network or none.
     ///
     /// # Errors
     /// [`AddressError`].

@@ -1,4 +1,4 @@
-//! What a host asks and an encoder answers (manual 5.2). Registers have one number each: see
+//! The requests of a host and the replies of an encoder (manual 5.2). Each register has one number: see
 //! `RegisterAddress::global` of BiSS.
 
 use super::frame::{Frame, NODE};
@@ -54,7 +54,7 @@ pub enum RequestError {
     },
 }
 
-/// What an encoder answers to a write.
+/// The reply of an encoder to a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// 90h.
@@ -79,12 +79,12 @@ pub enum Reply {
 /// Why a frame is not the reply to a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
-    /// The frame is for or from somebody else.
+    /// The frame is to or from another node.
     #[error("a frame of node 0x{got:02X} where one of 0x{expected:02X} was expected")]
     Address {
         /// The node that was asked.
         expected: u8,
-        /// What stood there.
+        /// The value received.
         got: u8,
     },
     /// The frame answers another command.
@@ -92,7 +92,7 @@ pub enum ReplyError {
     Command {
         /// The command of the request.
         expected: u8,
-        /// What stood there.
+        /// The value received.
         got: u8,
     },
     /// It has the wrong number of bytes. Where it has as many as the request, it may be its echo.
@@ -150,7 +150,7 @@ impl Request {
     /// The register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
 
-    /// Which command it is.
+    /// Returns the command.
     pub const fn command(self) -> Command {
         match self {
             Request::Read { .. } => Command::Read,
@@ -228,7 +228,7 @@ impl Written {
 }
 
 impl Reply {
-    /// Which command it answers.
+    /// Returns the command that it answers.
     pub const fn command(self) -> Command {
         match self {
             Reply::Value(_) => Command::Read,

@@ -24,7 +24,7 @@ use crate::units::{Baud, CharacterFormat, Parity};
 /// 115200 bit/s.
 const BAUD: Baud = Baud::B115200;
 
-/// How the line is set: 115200 8N1.
+/// The format of the line: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
 /// Bits of a character: start, eight of data, a parity where there is one, stop.
 pub const fn character_bits(format: CharacterFormat) -> u64 {
@@ -34,9 +34,9 @@ pub const fn character_bits(format: CharacterFormat) -> u64 {
     }
 }
 
-/// So long a reply may take (`U`).
+/// The longest time of a reply (`U`).
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
-/// So long an encoder may stay silent while it calibrates (`U`).
+/// The longest silence of an encoder while it calibrates (`U`).
 pub const CALIBRATION_TIME_OUT: Duration = Duration::from_secs(10);
 /// A frame that pauses for so long is over (`U`).
 pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

@@ -4,7 +4,7 @@
 
 use super::frame::{Frame, MAX_PAYLOAD, SYNC};
 
-/// What has come and is no whole frame yet.
+/// Bytes received that are not a whole frame yet.
 #[derive(Clone, Debug)]
 pub struct Receiver {
     node: u8,
@@ -12,7 +12,7 @@ pub struct Receiver {
     skipped: u64,
 }
 
-/// What the first bytes are.
+/// The meaning of the first bytes.
 enum Head {
     /// More has to come.
     Partial,
@@ -44,7 +44,7 @@ impl Receiver {
         }
     }
 
-    /// The line was silent: what has begun will not be completed. A frame that stands within it is found all the same.
+    /// Handles silence on the line: a started frame will not be completed. A frame contained in it is still found.
     pub fn silence(&mut self) -> Option<Vec<u8>> {
         loop {
             if let Some(frame) = self.next_frame() {

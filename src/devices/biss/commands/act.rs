@@ -1,5 +1,5 @@
-//! `do`: filter, preset, and the procedures that a person at the motor leads. Without a terminal nobody can be asked what
-//! turns the motor: then --yes says that it does not need this encoder.
+//! `do`: filter, preset, and the procedures with a person at the motor. Without a terminal nobody can be asked what
+//! turns the motor; --yes then states that it does not need this encoder.
 
 use std::path::Path;
 use std::time::Duration;
@@ -25,7 +25,7 @@ use crate::devices::biss::profile::{BissProfile, MotorSource, MountingRun, Prese
 use crate::devices::biss::protocol::{Filter, KIND, PresetValue};
 use crate::devices::biss::state::explain as words;
 
-/// How long a person may take to turn the motor as it is needed.
+/// How long a person may take to turn the motor as required.
 const PERSON: Duration = Duration::from_secs(300);
 
 const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back and mounting";
@@ -85,7 +85,7 @@ fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-/// A run that somebody at the motor leads, or the measurement alone.
+/// Runs a procedure with a person at the motor, or only the measurement.
 fn guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
     require_consent(&act.consent)?;
     let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };
@@ -143,8 +143,8 @@ fn passes(outcome: &Outcome) -> bool {
     }
 }
 
-/// What is asked of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. With neither calibration nor
-/// test named, both are meant.
+/// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration
+/// nor test is named, both are meant.
 fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
     let mut run = MountingRun::default();
     let (mut tests, mut saves) = (false, false);
@@ -181,7 +181,7 @@ fn place(text: &str) -> Result<PresetValue> {
     }
 }
 
-/// What the registers can hold; the encoder's widths may allow less.
+/// Parses a value within what the registers can hold; the encoder's widths may allow less.
 fn value(singleturn: &str, multiturn: &str) -> Result<PresetValue> {
     let part = |name: &str, text: &str| {
         let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{name}: {text:?} is not a number")))?;

@@ -15,7 +15,7 @@ use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::{Failure, Result};
 
-/// What an argument holds.
+/// The kind of an argument.
 enum Captured {
     /// The bits of a position frame, as they were written.
     Bits(String, u64),
@@ -84,7 +84,7 @@ fn ensure_no_word(word: &str) -> Result<()> {
     Err(Failure::Usage(format!("{word:?} {why}")))
 }
 
-/// Whether a word begins with 0x, and what stands behind it.
+/// Returns whether a word begins with 0x, and the rest of it.
 fn digits(word: &str) -> (bool, &str) {
     match word.strip_prefix("0x").or_else(|| word.strip_prefix("0X")) {
         Some(digits) => (true, digits),
@@ -113,7 +113,7 @@ fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
     }
 }
 
-/// Which of the three it is, for a script.
+/// Returns the kind for a script.
 fn form(name: &str) -> Map<String, serde_json::Value> {
     Map::from_iter([("device".to_owned(), json!(KIND)), ("form".to_owned(), json!(name))])
 }

@@ -32,10 +32,10 @@ use crate::profile::Body;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
-/// How long is waited for a motor, or a shaft at rest, where nobody can be told.
+/// How long to wait for a motor, or a shaft at rest, where no one can be told.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// What can be done with BiSS encoders.
+/// The commands for BiSS encoders.
 pub(crate) struct BissCommands;
 
 impl DeviceCommands for BissCommands {
@@ -121,7 +121,7 @@ impl DeviceCommands for BissCommands {
     }
 }
 
-/// Whether an action runs several others.
+/// Returns whether an action runs several others.
 fn is_combined(action: &PossibleValue) -> bool {
     BissAction::Mounting.to_possible_value().as_ref() == Some(action)
 }

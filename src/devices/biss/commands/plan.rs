@@ -119,7 +119,7 @@ fn fired(parts: PresetParts, value: PresetValue) -> String {
     }
 }
 
-/// What came of the operations, for a script.
+/// Returns the results of the operations as JSON.
 pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
     let rpm = |motion: &Option<Motion>| motion.map(|motion| motion.rpm);
     let one = |outcome: &Outcome| match outcome {
@@ -156,7 +156,7 @@ pub(super) fn results(outcomes: &[Outcome]) -> Vec<Json> {
     outcomes.iter().map(one).collect()
 }
 
-/// What came of the operations, a line each.
+/// Returns the results of the operations, a line each.
 pub(super) fn results_text(outcomes: &[Outcome]) -> String {
     let texts = outcomes.iter().flat_map(explained::outcome);
     texts.map(|text| text.terminal() + "\n").collect()

@@ -1,4 +1,4 @@
-//! What the commands about profiles do with a BiSS encoder: `save`, `restore`, and reading it for a comparison.
+//! The commands about profiles of a BiSS encoder: `save`, `restore`, and reading it for a comparison.
 
 use serde_json::json;
 
@@ -34,12 +34,12 @@ pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>
     Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
 }
 
-/// That it was read in a device mode, where it was.
+/// Returns the remark that a profile was read in a device mode.
 pub(super) fn remark(profile: &Body) -> Option<Text> {
     words::profile_unsaved(profile.get()?)
 }
 
-/// That two profiles are not of the same encoder.
+/// Returns a message if two profiles are not of the same encoder.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let (profile, device) = (&profile.get::<BissProfile>()?.identity, &device.get::<BissProfile>()?.identity);
     let who = |one: &ProfileIdentity| (one.serial_number.clone(), one.kind());

@@ -17,7 +17,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Biss>;
 
 impl Runs for Biss {
-    /// How the encoder is reached.
+    /// The way to the encoder.
     type Context = Way;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
@@ -49,7 +49,7 @@ impl Runs for Biss {
     }
 }
 
-/// How far a step is: what stands against a start, how long it lasts.
+/// Returns the detail of a step: what prevents the start, how long it takes.
 fn detail(news: &News) -> String {
     match &news.detail {
         Detail::Begins => String::new(),
@@ -66,7 +66,7 @@ fn detail(news: &News) -> String {
     }
 }
 
-/// Who is there.
+/// Identifies the encoder.
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     match runner.run(BissJob::Identify)? {
         BissOutput::Identity(identity) => Ok(identity),

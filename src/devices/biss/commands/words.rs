@@ -1,4 +1,4 @@
-//! What registers of the kit encoder are called, and what their bytes say, in words.
+//! The names of the kit encoder's registers, and the meaning of their bytes, in words.
 
 use std::sync::LazyLock;
 
@@ -12,25 +12,25 @@ fn register(address: RegisterAddress) -> Option<&'static Register> {
     KIT.as_ref()?.at(address)
 }
 
-/// What the byte at an address belongs to.
+/// Returns the name of the register at an address.
 pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
     let area = || Some(KIT.as_ref()?.area_at(address)?.name.english());
     register(address).map(|register| register.name.english()).or_else(area)
 }
 
-/// What the bytes from an address on say, where they are a whole register whose number has a meaning of its own.
+/// Returns the meaning of the bytes at an address, if they are a whole register with a meaning beyond its number.
 pub(super) fn said(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
     words(register, bytes)
 }
 
-/// What a register of a description says, where the bytes of a run are its own.
+/// Returns the meaning of a described register, if the bytes of a run are its own.
 pub(super) fn of_run(register: &Register, range: RegisterRange, bytes: &[u8]) -> Option<String> {
     let own = register.address == range.start() && register.width == range.count();
     own.then(|| words(register, bytes)).flatten()
 }
 
-/// What a register says as a quantity.
+/// Returns the value of a register as a quantity.
 pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
     match register.decode(bytes)? {
         Decoded::Scaled(value) => Some(value),
@@ -47,7 +47,7 @@ pub(super) fn filter(filter: Filter) -> String {
     }
 }
 
-/// What a register's bytes say; `None` for a code without meaning.
+/// Returns the meaning of a register's bytes; `None` for a code without meaning.
 fn words(register: &Register, bytes: &[u8]) -> Option<String> {
     let unit = if register.unit.is_empty() { String::new() } else { format!(" {}", register.unit) };
     Some(match register.decode(bytes)? {

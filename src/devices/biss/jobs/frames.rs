@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::Layout;
 /// Position frames of BiSS, with their checksums looked at.
 #[derive(Clone, Debug)]
 pub struct BissFrames {
-    /// What the frames are.
+    /// Layout of the frames.
     pub layout: Layout,
     /// Clock in hertz.
     pub clock_hz: u32,

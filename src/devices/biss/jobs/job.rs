@@ -1,4 +1,4 @@
-//! What can be asked of a BiSS encoder, and what comes of it.
+//! The jobs of a BiSS encoder, and their results.
 
 use std::fmt;
 
@@ -21,16 +21,16 @@ pub const WEAR_LIMIT: u64 = 1000;
 /// Persistent writes from which a person should know that they are numbered.
 pub const WEAR_WARNING: u64 = 800;
 
-/// What a session with a BiSS encoder does.
+/// A job of a session with a BiSS encoder.
 #[derive(Debug)]
 pub enum BissJob {
     /// Everything there is to see: for a window, after connecting.
     Survey,
-    /// Who is there.
+    /// Identifies the encoder.
     Identify,
     /// Mode, errors, warnings, temperature, filter.
     Status,
-    /// What it says of itself, beside its description, its data sheet and the line, with a verdict a line.
+    /// Checks the encoder against its description, its data sheet and the line, with a verdict a line.
     Check,
     /// The position, once.
     Position,
@@ -50,7 +50,7 @@ pub enum BissJob {
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
-    /// Back to operation and the password cleared, whoever left the encoder otherwise.
+    /// Leads the encoder back to operation and clears the password, whoever changed it.
     LeadBack,
 }
 
@@ -61,7 +61,6 @@ pub enum Change {
     Restore {
         /// The profile.
         profile: Box<BissProfile>,
-        /// What the restore may do.
         options: RestoreOptions,
     },
     /// Write registers: where, and which bytes. Those of an area of data are saved together.
@@ -72,14 +71,12 @@ pub enum Change {
     Preset {
         /// The value.
         value: Option<PresetValue>,
-        /// Which part of the position.
+        /// Parts of the position.
         parts: Option<PresetParts>,
     },
     /// Procedures led by a person: one, or all of a mounting.
     Guided {
-        /// Which.
         run: MountingRun,
-        /// What turns the motor in them.
         motor: MotorSource,
     },
 }
@@ -123,7 +120,6 @@ impl Change {
 pub struct Prepared {
     /// The kind of change that it is for.
     pub kind: ChangeKind,
-    /// What would be written.
     pub plan: BissPlan,
     /// The encoder it is for.
     pub identity: Identity,
@@ -139,7 +135,7 @@ pub struct Prepared {
     pub unsaved: Option<DeviceMode>,
     /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
-    /// Values of the mounting of another device that are written: they have to be set up anew.
+    /// Values of another device's mounting that are written: they have to be set up again.
     pub mounting_written: Vec<RegisterRange>,
 }
 
@@ -155,16 +151,16 @@ impl Prepared {
 pub struct Commit {
     /// The plan, with the consent to it.
     pub agreed: ApprovedPlan<Prepared>,
-    /// Who stands at the motor.
+    /// The person at the motor.
     pub attendance: OperatorPresence,
 }
 
-/// Who stands at the motor while a plan is carried out.
+/// The person at the motor while a plan is carried out.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
-    /// Somebody whose answers are left here.
+    /// A person, whose answers arrive here.
     Attended(OperatorChannel),
-    /// Nobody.
+    /// No person.
     Unattended(Unattended),
 }
 
@@ -184,7 +180,7 @@ impl Operator for OperatorPresence {
     }
 }
 
-/// What a commit did.
+/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// Registers as they were read.
@@ -198,7 +194,7 @@ pub struct ReadRegisters {
     pub unsaved: Option<DeviceMode>,
 }
 
-/// What a BiSS encoder says on the way, or the program about it.
+/// A message of a BiSS encoder during a job, or of the program about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     /// Frames with a wrong checksum that belong to no reading.
@@ -216,9 +212,9 @@ pub enum JobStep {
     Bank(u8),
     /// An operation of a plan is carried out.
     Operation {
-        /// What it changes.
+        /// The changed item.
         item: String,
-        /// Where it is.
+        /// The present step.
         news: Box<News>,
     },
 }
@@ -233,7 +229,7 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// What a BiSS job gives.
+/// The result of a BiSS job.
 #[derive(Debug)]
 pub enum BissOutput {
     Surveyed(Box<Survey>),
@@ -263,7 +259,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// How backups and the logbook know an encoder: serial numbers are unique within what one manufacturer calls a device.
+/// Returns the key of an encoder for backups and the logbook: serial numbers are unique within a manufacturer's device
+/// id.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     let (manufacturer, device) = (hex_compact(&identity.kind.manufacturer), hex_compact(&identity.kind.device_id));
     DeviceKey {

@@ -39,7 +39,7 @@ pub struct Biss {
     types: Arc<Descriptions>,
     /// Descriptions of the user's own that cannot be used; told once.
     broken: Vec<StoreError>,
-    /// What turns a virtual encoder.
+    /// Motor of a virtual encoder.
     motor: Option<Motor>,
     /// Microseconds between the frames of a stream, where they are wished closer than one can ask for them.
     streamed_us: Option<u32>,
@@ -60,7 +60,7 @@ impl Biss {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }
 
-    /// Who is there, where that is not known in this session yet: it tells the frame and the registers.
+    /// Identifies the encoder if it is not known in this session yet: frame and registers depend on it.
     fn know(&mut self, desk: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
@@ -90,12 +90,12 @@ impl Session<Biss> {
         )
     }
 
-    /// What is known about the line and the encoder.
+    /// Returns the state of the line and the encoder.
     pub fn station(&self) -> &Station {
         &self.device.station
     }
 
-    /// What turns the shaft, where the encoder lives in this process.
+    /// Returns the motor of the shaft, if the encoder is in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }

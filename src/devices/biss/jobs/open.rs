@@ -14,7 +14,7 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 
-/// Whether an adapter is in between, where the kind of link does not tell.
+/// A parameter for links whose scheme does not show whether there is an adapter.
 const BRIDGE: &str = "bridge";
 /// Everything about a link to a BiSS encoder that can be told without opening it.
 ///

@@ -16,7 +16,7 @@ pub type BissStepResult = check::StepResult<Step, Finding>;
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Who is there, and whether a description is for it.
+    /// Identity, and whether a description matches.
     Identity,
     /// Errors, warnings, device mode, password.
     Status,
@@ -107,9 +107,9 @@ pub enum Finding {
     NotTested,
     /// Readings of the position that were asked for, and frames or replies that came damaged.
     Readings {
-        /// How many were asked for.
+        /// Number requested.
         asked: u32,
-        /// How many came damaged.
+        /// Number damaged.
         damaged: u64,
     },
     /// Write cycles that were seen, and what the flash stands.
@@ -214,7 +214,7 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
     BissStepResult::of(Step::DataSheet, findings)
 }
 
-/// Where the encoder's bank of the data sheet has its limits.
+/// Offsets of the limits in the encoder's bank of the data sheet.
 mod offset {
     pub(super) const COLDEST: u8 = 0x30;
     pub(super) const HOTTEST: u8 = 0x32;
@@ -223,7 +223,7 @@ mod offset {
     pub(super) const MOST_CURRENT: u8 = 0x38;
 }
 
-/// What the data sheet allows, as far as it can be measured; `None` where nothing can be compared.
+/// Checks the limits of the data sheet, as far as they can be measured; `None` if nothing can be compared.
 fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult> {
     let sheet = survey.identity.data_sheet.as_ref()?.encoder.eds.as_ref().ok()?;
     let judge = |fits: bool| if fits { Verdict::Good } else { Verdict::Attention };

@@ -1,4 +1,4 @@
-//! What can go wrong with an encoder, with the facts a person needs.
+//! Errors of an encoder, with the facts that a user needs.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// What was asked of an encoder.
+/// A request to an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
     /// A register.
@@ -39,9 +39,9 @@ pub enum Error {
     /// Nothing came back.
     #[error("no reply while {asked} ({tries} tries)")]
     NoReply {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
         /// Our own bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
@@ -49,11 +49,11 @@ pub enum Error {
     /// Something came back and was broken every time.
     #[error("damaged reply while {asked} ({tries} tries): {cause}")]
     Damaged {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
-        /// What was wrong with the last one.
+        /// Damage of the last reply.
         cause: Damage,
     },
     /// Bytes keep arriving where there should be silence.
@@ -62,10 +62,10 @@ pub enum Error {
     /// The adapter between us and the encoder.
     #[error(transparent)]
     Adapter(#[from] AdapterError),
-    /// Nobody acknowledges on the bus.
+    /// No encoder acknowledges on the bus.
     #[error("nobody acknowledges on the bus ({tries} tries)")]
     NoAcknowledge {
-        /// How often it was asked.
+        /// Number of attempts.
         tries: u32,
         /// The adapter could supply the encoder and was not told to.
         supply_off: bool,
@@ -73,26 +73,26 @@ pub enum Error {
     /// The data line stays low.
     #[error("the data line stays low ({tries} tries)")]
     StuckLow {
-        /// How often it was asked.
+        /// Number of attempts.
         tries: u32,
     },
     /// The data line stays high.
     #[error("the data line stays high ({tries} tries)")]
     StuckHigh {
-        /// How often it was asked.
+        /// Number of attempts.
         tries: u32,
     },
     /// No frame has ever had a right checksum: the widths are not those of the encoder.
     #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
     WrongWidths {
-        /// How many.
+        /// Number of frames.
         frames: u32,
         /// Position, error and warning bits, as they were taken.
         data_bits: u8,
         /// Bits of the checksum, as they were taken.
         crc_bits: u8,
     },
-    /// Nobody tells the widths of the frame, and no length fits.
+    /// The widths of the frame are not known, and no length fits.
     #[error("no length of the frames fits their CRC")]
     WidthsUnknown {
         /// The frames differ: the shaft turns.
@@ -101,31 +101,31 @@ pub enum Error {
     /// The encoder answers, and not when it is asked for this register: it has none there.
     #[error("the encoder has no register {address}")]
     NoSuchRegister {
-        /// Where.
+        /// The register.
         address: RegisterAddress,
     },
     /// Registers of an area of data are not watched: they are read at standstill only.
     #[error("register {address} is data, which is not read while the shaft may turn")]
     NotWatched {
-        /// Where.
+        /// The register.
         address: RegisterAddress,
     },
     /// The encoder did not take a value.
     #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
-        /// Where.
+        /// The register.
         address: RegisterAddress,
-        /// What was written.
+        /// The value written.
         value: u8,
-        /// What the register gives back instead, where the way tells that.
+        /// The value that the register reads instead, if the way shows it.
         reads: Option<u8>,
     },
-    /// Whether a value was taken is not known: reading the register back does not tell, or is not possible.
+    /// Whether a value was accepted is not known: reading the register back does not show it, or is not possible.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
-        /// Where.
+        /// The register.
         address: RegisterAddress,
-        /// What was written.
+        /// The value written.
         value: u8,
         /// Why it is not known.
         cause: Box<Error>,
@@ -136,7 +136,7 @@ pub enum Error {
     /// Neither order of a register number's two bytes gives an answer that the manual knows.
     #[error("the encoder's answer 0x{answer:02X} does not tell the byte order of register numbers")]
     OrderUnknown {
-        /// What it said to the probe.
+        /// The reply to the probe.
         answer: u8,
     },
     /// A position with more bits than the encoder is said to have.
@@ -154,13 +154,13 @@ pub enum Error {
     OutOfRange {
         /// The first.
         start: RegisterAddress,
-        /// How many.
+        /// Number of registers.
         count: usize,
     },
     /// No description is for this encoder, nor for any.
     #[error("no description fits the encoder, which says {0}")]
     NoDescription(Identity),
-    /// What the encoder's registers are has not been asked yet.
+    /// The encoder has not been identified yet.
     #[error("the encoder was not identified")]
     NotIdentified,
     /// The shaft turns where it must stand still.
@@ -175,10 +175,10 @@ pub enum Error {
         /// The mode.
         mode: DeviceMode,
     },
-    /// What was read changed between the plan and its execution.
+    /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// What changed.
+        /// The item that changed.
         item: String,
     },
     /// The reply belongs to another kind of request.
@@ -236,13 +236,13 @@ pub(super) fn exactly<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) ->
     bytes.try_into().map_err(|bytes: Vec<u8>| Error::TooFew { start, expected: N, got: bytes.len() })
 }
 
-/// What was wrong with a reply.
+/// The damage of a reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// Bytes that are no frame.
     #[error("bytes without a whole frame: {bytes}")]
     NoFrame {
-        /// How many.
+        /// Number of bytes.
         bytes: usize,
     },
     /// A frame that is no reply to what was asked.

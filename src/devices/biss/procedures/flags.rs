@@ -1,5 +1,5 @@
-//! What stands against a position where the position itself does not tell: over the configuration pin error and warning are
-//! in registers of their own (reference UBICOM 4), which are read beside it.
+//! Errors and warnings of a position that does not contain them: over the configuration pin they are in registers
+//! (reference UBICOM 4), which are read with it.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use super::{Error, Master, PositionReading};
 use crate::devices::biss::protocol::Role;
 use crate::units::Moment;
 
-/// What the registers said last.
+/// The last values of the registers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flags {
     error: Option<bool>,

@@ -11,7 +11,7 @@ use crate::units::Moment;
 /// Why a frame of a stream has no reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoReading {
-    /// Nobody acknowledged.
+    /// No encoder acknowledged.
     #[error("nobody acknowledges on the bus")]
     NoAcknowledge,
     /// Its bits are no frame: a wrong checksum, a line that does not move.
@@ -38,9 +38,9 @@ pub struct FrameRun {
     pub lost: u64,
     /// The frames, one at least.
     pub frames: Vec<Frame>,
-    /// What their bits are.
+    /// Layout of their bits.
     pub layout: Arc<Layout>,
-    /// How many bits of a position are turns is known.
+    /// Whether the number of turn bits is known.
     pub is_split_known: bool,
     /// The clock of the bus in hertz.
     pub clock_hz: u32,
@@ -49,7 +49,7 @@ pub struct FrameRun {
 }
 
 impl FrameRun {
-    /// What came in a packet, of frames that were wished so many microseconds apart.
+    /// Creates the frames of a packet, requested at this interval.
     pub(super) fn new(
         portion: &Portion,
         frames: Vec<Frame>,
@@ -82,7 +82,7 @@ impl FrameRun {
     }
 }
 
-/// What the frames of a packet say.
+/// Decodes the frames of a packet.
 pub fn frames(layout: &Layout, data: &BissData) -> Vec<Frame> {
     data.values.iter().map(|(status, raw)| frame(layout, *status, *raw)).collect()
 }

@@ -1,5 +1,5 @@
-//! Who is there: the direct registers that every BiSS C encoder has, the description that fits them, and the data sheet,
-//! which tells the frame.
+//! Identification: the direct registers that every BiSS C encoder has, the matching description, and the data sheet,
+//! which contains the frame.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use crate::profile::Unknown;
 /// An encoder as it says who it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
-    /// What kind of encoder it says to be.
+    /// The kind that the encoder reports.
     pub kind: Kind,
     /// The serial number, high byte first (`U`), as a decimal number; empty where there is no register for it.
     pub serial_number: String,
@@ -27,7 +27,7 @@ pub struct Identity {
     pub serial_bytes: Vec<u8>,
     /// Its firmware; `None` where its registers do not tell.
     pub firmware: Option<Firmware>,
-    /// What its registers are.
+    /// Description of its registers.
     pub description: Arc<Description>,
     /// A description of the same manufacturer is for another device ID.
     pub mismatch: Option<Mismatch>,
@@ -35,7 +35,7 @@ pub struct Identity {
     pub data_sheet: Option<DataSheet>,
     /// The frame of its position.
     pub layout: Layout,
-    /// Who told that frame.
+    /// Source of the frame.
     pub source: FrameSource,
     /// The adapter, over that way.
     pub adapter: Option<Hello>,
@@ -43,7 +43,7 @@ pub struct Identity {
     pub order: Option<ByteOrder>,
 }
 
-/// Who told the frame of a position.
+/// The source of the frame of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FrameSource {
     /// The encoder's data sheet.
@@ -54,7 +54,7 @@ pub enum FrameSource {
     Given,
     /// The checksum of its frames, while the shaft turned: how many bits are turns is not known.
     Checksum,
-    /// Nobody: it is taken for that of the kit encoder.
+    /// Assumed: that of the kit encoder.
     Assumed,
 }
 
@@ -71,9 +71,9 @@ impl FrameSource {
 /// The data sheet: two banks of registers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheet {
-    /// What every BiSS device says.
+    /// The bank common to all BiSS devices.
     pub common: DataSheetBank,
-    /// What an encoder says.
+    /// The encoder's bank.
     pub encoder: DataSheetBank,
     /// The frame that both tell, or why they do not.
     pub layout: Result<Layout, EdsError>,
@@ -86,7 +86,7 @@ pub struct DataSheetBank {
     pub bank: u8,
     /// Its registers, as they came.
     pub bytes: [u8; 64],
-    /// What it says, where its sum fits.
+    /// Its content, if the checksum is right.
     pub eds: Result<Eds, EdsError>,
 }
 
@@ -106,12 +106,12 @@ impl Identity {
         }
     }
 
-    /// Bits of the revolutions; `None` where nobody tells.
+    /// Returns the number of turn bits; `None` if not known.
     pub fn multiturn_bits(&self) -> Option<u8> {
         self.is_told().then_some(self.layout.multiturn_bits())
     }
 
-    /// Bits within a revolution; `None` where nobody tells.
+    /// Returns the number of bits within a turn; `None` if not known.
     pub fn singleturn_bits(&self) -> Option<u8> {
         self.is_told().then_some(self.layout.singleturn_bits())
     }
@@ -179,8 +179,8 @@ pub(super) fn identify_with(
     })
 }
 
-/// Nobody tells the frame: that of the kit encoder is right where its checksum fits, and else one is looked for. Over the
-/// configuration pin nothing can be seen of it.
+/// Determines an unknown frame: that of the kit encoder if its checksum fits, else one is searched for. Over the
+/// configuration pin it cannot be observed.
 fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
     if master.station().way == Way::ConfigPin {
         return Ok(FrameSource::Assumed);

@@ -22,7 +22,8 @@ use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
-/// So often a register is silent beside one that answers before it counts as missing: a bad line loses single answers.
+/// How often a register must be silent beside one that answers before it counts as missing: a bad line loses single
+/// answers.
 const SILENCES: u32 = 3;
 
 /// The host's side of the line to a BiSS encoder, over either way.
@@ -44,10 +45,10 @@ enum ExchangeError {
     NoFrame(NoFrame),
 }
 
-/// How one exchange ended. The outer error ends everything; the inner one may be tried again.
+/// The end of one exchange. The outer error ends everything; the inner one may be retried.
 type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
-/// What an encoder did with a value.
+/// An encoder's reaction to a value.
 enum Taken {
     /// It has it.
     Yes,
@@ -64,12 +65,12 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// What is known about the line and the encoder.
+    /// Returns the state of the line and the encoder.
     pub fn station(&mut self) -> &mut Station {
         self.station
     }
 
-    /// What the encoder's registers are.
+    /// Returns the description of the encoder's registers.
     ///
     /// # Errors
     /// [`Error::NotIdentified`] before that is known.
@@ -228,8 +229,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// What has to be done before the first register: learning the order of a register number's bytes, or setting the
-    /// bus.
+    /// Prepares the first access: determines the order of a register number's bytes, or configures the bus.
     fn be_ready(&mut self) -> Result<(), Error> {
         match self.station.way {
             Way::Adapter => self.be_ready_on_bus(),
@@ -280,7 +280,7 @@ impl<'a> Master<'a> {
         Err(Error::Damaged { asked, tries: TRIES, cause: Damage::Inconsistent })
     }
 
-    /// What a try that failed becomes when there is no other.
+    /// Returns the error of a failed attempt that is the last.
     fn failed(&self, asked: Asked, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
             ExchangeError::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
@@ -289,7 +289,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// What is right about a broken line before the next try; `failed` when there is to be none.
+    /// Prepares the line for the next attempt; returns `failed` when there is to be none.
     fn may_try_again(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;

@@ -22,7 +22,8 @@ const COUNTED: u8 = 7;
 /// A shaft that moves by no more than a revolution's 8192nd part stands still: the position trembles (`U`).
 const TREMBLE: u64 = 8192;
 
-/// What becomes of values that were entered in a device mode and never saved: the encoder shows them as if it held them.
+/// How to treat values that were entered in a device mode and never saved: the encoder shows them as if they were
+/// stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
     /// They are saved, and the profile says so.
@@ -31,7 +32,7 @@ pub enum Unsaved {
     Refused,
 }
 
-/// Where reading of memory is.
+/// The stage of reading a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadStage {
     /// A register.
@@ -119,8 +120,8 @@ pub fn read_area_surely(master: &mut Master<'_>, area: &Area, told: &mut dyn FnM
     certainly(master, |master| read_area(master, area, told))
 }
 
-/// Reads everything that can be restored, and what identifies the encoder. It leaves the device mode as it is: leading back
-/// would discard what somebody has entered.
+/// Reads everything that can be restored, and the identity. The device mode is left as it is: leading back would
+/// discard entered values.
 ///
 /// # Errors
 /// The line, [`Error::Moving`], or [`Error::NotInOperation`] where unsaved values are refused.

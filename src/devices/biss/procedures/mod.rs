@@ -1,6 +1,6 @@
-//! What one does with a BiSS C encoder, over its configuration pin (UBICOM) or over an adapter on the bus. Each procedure
-//! takes a [`Master`], which asks, repeats what may be repeated and keeps the times; the manual is POSITAL's for the IXARC
-//! kit encoders.
+//! The procedures of a BiSS C encoder, over its configuration pin (UBICOM) or over an adapter on the bus. Each takes a
+//! [`Master`], which sends requests, repeats what may be repeated and keeps the times; the manual is POSITAL's for the
+//! IXARC kit encoders.
 //!
 //! ```text
 //! read, write, position ── master: what is asked again ──┬─▶ master/ubicom: one exchange over the configuration pin

@@ -27,7 +27,8 @@ pub struct PositionReading {
     pub multiturn_bits: u8,
     /// Bits within a revolution, 0…32.
     pub singleturn_bits: u8,
-    /// How many of its bits are turns is known; else turns and steps are nothing but the upper and the lower part of it.
+    /// Whether the number of turn bits is known; otherwise turns and steps are only the upper and the lower part of the
+    /// position.
     pub is_split_known: bool,
     /// The whole frame that it came in, with its flags and its CRC; `None` over the configuration pin.
     pub frame: Option<Word>,
@@ -86,7 +87,7 @@ impl PositionReading {
     }
 }
 
-/// What polling gives.
+/// A polled sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     /// The position.
@@ -95,7 +96,7 @@ pub enum Sample {
     Missed {
         /// When the last one came.
         at: Moment,
-        /// How many there were, with those before that were asked again.
+        /// Number of CRC errors, including frames that were requested again.
         crc_errors: u32,
     },
     /// Frames that an adapter streams.
@@ -109,7 +110,6 @@ pub enum Sample {
 pub struct WatchedReading {
     /// When the answer was there.
     pub at: Moment,
-    /// Which.
     pub what: RegisterRange,
     /// Their values, in the order of their addresses, or why there are none: no such register, or data.
     pub value: Result<Vec<u8>, Error>,

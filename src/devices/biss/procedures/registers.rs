@@ -26,13 +26,13 @@ impl Registers {
         self.run(register.address, register.width)
     }
 
-    /// What the register with a role says, as a number.
+    /// Returns the number in the register with a role.
     pub fn number(&self, description: &Description, role: Role) -> Option<u64> {
         let register = description.with_role(role)?;
         register.number(&self.bytes(register)?)
     }
 
-    /// What the register with a role says, as a quantity.
+    /// Returns the quantity in the register with a role.
     pub fn quantity(&self, description: &Description, role: Role) -> Option<f64> {
         let register = description.with_role(role)?;
         match register.decode(&self.bytes(register)?)? {
@@ -73,8 +73,8 @@ impl Registers {
         self.read(master, register.address, register.width)
     }
 
-    /// Reads all that a description names, that this firmware has, and that is not there yet. Gives the names' addresses
-    /// at which the encoder has nothing all the same.
+    /// Reads all registers of a description that this firmware has and that are not read yet. Returns the addresses at
+    /// which the encoder has none regardless.
     ///
     /// # Errors
     /// The line.

@@ -1,4 +1,4 @@
-//! What a session knows about its line and the encoder at its end, from one job to the next.
+//! The state of a line and its encoder that is kept between jobs.
 
 use std::fmt;
 use std::sync::Arc;
@@ -33,15 +33,15 @@ parameters! {
         ]);
         /// Whether the line echoes.
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
-        /// So long a reply may take, beside the time of its bytes and the margin.
+        /// Time limit of a reply, besides the time of its bytes and the margin.
         pub timeout: Duration = REPLY_TIME_OUT, "timeout" => Milliseconds(1..=10_000);
     }
 }
 
 parameters! {
-    /// How late a reply may come, as a link says.
+    /// Limits for late replies, from the link.
     pub struct LineParameters: UrlError {
-        /// How much later than usual a reply may come; `None`: as usual for the link.
+        /// How much later than usual a reply may arrive; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
     }
 }
@@ -51,9 +51,9 @@ parameters! {
     pub struct BusParameters: UrlError {
         /// The clock of BiSS: slow enough for long cables where none is wished.
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
-        /// What the adapter gives the encoder; `None`: nothing.
+        /// Supply of the encoder by the adapter; `None` for none.
         pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE));
-        /// How the supply is left.
+        /// State of the supply at the end.
         pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
     }
 }
@@ -71,7 +71,7 @@ parameters! {
     }
 }
 
-/// How the encoder is reached.
+/// The way to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
     /// UBICOM over its configuration pin: registers by their global address.
@@ -90,10 +90,10 @@ impl Way {
     }
 }
 
-/// What a session knows about its line and the encoder at its end.
+/// The state of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// How the encoder is reached.
+    /// The way to the encoder.
     pub way: Way,
     /// Speed and parity on the configuration pin. The encoder has 115200 8N1 and nothing to set; what stands between it and
     /// us, a converter or a radio link, may have another.
@@ -102,7 +102,7 @@ pub struct Station {
     pub line: LineState,
     /// Which byte of a register's number comes first over the configuration pin; `None` until it was probed.
     pub order: Option<ByteOrder>,
-    /// So long a reply may take, beside the time of its bytes and the margin.
+    /// Time limit of a reply, besides the time of its bytes and the margin.
     pub timeout: Duration,
     /// The clock of BiSS in hertz, as wished; the adapter takes the nearest that it has.
     pub clock_hz: u32,
@@ -112,7 +112,7 @@ pub struct Station {
     pub supply: Option<Supply>,
     /// The adapter, over that way.
     pub adapter: AdapterState,
-    /// What the encoder's registers are; `None` before it was identified.
+    /// The description of its registers; `None` before it was identified.
     pub description: Option<Arc<Description>>,
     /// The encoder's firmware, as it was identified.
     pub firmware: Option<Firmware>,
@@ -120,13 +120,13 @@ pub struct Station {
     pub layout: Option<Layout>,
     /// The frame as the user gives it, for an encoder that does not tell it.
     pub given: Option<Layout>,
-    /// Who told the frame; `None` before the encoder was identified.
+    /// Source of the frame; `None` before the encoder was identified.
     pub(super) source: Option<FrameSource>,
-    /// What is read is to be kept: it has to come twice, on a line that seems good as well.
+    /// Read values are kept: each has to be read twice, even on a line that seems good.
     pub(super) thorough: bool,
     /// Replies and frames came damaged.
     pub(super) noisy: bool,
-    /// How the adapter's bus is set.
+    /// Setting of the adapter's bus.
     pub(super) bus: Option<Bus>,
     /// The bank that is selected over BiSS, and when it was last sure.
     pub(super) bank: Option<(u8, Moment)>,
@@ -134,7 +134,7 @@ pub struct Station {
     pub(super) crc_errors: u32,
     /// A frame with these widths had a right checksum.
     pub(super) good_frames: bool,
-    /// What the registers of errors and warnings said last, over the configuration pin.
+    /// Last values of the registers of errors and warnings, over the configuration pin.
     pub(super) flags: Option<Flags>,
     /// The stream that the adapter sends.
     pub(super) flow: Option<Flow>,
@@ -161,13 +161,13 @@ impl Supply {
     /// Millivolts that every version of the kit encoder stands (manual, chapter 2: 4.75 to 12.5 V).
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
-    /// So many millivolts for a kit encoder.
+    /// Returns the supply voltage of a kit encoder with its limits.
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: *Self::RANGE.end() }
     }
 }
 
-/// How an adapter's bus is set.
+/// The setting of an adapter's bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Bus {
     pub(super) clock_hz: u32,
@@ -176,7 +176,7 @@ pub(super) struct Bus {
 }
 
 impl Station {
-    /// A line that nobody has used.
+    /// Creates the state of an unused line.
     pub fn new(way: Way, margin: Duration) -> Self {
         Station {
             way,
@@ -230,7 +230,7 @@ impl Station {
         self.layout.clone().or_else(described).unwrap_or_default()
     }
 
-    /// The adapter is asked anew who it is, and set anew.
+    /// Forgets the adapter: it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget();
         self.flow = None;
@@ -250,7 +250,7 @@ impl Station {
         std::mem::take(&mut self.crc_errors)
     }
 
-    /// How many bits of a position are turns is known.
+    /// Returns whether the number of turn bits is known.
     pub(super) fn is_split_known(&self) -> bool {
         self.source.is_none_or(FrameSource::is_told)
     }
@@ -260,8 +260,8 @@ impl Station {
         self.thorough || self.noisy
     }
 
-    /// Whether reading a register back tells that it was written. What a command register gives back does not: the same
-    /// command may have been given before.
+    /// Returns whether reading a register back proves that it was written. The value of a command register does not:
+    /// the same command may have been given before.
     pub(super) fn tells_back(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
@@ -270,7 +270,7 @@ impl Station {
         description.access(address) == Some(Access::Rw) && !self.is_command(address)
     }
 
-    /// What is written there is a command: of a procedure, or one that saves something.
+    /// Returns whether a write there is a command: of a procedure, or one that saves something.
     pub(super) fn is_command(&self, address: RegisterAddress) -> bool {
         self.description.as_ref().is_some_and(|description| {
             let saves = description.at(address).is_some_and(|register| !register.saves.is_empty());

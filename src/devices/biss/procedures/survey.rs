@@ -1,4 +1,4 @@
-//! How an encoder is, and everything that there is to see of it, in one go.
+//! Reads the status of an encoder, and everything else that can be displayed.
 
 use super::identify::identify_with;
 use super::registers::Registers;
@@ -8,12 +8,12 @@ use crate::devices::biss::protocol::{
     RegisterAddress, Role, WiegandResult,
 };
 
-/// How an encoder is. What it has no register for, or not with this firmware, is `None`.
+/// The status of an encoder. Values without a register, or not with this firmware, are `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// The device mode.
     pub mode: Option<DeviceMode>,
-    /// What stands where the password belongs.
+    /// The value of the password register.
     pub protection: Option<u8>,
     /// Its errors.
     pub errors: Option<Bits>,
@@ -46,9 +46,9 @@ pub struct Bits {
 /// An encoder as it was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
-    /// Who is there.
+    /// The identity.
     pub identity: Identity,
-    /// How it is.
+    /// The status.
     pub status: Status,
     /// Status of the calibration.
     pub calibration: Option<CalibrationStatus>,
@@ -58,7 +58,7 @@ pub struct Survey {
     pub wiegand_production: Option<WiegandResult>,
     /// The Wiegand test that was saved in the encoder, as it stood when power came.
     pub wiegand_saved: Option<WiegandResult>,
-    /// What a preset makes of the shaft's place.
+    /// Preset value of the position.
     pub preset: Option<PresetValue>,
     /// All that was read, byte for byte.
     pub registers: Registers,
@@ -121,7 +121,7 @@ pub(super) fn look_around(
     })
 }
 
-/// An encoder that gives no frame, or none that can be read, is looked at all the same.
+/// Reads the position, if any: an encoder without a readable frame is examined regardless.
 fn position_if_any(master: &mut Master<'_>) -> Result<Option<PositionReading>, Error> {
     match master.position() {
         Ok(reading) => Ok(Some(reading)),

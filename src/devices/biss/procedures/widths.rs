@@ -1,4 +1,4 @@
-//! The frame of an encoder whose widths nobody knows, found while its shaft turns.
+//! The search for the frame of an encoder with unknown widths, while its shaft turns.
 
 use std::time::Duration;
 
@@ -13,9 +13,9 @@ const BETWEEN: Duration = Duration::from_millis(2);
 /// Bits within a revolution at most.
 const MOST: u8 = 32;
 
-/// Looks for the frame by its checksum, while the shaft turns: CRC6 43h inverted, with an error and a warning bit behind
-/// the position, as BiSS encoders have them (`U`). How many bits are turns nobody can tell from outside: all that a word
-/// of 32 bits takes count as one turn.
+/// Searches for the frame by its checksum, while the shaft turns: CRC6 43h inverted, with an error and a warning bit
+/// after the position, as BiSS encoders have them (`U`). The number of turn bits cannot be observed: as many bits as
+/// fit a word of 32 count as one turn.
 ///
 /// # Errors
 /// [`Error::WidthsUnknown`] where no length fits, or the shaft stands still; the line.

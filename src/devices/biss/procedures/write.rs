@@ -1,5 +1,5 @@
-//! How a plan is written into an encoder: what was read is read again, then each operation is carried out and read back,
-//! with a person at the motor where one is needed, and the encoder is led back to operation after each.
+//! Writes a plan into an encoder: reads its base again, carries out each operation and reads it back, with a person at
+//! the motor where needed, and leads the encoder back to operation after each.
 
 use super::error::exactly;
 use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, Step};
@@ -21,7 +21,7 @@ pub struct Written {
     pub verified: u64,
     /// Persistent writes spent, or that may have been.
     pub write_cycles: u64,
-    /// What came of each operation that was carried out or left out.
+    /// The result of each operation that was carried out or skipped.
     pub outcomes: Vec<Outcome>,
 }
 
@@ -217,7 +217,7 @@ pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Resul
     Ok((mode != DeviceMode::OPERATION).then_some(mode))
 }
 
-/// What a plan needs to know of an encoder: who it is, its settings, and these banks of it.
+/// Reads what a plan needs of an encoder: its identity, its settings, and these banks.
 ///
 /// # Errors
 /// [`Error::Moving`] where banks are read; [`Error::NotInOperation`]; the line.

@@ -1,4 +1,5 @@
-//! What differs between two encoders, or between an encoder and a profile: one item for each run of differing registers.
+//! The differences between two encoders, or between an encoder and a profile: one item for each run of differing
+//! registers.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::bits::hex_compact;

@@ -15,7 +15,7 @@ use crate::devices::biss::protocol::{
 /// Manual 6.7: singleturn or multiturn alone.
 const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 
-/// What turns the shaft in a procedure that needs it.
+/// The motor that turns the shaft in a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorSource {
     /// Something that does not need this encoder: another motor, an open loop, another feedback.
@@ -24,7 +24,7 @@ pub enum MotorSource {
     ThisEncoder,
 }
 
-/// What one run does to an encoder that is being mounted, in this order.
+/// The steps of mounting an encoder in one run, in this order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MountingRun {
     /// Calibrate the singleturn.
@@ -55,7 +55,7 @@ impl MountingRun {
     }
 }
 
-/// What kind of place a register is to somebody who writes it.
+/// The kind of a register for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind<'d> {
     /// In an area that is opened and saved.
@@ -64,7 +64,7 @@ pub enum RegisterKind<'d> {
     Register,
 }
 
-/// What a write into a register means.
+/// Returns the meaning of a write to a register.
 ///
 /// # Errors
 /// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for what only the procedures write.
@@ -247,7 +247,7 @@ pub fn plan_mounting(
     Ok(plan)
 }
 
-/// What the encoder has of a setting; where it has none, why.
+/// Returns a setting of the encoder, or why it has none.
 fn have<T: Copy>(
     description: &Description,
     device: &DeviceState,

@@ -1,6 +1,6 @@
 //! Why a BiSS profile is refused.
 
-/// Why an entry of a profile cannot be.
+/// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A bank that stands in the list already.
@@ -17,7 +17,7 @@ pub enum EntryError {
     /// A bank that is none of the area's.
     #[error("0x{bank:02X} is not within 0x{first:02X} to 0x{last:02X}")]
     Outside {
-        /// Which.
+        /// The bank.
         bank: u8,
         /// The area's first.
         first: u8,
@@ -27,15 +27,15 @@ pub enum EntryError {
     /// Another number of bytes than there has to be.
     #[error("{got} bytes instead of {expected}")]
     Length {
-        /// How many there are.
+        /// Number of bytes.
         got: usize,
-        /// How many there have to be.
+        /// Required number.
         expected: usize,
     },
     /// No release of a firmware.
     #[error("{0:?} is not of the form 1.6.0")]
     Release(String),
-    /// What is marked is nothing.
+    /// The marked item does not exist.
     #[error("{0:?} is neither calibration nor of the form 0x24:0x10+3")]
     Marked(String),
 }

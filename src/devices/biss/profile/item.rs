@@ -14,7 +14,7 @@ pub struct RegisterRange {
     count: u8,
 }
 
-/// Why a text names no registers.
+/// Why a text does not name registers.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not an item; items are 0x40 to 0x7F, BANK:OFFSET as 0x24:0x10, and either with +COUNT behind it")]
 pub struct ItemError(pub String);
@@ -35,7 +35,7 @@ impl RegisterRange {
         self.start
     }
 
-    /// How many, 1…64.
+    /// Returns the number of registers, 1…64.
     pub const fn count(self) -> u8 {
         self.count
     }

@@ -1,12 +1,13 @@
-//! What an operation changes, in one line for the logbook: registers by address and name, old and new. Its words are the
-//! manual's, whatever the language of the window.
+//! The changes of an operation in one line for the logbook: registers by address and name, old and new. The words are
+//! the manual's, whatever the language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
 use crate::devices::biss::protocol::{Description, Filter, PresetValue};
 
 impl Op {
-    /// What it changes, old and new. Of a long run of registers the first are told: the backup has all of them.
+    /// Returns the changes, old and new. Of a long run of registers only the first are included: the backup has all of
+    /// them.
     pub fn note(&self, description: &Description) -> String {
         match self {
             Op::StoreData { area, registers } => {

@@ -1,6 +1,6 @@
-//! Whether an encoder is of the type that a profile was read from. A type is what the encoder says it is (profile ID,
-//! manufacturer, device ID) and how wide its position is: a preset is a number of steps, which mean another angle where
-//! their bits differ.
+//! Checks whether an encoder is of the type that a profile was read from. A type is the reported identity (profile ID,
+//! manufacturer, device ID) and the widths of the position: a preset is a number of steps, which means another angle
+//! where widths differ.
 
 use std::fmt;
 
@@ -57,8 +57,8 @@ impl fmt::Display for Width {
     }
 }
 
-/// What differs between the types of a profile and of an encoder; `None` where they are the same. What one of them does not
-/// tell differs from nothing.
+/// Returns the types of a profile and of an encoder if they differ; `None` if they are equal. Unknown parts equal
+/// everything.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (of_profile, of_device) = (profile.kind(), device.kind());
     if of_profile != of_device {

@@ -4,10 +4,10 @@ use super::{Bank, BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Filter, PresetCommand, PresetValue, RegisterAddress};
 use crate::profile::{Operation, Plan};
 
-/// What a write to a BiSS encoder would do.
+/// A planned write to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// What was read before a plan was made: all that its operations change and that can be read.
+/// The values that a plan is based on: everything that its operations change and that can be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// The banks of plain data that the plan touches.
@@ -27,7 +27,7 @@ pub enum Op {
     StoreData {
         /// The area; its `open` is the command that opens it.
         area: Area,
-        /// What changes, by ascending address.
+        /// The changes, by ascending address.
         registers: Vec<RegisterChange>,
     },
     /// Manual 6.7: another preset value is stored; nothing is preset yet.
@@ -39,7 +39,7 @@ pub enum Op {
     },
     /// Manual 6.7: the shaft's place becomes the stored preset value.
     FirePreset {
-        /// Which part of the position.
+        /// Parts of the position.
         parts: PresetParts,
         /// The value that is stored by then.
         value: PresetValue,
@@ -60,11 +60,11 @@ pub enum Op {
     },
     /// A register outside of the procedures, written as it is.
     WriteRegister {
-        /// Where.
+        /// The register.
         address: RegisterAddress,
-        /// What stands there; `None` where it cannot be read.
+        /// The old value; `None` if it cannot be read.
         old: Option<u8>,
-        /// What will stand there.
+        /// The new value.
         new: u8,
         /// Persistent writes that it costs.
         cycles: u8,
@@ -74,15 +74,15 @@ pub enum Op {
 /// A register with another value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RegisterChange {
-    /// Where.
+    /// The register.
     pub address: RegisterAddress,
-    /// What stands there.
+    /// The old value.
     pub old: u8,
-    /// What will stand there.
+    /// The new value.
     pub new: u8,
 }
 
-/// Which part of the position a preset sets.
+/// The part of the position that a preset sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PresetParts {
     /// All of it.

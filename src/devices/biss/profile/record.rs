@@ -1,5 +1,5 @@
-//! What is saved of a BiSS encoder: who it is, its settings, its areas of plain data, and beside them what is only
-//! recorded. Its text is in [`text`](super::text).
+//! The saved content of a BiSS encoder: identity, settings, areas of plain data, and recorded values. Its text is in
+//! [`text`](super::text).
 
 use std::fmt;
 
@@ -12,21 +12,21 @@ use crate::profile::ron_text::Unknown;
 /// A BiSS encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BissProfile {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
     /// The filter of the position; `None` where the encoder has no choice.
     pub filter: Option<Filter>,
-    /// What a preset makes of the shaft's place; `None` where the encoder has none. It belongs to the mounting.
+    /// Preset value; `None` if the encoder has none. It belongs to the mounting.
     pub preset: Option<PresetSetting>,
     /// Values that change by themselves or cannot be written: recorded, neither compared nor restored.
     pub recorded: Recorded,
-    /// What belongs to the mounting and never goes onto another encoder by itself.
+    /// Values that belong to the mounting and are never written to another encoder unasked.
     pub mounting: Vec<MountingMark>,
     /// Areas of plain data, by ascending bank.
     pub data: Vec<DataImage>,
 }
 
-/// Who an encoder is.
+/// The identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
     /// Serial number as the encoder's identification tells it; empty where it does not.
@@ -81,7 +81,7 @@ pub struct Recorded {
 /// Something that is right for one encoder on one motor and no other.
 pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 
-/// What belongs to a mounting.
+/// An item that belongs to a mounting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MountingItem {
     /// Registers.
@@ -91,7 +91,7 @@ pub enum MountingItem {
 }
 
 impl MountingItem {
-    /// What stands for the calibration, which has no registers.
+    /// The name of the calibration, which has no registers.
     pub(super) const CALIBRATION: &str = "calibration";
 }
 
@@ -109,20 +109,20 @@ impl fmt::Display for MountingItem {
 pub struct Bank {
     /// Its number.
     pub number: u8,
-    /// What its registers hold.
+    /// The content of its registers.
     pub bytes: [u8; 64],
 }
 
 /// A bank that stands in a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedBank {
-    /// What it holds.
+    /// The content.
     pub bank: Bank,
     /// Entries that this program does not know.
     pub unknown: Unknown,
 }
 
-/// What an area of plain data holds. Banks with the same byte in every register need not be listed.
+/// The content of an area of plain data. Banks with the same byte in every register need not be listed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataImage {
     /// The area's name in the encoder's description.
@@ -131,7 +131,7 @@ pub struct DataImage {
     pub first: u8,
     /// Last bank.
     pub last: u8,
-    /// What every register holds of a bank that is not listed; `None`: such a bank is not part of the profile.
+    /// The byte in every register of a bank that is not listed; `None`: such a bank is not part of the profile.
     pub empty: Option<u8>,
     /// The banks that are listed, ascending.
     pub listed: Vec<ListedBank>,
@@ -140,9 +140,9 @@ pub struct DataImage {
 }
 
 impl BissProfile {
-    /// Where the kit encoder has its preset value: singleturn, then multiturn.
+    /// Registers of the kit encoder's preset value: singleturn, then multiturn.
     pub const PRESET: &'static str = "0x01:0x02+6";
-    /// Where the kit encoder tells its filter.
+    /// Register of the kit encoder's filter.
     pub const FILTER: &'static str = "0x6E";
 
     /// Marks what is known to be a value of the mounting, and is not marked yet: preset and calibration.

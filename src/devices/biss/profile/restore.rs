@@ -1,5 +1,5 @@
-//! What restoring a profile would do: only what differs, in the fewest persistent writes, and nothing that belongs to
-//! another encoder's mounting. A preset is stored and never carried out.
+//! Planning a restore: only differences, in the fewest persistent writes, and nothing that belongs to another encoder's
+//! mounting. A preset is stored and never carried out.
 
 pub use crate::profile::RestoreOptions;
 
@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::{Area, Filter, Firmware, PresetValue, Proced
 /// An encoder as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
     /// Its filter; `None` where its firmware has no choice.
     pub filter: Option<Filter>,
@@ -22,7 +22,7 @@ pub struct DeviceState {
     pub banks: Vec<Bank>,
 }
 
-/// What a restore would do.
+/// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 
 /// Why something cannot be planned.
@@ -64,7 +64,7 @@ pub enum PlanError {
     /// The encoder's description has no such procedure.
     #[error("\"{description}\" has no such procedure")]
     NoProcedure {
-        /// Which.
+        /// The procedure.
         kind: ProcedureKind,
         /// The description's name.
         description: String,
@@ -72,7 +72,7 @@ pub enum PlanError {
     /// The encoder's firmware is older than what is asked of it.
     #[error("firmware {needed} is needed, the encoder has {found}")]
     FirmwareTooOld {
-        /// What is asked.
+        /// The procedure.
         kind: ProcedureKind,
         /// The first that can do it.
         needed: Firmware,
@@ -82,19 +82,19 @@ pub enum PlanError {
     /// A register that can only be read.
     #[error("register {address} can only be read")]
     ReadOnly {
-        /// Which.
+        /// The register.
         address: RegisterAddress,
     },
     /// A register with which a procedure is led.
     #[error("register {address} is written by the procedures alone")]
     Guarded {
-        /// Which.
+        /// The register.
         address: RegisterAddress,
     },
     /// As many bytes as the range has belong to it.
     #[error("{count} bytes are given for {range}")]
     ByteCount {
-        /// Where.
+        /// The registers.
         range: RegisterRange,
         /// Bytes given.
         count: usize,
@@ -135,7 +135,7 @@ pub fn plan_restore(
     Ok(planner.finish())
 }
 
-/// Plans only the plain data of a profile, the values of the mounting included: somebody mounts this encoder now.
+/// Plans only the plain data of a profile, including the values of the mounting: this encoder is being mounted now.
 ///
 /// # Errors
 /// See [`PlanError`]; nothing has been written.
@@ -201,7 +201,7 @@ pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Re
     Ok(())
 }
 
-/// What becomes of the values of the mounting.
+/// How to treat the values of the mounting.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mounting {
     /// They are this encoder's.

@@ -1,5 +1,5 @@
-//! Where a register is: 00h…3Fh in one of the banks, 40h…7Fh direct (manual 4); and the same as one number, by which
-//! UBICOM asks for it (manual, appendix: "Address global").
+//! The address of a register: 00h…3Fh in one of the banks, 40h…7Fh direct (manual 4); and the same as one number, as
+//! used by UBICOM (manual, appendix: "Address global").
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,7 +8,7 @@ use std::str::FromStr;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
-/// Why a text names no register.
+/// Why a text does not name a register.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no register: 0x40 to 0x7F stands for a direct one, BANK:OFFSET as 0x24:0x10 for one of a bank")]
 pub struct AddressError(String);

@@ -22,12 +22,12 @@ pub use host::{Host, Step};
 
 /// Cycles of CDM = 0 that lead back to rest.
 pub const REST_CYCLES: u8 = 14;
-/// So long an encoder may keep the host waiting for its S (`U`).
+/// Number of cycles for which an encoder may delay its S (`U`).
 pub const MAX_WAIT_CYCLES: u8 = 50;
 /// Registers that a control frame can address.
 const REGISTERS: u8 = 0x80;
 
-/// What a host asks of one of the encoders on its line.
+/// A request of a host to one of the encoders on its line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Request {
     slave: u8,
@@ -41,7 +41,7 @@ enum What {
     Write { values: Vec<u8> },
 }
 
-/// Why something cannot be asked.
+/// Why a request is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// There are eight numbers, 0…7.
@@ -52,15 +52,15 @@ pub enum RequestError {
     Range {
         /// The first.
         address: u8,
-        /// How many.
+        /// Number of bytes.
         count: usize,
     },
 }
 
-/// How a request failed.
+/// Why a request failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ControlError {
-    /// Nobody of that number is on the line.
+    /// No encoder of that number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
     /// The encoder does not repeat the kind of access: it has not understood, or it refuses.
@@ -74,9 +74,9 @@ pub enum ControlError {
     Crc {
         /// The register.
         address: u8,
-        /// What its value gives.
+        /// The checksum calculated from the value.
         expected: u8,
-        /// What stood there.
+        /// The checksum received.
         got: u8,
     },
 }

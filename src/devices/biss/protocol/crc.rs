@@ -9,11 +9,11 @@ pub struct Crc {
     polynomial: u64,
     start: u32,
     inverted: bool,
-    /// What eight bits at the register's upper end leave behind, the register standing at the upper end of 32 bits.
+    /// The remainder of eight bits at the upper end of the register, which is at the upper end of 32 bits.
     table: [u32; 256],
 }
 
-/// Why something is no checksum.
+/// Why a checksum is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The polynomial's degree is 0 or above 32.

@@ -1,5 +1,5 @@
-//! What an encoder's registers are: a description that anybody can write (RON, `assets/devices/biss/`), with the frame,
-//! the registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
+//! The description of an encoder: a file that anyone can write (RON, `assets/devices/biss/`), with the frame, the
+//! registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
 
 mod file;
 mod german;
@@ -31,7 +31,7 @@ pub struct Description {
     procedures: Vec<Procedure>,
 }
 
-/// What an encoder says of itself.
+/// The identity that an encoder reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// 42h and 43h.
@@ -48,33 +48,33 @@ pub struct Identity {
 pub struct Mismatch {
     /// The description's name.
     pub name: String,
-    /// What it is for.
+    /// The identity in the description.
     pub expected: Identity,
-    /// What is on the line.
+    /// The identity of the encoder.
     pub found: Identity,
 }
 
-/// What has to be written before a device mode can be chosen.
+/// The lock that has to be opened before a device mode can be selected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lock {
-    /// Where the password belongs.
+    /// Register of the password.
     pub password_at: RegisterAddress,
     /// The password.
     pub password: u8,
-    /// Where the device mode belongs.
+    /// Register of the device mode.
     pub mode_at: RegisterAddress,
 }
 
-/// Where a guided procedure has its registers.
+/// The registers of a guided procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Procedure {
-    /// Which one.
+    /// The procedure.
     pub kind: ProcedureKind,
     /// The device mode that it needs.
     pub mode: u8,
-    /// Where its commands are written.
+    /// Register of its commands.
     pub command: RegisterAddress,
-    /// Where it tells how far it is.
+    /// Register of its status.
     pub status: RegisterAddress,
     /// The first of its further registers: the error code and results of a Wiegand test, the value of a preset.
     pub data: Option<RegisterAddress>,
@@ -92,7 +92,7 @@ pub struct DescriptionError {
     pub line: usize,
     /// Column, counted from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// The problem.
     pub what: String,
 }
 
@@ -115,12 +115,12 @@ impl Description {
         })
     }
 
-    /// What the encoder is called.
+    /// Returns the name of the encoder.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What an encoder of this kind says of itself; `None`: any may be one.
+    /// Returns the identity of encoders of this kind; `None` for any.
     pub const fn identity(&self) -> Option<&Identity> {
         self.identity.as_ref()
     }
@@ -130,7 +130,7 @@ impl Description {
         self.layout.as_ref()
     }
 
-    /// What opens the device modes; `None` where there are none.
+    /// Returns the lock of the device modes; `None` if there is none.
     pub const fn lock(&self) -> Option<Lock> {
         self.lock
     }
@@ -145,7 +145,7 @@ impl Description {
         &self.areas
     }
 
-    /// What a bank is called: by its area, or by the list of banks.
+    /// Returns the name of a bank: from its area, or from the list of banks.
     pub fn bank_name(&self, bank: u8) -> Option<&Name> {
         let area = self.areas.iter().find(|area| area.contains(bank)).map(|area| &area.name);
         area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
@@ -176,12 +176,12 @@ impl Description {
         self.procedures.iter().find(|procedure| procedure.kind == kind)
     }
 
-    /// What the byte at an address may be.
+    /// Returns the access to the byte at an address.
     pub fn access(&self, address: RegisterAddress) -> Option<Access> {
         self.at(address).map(|register| register.access).or_else(|| self.area_at(address).map(|area| area.access))
     }
 
-    /// Whether an encoder is of this kind.
+    /// Checks whether an encoder is of this kind.
     ///
     /// # Errors
     /// [`Mismatch`], with both sides.
@@ -215,7 +215,7 @@ impl Descriptions {
         ("unknown.ron", include_str!("../../../../assets/devices/biss/unknown.ron")),
     ];
 
-    /// Reads files, and says of each that cannot be used why; the rest counts all the same.
+    /// Reads files; returns the reason for each that cannot be used, which does not affect the others.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<DescriptionError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();

@@ -8,7 +8,7 @@ use super::crc::{Crc, CrcError};
 use super::single_cycle::{Layout, LayoutError};
 use super::status::ProfileId;
 
-/// Which bank of the data sheet.
+/// A bank of the data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EdsBank {
     /// Bank 2: what every BiSS device says.
@@ -26,7 +26,7 @@ pub struct EdsField {
     pub width: u8,
     /// As the manual has it.
     pub name: &'static str,
-    /// What the kit encoder has there as delivered; `None` where the manual leaves it open.
+    /// Factory setting of the kit encoder; `None` if the manual leaves it open.
     pub default: Option<u32>,
     meaning: Meaning,
 }
@@ -45,7 +45,7 @@ enum Meaning {
     Kelvin,
 }
 
-/// What a field says.
+/// The value of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdsValue {
     /// A number with its unit, which may be empty.
@@ -66,7 +66,7 @@ pub enum EdsValue {
     Polynomial(u64),
     /// The profile.
     Profile(ProfileId),
-    /// What a bit beside the position says.
+    /// The meaning of a bit beside the position.
     Feedback(Feedback),
     /// 0: rotary. Other numbers are unknown (`U`).
     EncoderType(u8),
@@ -74,7 +74,7 @@ pub enum EdsValue {
     Code(u32),
 }
 
-/// What a bit beside the position says.
+/// The meaning of a bit beside the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feedback {
     /// 0: there is no such bit.
@@ -144,7 +144,7 @@ pub struct Eds {
     bytes: [u8; 64],
 }
 
-/// Why a data sheet cannot be relied upon.
+/// Why a data sheet is not reliable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of the others.
@@ -154,7 +154,7 @@ pub enum EdsError {
         bank: u8,
         /// The sum.
         expected: u8,
-        /// What stood there.
+        /// The checksum received.
         got: u8,
     },
     /// A bit beside the position with a meaning that is not known.
@@ -182,7 +182,7 @@ pub enum EdsError {
 }
 
 impl EdsBank {
-    /// Where the kit encoder has it.
+    /// Returns its number in the kit encoder.
     pub const fn number(self) -> u8 {
         match self {
             EdsBank::Common => 0x02,
@@ -200,7 +200,7 @@ impl EdsBank {
 }
 
 impl Eds {
-    /// Where the sum of the others is.
+    /// Offset of the checksum of the others.
     pub const CHECKSUM_OFFSET: u8 = 0x3F;
 
     /// Reads a bank and checks its sum.
@@ -293,7 +293,7 @@ impl EdsField {
         bytes.iter().fold(0, |number, byte| number << 8 | u32::from(*byte))
     }
 
-    /// What the field says. The bank's sum is not looked at: see [`Eds::parse`].
+    /// Returns the value of the field. The bank's checksum is not verified here: see [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw(bank);
         // Fields with these meanings have one byte, those of two words of it: nothing is cut off.

@@ -1,5 +1,5 @@
-//! What the data line (SLO) carries in one cycle, a sample a clock after the latch: acknowledge, start bit, control bit,
-//! frame, time-out (manual figure 2). How long a clock or the time-out takes is nobody's business here.
+//! The data line (SLO) in one cycle, a sample a clock after the latch: acknowledge, start bit, control bit, frame,
+//! time-out (manual figure 2). The durations of clock and time-out do not matter here.
 
 use super::single_cycle::Layout;
 
@@ -14,7 +14,7 @@ pub struct Cycle {
     pub raw: u64,
 }
 
-/// Why samples are no cycle.
+/// Why samples are not a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CycleError {
     /// The line never went low: no encoder, or a broken wire.

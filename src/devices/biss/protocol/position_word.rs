@@ -1,5 +1,5 @@
-//! What the position word of UBICOM says: singleturn below, multiturn above it (manual 5.2). There is no error and no
-//! warning bit in it.
+//! The position word of UBICOM: singleturn in the lower bits, multiturn above (manual 5.2). It has no error and no
+//! warning bit.
 
 use super::single_cycle::{Layout, Reading};
 use crate::buses::ubicom::protocol::PositionWord;

@@ -86,7 +86,7 @@ codes! {
 }
 
 codes! {
-    /// What the Wiegand test's status register says (bank 0, 07h).
+    /// The status register of the Wiegand test (bank 0, 07h).
     WiegandStatus {
         /// No test runs.
         Stopped = 0x00 "test stopped",
@@ -117,7 +117,7 @@ codes! {
 }
 
 codes! {
-    /// What the calibration's status register says (bank 0, 01h).
+    /// The status register of the calibration (bank 0, 01h).
     CalibrationStatus {
         /// Nothing has begun.
         Idle = 0x00 "not started",
@@ -153,7 +153,7 @@ codes! {
 }
 
 codes! {
-    /// What the data write's status register says (bank 0, 1Bh).
+    /// The status register of the data write (bank 0, 1Bh).
     DataStatus {
         /// Write access may be asked for.
         Closed = 0x00 "wait for write access",
@@ -177,7 +177,7 @@ codes! {
 }
 
 codes! {
-    /// What the filter selection's status register says (bank 0, 25h).
+    /// The status register of the filter selection (bank 0, 25h).
     FilterStatus {
         /// Write access may be asked for.
         Closed = 0x00 "wait for write access",
@@ -205,7 +205,7 @@ codes! {
 }
 
 codes! {
-    /// What the preset's status register says (bank 1, 01h).
+    /// The status register of the preset (bank 1, 01h).
     PresetStatus {
         /// No value is expected.
         Idle = 0x00 "idle",
@@ -214,7 +214,7 @@ codes! {
     }
 }
 
-/// What a preset makes of the shaft's place: three bytes each, low byte first (bank 1, 02h…07h).
+/// The preset value: three bytes each, low byte first (bank 1, 02h…07h).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct PresetValue {
     singleturn: u32,
@@ -264,7 +264,7 @@ impl PresetValue {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct PulseVoltage(u8);
 
-/// What a Wiegand test has found in both directions (bank 0: the last from 09h, the factory's from 0Dh, the saved from
+/// The result of a Wiegand test in both directions (bank 0: the last from 09h, the factory's from 0Dh, the saved from
 /// 11h on).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WiegandResult {

@@ -3,7 +3,7 @@
 
 use super::crc::{Crc, CrcError};
 
-/// Which bits a frame has, behind its start and control bit.
+/// The bits of a frame after its start and control bit.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
     multiturn_bits: u8,
@@ -13,7 +13,7 @@ pub struct Layout {
     crc: Option<Crc>,
 }
 
-/// Why a layout cannot be.
+/// Why a layout is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// More bits than a number has that they are kept in.
@@ -66,9 +66,9 @@ pub enum FrameError {
     /// The checksum does not fit.
     #[error("CRC {got:02X} where {expected:02X} was expected")]
     Crc {
-        /// What the other bits give.
+        /// The checksum calculated from the other bits.
         expected: u32,
-        /// What stood there.
+        /// The checksum received.
         got: u32,
     },
 }
@@ -212,7 +212,7 @@ impl Default for Layout {
     }
 }
 
-/// That many ones at the lower end, 0…64.
+/// Returns this many ones at the lower end, 0…64.
 const fn ones(bits: u8) -> u64 {
     match bits {
         0 => 0,

@@ -1,5 +1,5 @@
-//! What single registers of the kit encoder say: errors, warnings, temperature, device mode, filter, firmware (manual
-//! 6.1, 6.2, 6.6, 6.8 and appendix).
+//! Single registers of the kit encoder: errors, warnings, temperature, device mode, filter, firmware (manual 6.1, 6.2,
+//! 6.6, 6.8 and appendix).
 
 use std::fmt;
 

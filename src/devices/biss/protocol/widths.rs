@@ -1,11 +1,11 @@
-//! How long the frames of an unknown encoder are: the length with which the checksum fits again and again while the shaft
-//! turns (reference 2).
+//! Determines the frame length of an unknown encoder: the length with which the checksum fits repeatedly while the
+//! shaft turns (reference 2).
 
 use super::crc::Crc;
 
 /// Fewest and most bits of data that are tried (`U`).
 const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
-/// So many frames in a row have to fit, each with other data than the one before (`U`).
+/// Number of consecutive frames that have to fit, each with other data than the one before (`U`).
 const ENOUGH: usize = 8;
 
 /// Bits of data, without the checksum, of frames that are cut out of the first `clocked` bits behind the control bit, the

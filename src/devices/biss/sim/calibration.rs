@@ -8,12 +8,12 @@ use std::time::Duration;
 use crate::devices::biss::protocol::{CalibrationCommand, CalibrationStatus, Filter};
 use crate::units::Moment;
 
-/// What the runs depend on.
+/// The conditions of the runs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Conditions {
     /// Above 0 clockwise.
     pub(super) rpm: f64,
-    /// How far the speed wavers, in revolutions a minute.
+    /// Variation of the speed, in revolutions a minute.
     pub(super) waver: f64,
     pub(super) celsius: i16,
     pub(super) filter: Filter,
@@ -36,7 +36,7 @@ struct Run {
     outcome: CalibrationStatus,
 }
 
-/// What has become of the table.
+/// The state of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     /// Nothing yet.

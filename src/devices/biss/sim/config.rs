@@ -13,7 +13,7 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// What a virtual encoder shall be like. The default is one as delivered, with the newest firmware known, at rest,
+    /// The settings of a virtual encoder. The default has factory settings and the newest firmware known, at rest,
     /// without faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
@@ -56,7 +56,7 @@ impl Config {
         &self.faults
     }
 
-    /// Where its noise begins.
+    /// Returns the seed of its noise.
     pub const fn seed(&self) -> u64 {
         self.seed
     }

@@ -111,7 +111,7 @@ impl Encoder {
         encoder
     }
 
-    /// What survives a loss of power.
+    /// Returns the content that survives a loss of power.
     pub const fn flash(&self) -> &Flash {
         &self.flash
     }
@@ -126,7 +126,7 @@ impl Encoder {
         self.mode
     }
 
-    /// What turns its shaft.
+    /// Returns the motor of its shaft.
     pub fn motor(&self) -> Motor {
         self.drive.motor().clone()
     }
@@ -203,7 +203,7 @@ impl Encoder {
         self.bank
     }
 
-    /// Where a register address of the control frame leads to, with the bank that is selected.
+    /// Returns the register of an address in a control frame, with the selected bank.
     pub fn address(&self, address: u8) -> Option<RegisterAddress> {
         if address < RegisterAddress::BANK_SIZE {
             RegisterAddress::banked(self.bank, address)
@@ -378,7 +378,7 @@ impl Encoder {
         }
     }
 
-    /// What was only in memory is gone.
+    /// Starts: the content of the memory is lost.
     fn start(&mut self, now: Moment) {
         self.abandon();
         self.power = Power::Starting { ready: now + Self::START };
@@ -388,7 +388,7 @@ impl Encoder {
         self.saved_wiegand = self.flash.wiegand;
     }
 
-    /// Whatever was under way ends.
+    /// Ends everything in progress.
     fn abandon(&mut self) {
         if self.calibration.abandon() == Ended::Lost {
             self.flash.calibrated = false;

@@ -5,7 +5,7 @@ use crate::devices::biss::protocol::{
     DataCommand, DataStatus, Filter, FilterCommand, FilterStatus, Layout, PresetCommand, PresetStatus, PresetValue,
 };
 
-/// Which area of plain data.
+/// An area of plain data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Area {
     Motor,
@@ -24,7 +24,7 @@ impl Area {
     }
 }
 
-/// What follows of a command.
+/// The effect of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Then {
     /// It is refused.

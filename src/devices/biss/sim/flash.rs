@@ -1,4 +1,4 @@
-//! What survives a loss of power, and how often it was written: 1000 times in a life (manual 6.1).
+//! The content that survives a loss of power, and the number of its writes: 1000 in a lifetime (manual 6.1).
 
 use crate::devices::biss::protocol::{Filter, PresetValue};
 
@@ -42,7 +42,7 @@ impl Flash {
         &self.oem_data
     }
 
-    /// What a preset makes of the shaft's place.
+    /// Returns the preset value.
     pub const fn preset(&self) -> PresetValue {
         self.preset
     }
@@ -57,7 +57,7 @@ impl Flash {
         self.calibrated
     }
 
-    /// How often it was written.
+    /// Returns the number of writes.
     pub const fn cycles(&self) -> u32 {
         self.cycles
     }

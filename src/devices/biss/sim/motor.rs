@@ -1,4 +1,4 @@
-//! What turns the shaft, as the encoder has it.
+//! The motor of the shaft, as seen by the encoder.
 
 use crate::sim::Motor;
 

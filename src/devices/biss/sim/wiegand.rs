@@ -5,7 +5,7 @@
 use crate::devices::biss::protocol::{WiegandCommand, WiegandStatus};
 use crate::units::Moment;
 
-/// What the sensor gives, in tenths of a volt.
+/// The pulses of the sensor, in tenths of a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pulses {
     /// Average; 0: no pulses at all.

@@ -1,4 +1,4 @@
-//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+//! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ use crate::profile::Body;
 use super::table::Group;
 use crate::devices::biss::state::explain as explained;
 
-/// How often a watched register is read: what is watched changes slowly, and the position has to wait for it.
+/// Interval of reading a watched register: watched values change slowly, and the position has to wait for them.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
@@ -103,12 +103,12 @@ impl Encoder {
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
     }
 
-    /// What can be shown of an area: of a profile as much as it holds, of an encoder only the whole.
+    /// Returns the part of an area that can be shown: of a profile what it contains, of an encoder only the whole.
     pub fn shown(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
 
-    /// Why an area cannot be edited now; `None`: it can.
+    /// Returns why an area cannot be edited now; `None` if it can.
     pub fn why_not_editable(&self, area: &Area) -> Option<Text> {
         if !area.access.writes() {
             return Some(TEXTS.text("data.read_only"));

@@ -1,4 +1,4 @@
-//! What can be asked of a BiSS encoder that is shown.
+//! The actions of a BiSS encoder that is shown.
 
 use std::path::PathBuf;
 
@@ -34,16 +34,14 @@ pub enum Action {
     Revert {
         /// First byte.
         start: RegisterAddress,
-        /// How many.
         count: usize,
     },
     /// Show what a change would do.
     Plan(Box<Change>),
     /// Show what a mounting run would do; the plain data comes from a profile that is open in another session.
     PlanMounting {
-        /// What is done, without the data.
+        /// The steps, without the data.
         run: Box<MountingRun>,
-        /// What turns the motor.
         motor: MotorSource,
         /// Whose data.
         data: Option<SessionId>,

@@ -1,4 +1,4 @@
-//! What a person fills in to connect a BiSS C encoder, and the link it stands for. Nothing is opened here.
+//! The connection form of a BiSS C encoder, and its link. Nothing is opened here.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -16,7 +16,7 @@ use crate::link::{LinkUrl, Scheme};
 use crate::parameter::Values;
 use crate::units::Parity;
 
-/// How the encoder is reached.
+/// The way to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BissWay {
     /// The virtual encoder in this program.
@@ -34,7 +34,6 @@ pub enum BissWay {
 /// for what is usual.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
-    /// How the encoder is reached.
     pub way: BissWay,
     /// The virtual encoder stands behind a virtual adapter; what was recorded passed an adapter.
     pub behind_adapter: bool,
@@ -52,9 +51,9 @@ pub struct BissForm {
     pub baud: String,
     /// Parity on the configuration pin.
     pub parity: Parity,
-    /// Which byte of a register's number comes first on the configuration pin; `None`: find out.
+    /// Which byte of a register's number comes first on the configuration pin; `None`: detect it.
     pub order: Option<ByteOrder>,
-    /// Whether the line gives our own bytes back; unknown: find out.
+    /// Whether the line echoes; unknown: detect it.
     pub echo: Echo,
     /// The clock on the bus in hertz.
     pub clock: String,
@@ -70,7 +69,7 @@ pub struct BissForm {
     pub margin: String,
     /// The virtual encoder's speed in revolutions a minute.
     pub rpm: String,
-    /// What goes wrong with it on purpose.
+    /// Injected faults.
     pub fault: String,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
@@ -266,7 +265,8 @@ impl BissForm {
         parameters
     }
 
-    /// What only another way has is not taken along; what nothing has is, so that it is refused by its name.
+    /// Returns whether a parameter belongs to this way. Those of other ways are dropped; unknown ones are kept, so that
+    /// they are refused by name.
     fn belongs(&self, name: &str) -> bool {
         let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
         let own = |way: Way| way.parameters().contains(&name);

@@ -1,5 +1,5 @@
-//! What a register says in words: as its description decodes it, and beyond that what the program knows of registers with
-//! a role and of the data sheet.
+//! The value of a register in words: as decoded by its description, and beyond that for registers with a role and the
+//! data sheet.
 
 use super::encoder::Encoder;
 use super::table::RegisterEntry;
@@ -12,7 +12,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as explained;
 
 impl Encoder {
-    /// What a register says; `None` where it was not read, and where it says no more than its number.
+    /// Returns the meaning of a register; `None` if it was not read, or has no meaning beyond its number.
     pub fn meaning(&self, shown: &RegisterEntry<'_>) -> Option<Text> {
         let register = &shown.row.register;
         let bytes = shown.bytes.as_deref()?;

@@ -21,27 +21,26 @@ use crate::sim::Motor;
 
 /// A BiSS encoder, or a profile of one.
 pub struct Encoder {
-    /// What every session has.
     pub session: Session<Biss>,
     /// Everything there is to see of it, as it was found.
     pub survey: Option<Survey>,
-    /// How it is, as it was last read.
+    /// The status as last read.
     pub status: Option<Status>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// What its registers are.
+    /// The description of its registers.
     pub description: Option<Arc<Description>>,
     /// Its registers and the edits beside them.
     pub memory: Memory,
     /// Its registers as a table.
     pub table: Table,
-    /// What was recorded while it was polled.
+    /// The recording from polling.
     pub record: Record,
     /// A procedure on its way, or as it ended.
     pub guide: Option<Guide>,
-    /// Why data were not read the last time that somebody wanted it.
+    /// Why the data could not be read on the last request.
     pub refusal: Option<Text>,
-    /// What turns the virtual encoder's shaft.
+    /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
     /// Banks that were read because they came in sight, or could not be: they are not asked for by themselves again.
@@ -70,7 +69,7 @@ impl Encoder {
         }
     }
 
-    /// What its registers are, from now on.
+    /// Sets the description of its registers.
     pub(super) fn describe(&mut self, description: Option<Arc<Description>>) {
         let sheet = self.survey.as_ref().and_then(|survey| survey.identity.data_sheet.as_ref());
         let last = sheet.and_then(|sheet| sheet.common.eds.as_ref().ok()).and_then(Eds::last_user_bank);
@@ -101,7 +100,7 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Who it is, as far as that is known.
+    /// Returns the identity, as far as known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
@@ -119,12 +118,12 @@ impl Encoder {
         Some([parsed(EdsBank::Common)?, parsed(EdsBank::Encoder)?])
     }
 
-    /// What an adapter streams now; `None` where it does not.
+    /// Returns what an adapter streams now; `None` if it does not.
     pub fn streamed(&self) -> Option<&Streamed> {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
 
-    /// Who it was, where this is a profile.
+    /// Returns the identity in the profile, if this is one.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
     }

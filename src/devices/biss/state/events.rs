@@ -1,4 +1,4 @@
-//! What the line to an encoder tells: results of jobs, live samples, and its loss.
+//! Events of the line to an encoder: results of jobs, live samples, and loss.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;

@@ -27,7 +27,7 @@ use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, Lay
 use crate::link::LinkError;
 use crate::store::StoreError;
 
-/// What a description of an encoder calls something.
+/// Returns a name of a description.
 pub fn name(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
@@ -169,7 +169,7 @@ fn moving(rpm: Option<f64>) -> Text {
     TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
-/// What was asked of an encoder.
+/// Returns the text of a request.
 pub fn asked(asked: Asked) -> Text {
     match asked {
         Asked::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
@@ -189,7 +189,7 @@ pub fn mismatch(mismatch: &Mismatch) -> Text {
         .with("expected", &mismatch.expected)
 }
 
-/// What was said on the way, one text each.
+/// Returns the texts of a message during a job.
 pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
     match remark {
         DeviceMessage::CrcErrors(1) => vec![TEXTS.text("biss.crc_error")],
@@ -210,7 +210,7 @@ fn description(error: &StoreError) -> Text {
     }
 }
 
-/// What a job does at the moment.
+/// Returns the text of the present step of a job.
 pub fn doing(doing: &JobStep) -> Text {
     match doing {
         JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),
@@ -232,7 +232,6 @@ mod tests {
     use crate::devices::biss::protocol::{Identity, ProfileId, RegisterAddress};
     use crate::link::LinkErrorKind;
 
-    /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
     #[test]
     fn every_error_says_what_happened_and_what_to_do() {
         let address: RegisterAddress = "0x24:0x10".parse().unwrap();

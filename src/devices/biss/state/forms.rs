@@ -1,4 +1,4 @@
-//! What a person types for a procedure, and what it stands for.
+//! The entries of the procedures, and their meaning.
 
 use crate::app::Text;
 use crate::app::number::{whole, within};

@@ -1,5 +1,5 @@
-//! A guided procedure as a person follows it: its steps, how far it is, what is asked now, what came of it. Nothing is
-//! carried out here; the answers go to whoever carries the plan out.
+//! The state of a guided procedure for its display: steps, progress, present task, results. Nothing is carried out
+//! here; the answers go to the job.
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
@@ -14,13 +14,13 @@ pub struct Guide {
     /// The step that it was at when it was cut off: what is told last is the way back from there.
     pub(super) cut: Option<Step>,
     pub(super) seat: OperatorChannel,
-    /// What the person wants to leave out: the operation and what was asked in it.
+    /// The skipped tasks, with their operations.
     skips: Vec<(usize, Task)>,
-    /// How it ended; `None`: it goes on.
+    /// The end; `None` while it runs.
     pub end: Option<End>,
 }
 
-/// How a procedure ended.
+/// The end of a procedure.
 #[derive(Clone, Debug)]
 pub enum End {
     /// To its end: what came of each operation.
@@ -29,7 +29,7 @@ pub enum End {
     Failed {
         /// In words.
         texts: Vec<Text>,
-        /// What came of the operations before.
+        /// The results of the operations before.
         before: Vec<Outcome>,
         /// The encoder may not be in operation.
         may_lead_back: bool,
@@ -38,7 +38,7 @@ pub enum End {
     },
 }
 
-/// How far a step is.
+/// The progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
     /// It is over.
@@ -64,9 +64,7 @@ pub struct GuideStep<'a> {
     pub op: &'a Op,
     /// It is the first of its operation.
     pub is_first: bool,
-    /// What it is.
     pub step: Step,
-    /// How far it is.
     pub reached: Reached,
 }
 
@@ -80,7 +78,7 @@ impl Guide {
         self.end.is_none()
     }
 
-    /// What it carries out.
+    /// Returns its operations.
     pub fn ops(&self) -> &[Op] {
         &self.ops
     }
@@ -89,12 +87,12 @@ impl Guide {
         self.news = Some(news);
     }
 
-    /// What is told of the step that counts.
+    /// Returns the detail of the present step.
     pub fn detail(&self) -> Option<&Detail> {
         self.news.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
-    /// What is asked of the person.
+    /// Returns the present task of the person.
     pub fn demand(&self) -> Option<&Demand> {
         match self.detail()? {
             Detail::Demand(demand) => Some(demand),
@@ -142,7 +140,7 @@ impl Guide {
         steps
     }
 
-    /// Which steps of an operation were left out: as it ended, else as the person has answered.
+    /// Returns the skipped steps of an operation: from its result, else from the answers.
     fn skipped(&self, number: usize, steps: &[Step]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),

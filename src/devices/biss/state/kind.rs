@@ -1,4 +1,4 @@
-//! What the studio knows of BiSS before there is a device.
+//! The kind BiSS for the studio, before there is a device.
 
 use std::sync::Arc;
 

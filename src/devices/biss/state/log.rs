@@ -1,5 +1,4 @@
-//! What the log is told of an encoder: who answered and how it is reached, which write began, what came of each of its
-//! operations.
+//! The log entries of an encoder: its identity and link, the start of a write, the results of its operations.
 
 use super::encoder::Encoder;
 use crate::app::review::{ChangeWords, OpWords};
@@ -14,7 +13,7 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
 impl Encoder {
-    /// Who answered for the first time since the link was opened.
+    /// Logs the first answer since the link was opened.
     pub(super) fn log_answer(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
         self.session.log_answer(vec![way(identity), who(identity)], services);
@@ -35,7 +34,7 @@ impl Encoder {
         services.note(Severity::Note, vec![text], Some(&self.session.name()));
     }
 
-    /// What came of the operations that were carried out, before the end of the write is told.
+    /// Logs the results of the operations, before the end of the write.
     pub(super) fn log_outcomes(&self, outcomes: &[Outcome], services: &mut Services) {
         for outcome in outcomes {
             services.note(Severity::Note, words::outcome(outcome), Some(&self.session.name()));
@@ -52,7 +51,7 @@ fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
 }
 
-/// How it is reached.
+/// Returns the way to the encoder in words.
 fn way(identity: &Identity) -> Text {
     match (&identity.adapter, identity.order) {
         (Some(hello), _) => Text::new("log.adapter")
@@ -64,7 +63,7 @@ fn way(identity: &Identity) -> Text {
     }
 }
 
-/// What it says to be.
+/// Returns the reported identity in words.
 fn who(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
     TEXTS

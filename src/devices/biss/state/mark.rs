@@ -1,10 +1,10 @@
-//! What the last position of an encoder is worth: as the position itself tells, or, where its way does not carry that, as
-//! the registers of errors and warnings told when the status was last read.
+//! The validity of the last position: from the position itself, or, if the way does not carry it, from the registers of
+//! errors and warnings when the status was last read.
 
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::Bits;
 
-/// What is said against a position.
+/// A mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// It is not valid.
@@ -14,7 +14,7 @@ pub enum Mark {
 }
 
 impl Encoder {
-    /// What is said against the last position.
+    /// Returns the mark on the last position.
     pub fn mark(&self) -> Option<Mark> {
         let reading = self.record.last()?;
         let status = self.status.as_ref();

@@ -1,5 +1,5 @@
-//! What the frames of the trace say: a reply is read with the request before it, a register over the bus with the bank that
-//! was selected.
+//! The meaning of the frames in the trace: a reply is decoded with the request before it, a register over the bus with
+//! the selected bank.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -16,7 +16,7 @@ use crate::link::{Direction, TraceEntry};
 /// Reads frames in the order in which they went over the line.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
-    /// Which byte of a register's number comes first, once it is known.
+    /// Which byte of a register's number comes first, once known.
     pub(super) order: Option<ByteOrder>,
     asked: Option<Request>,
     /// The last request went over the configuration pin.
@@ -25,7 +25,7 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    /// What a frame says.
+    /// Returns the meaning of a frame.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         let said = match entry.direction {
@@ -55,7 +55,7 @@ impl Meaning {
         })
     }
 
-    /// What came over the configuration pin behind a request. The reply may still come behind what is broken.
+    /// Decodes bytes received over the configuration pin after a request. The reply may still follow a damaged part.
     fn reply(&mut self, bytes: &[u8]) -> Explained {
         let broken = |damage| Explained::broken(words::damage(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };

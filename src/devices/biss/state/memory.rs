@@ -32,7 +32,7 @@ pub type Memory = Edits<Registers>;
 /// Why an edit cannot be made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MemoryError {
-    /// It has not been read, so nobody knows what would be replaced.
+    /// It has not been read, so the value to be replaced is not known.
     #[error("{0} has not been read")]
     NotRead(RegisterAddress),
     /// It is no plain data.

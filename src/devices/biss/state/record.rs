@@ -1,4 +1,4 @@
-//! What is recorded of a BiSS encoder while it is polled: its positions, and registers that are watched.
+//! The recording of a BiSS encoder from polling: its positions, and watched registers.
 
 use std::time::Duration;
 
@@ -117,7 +117,7 @@ impl Record {
         self.last = Some(*reading);
     }
 
-    /// What an adapter streams; frames that are missing are told and never joined.
+    /// Records streamed frames; missing ones are reported and never joined.
     fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
         let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -245,7 +245,7 @@ fn sighting(reading: &PositionReading) -> PositionSample {
     }
 }
 
-/// What positions of such widths are, multiturn and singleturn.
+/// Returns the meaning of positions with these widths of multiturn and singleturn.
 fn meaning(Widths { multiturn, singleturn, is_split_known }: Widths) -> Meaning {
     let range = 1_i64.checked_shl(u32::from(multiturn) + u32::from(singleturn)).filter(|range| *range > 0);
     if !is_split_known {

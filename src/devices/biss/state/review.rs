@@ -11,7 +11,7 @@ use crate::devices::biss::state::explain as words;
 
 /// A write on its way.
 pub type Review = review::Review<Biss>;
-/// How far it is.
+/// The state of a review.
 pub type ReviewState = review::ReviewState<Biss>;
 
 /// A person has to be there for it, or may lead it.
@@ -106,7 +106,7 @@ impl Reviewed for Biss {
     }
 }
 
-/// What was chosen for a mounting and is not in its plan, because it is so already.
+/// Returns the chosen parts of a mounting that are not in its plan, because nothing changes.
 fn left_out(change: &Change, ops: &[Op]) -> impl Iterator<Item = Text> {
     let run = match change {
         Change::Guided { run, .. } => Some(run),

@@ -5,7 +5,7 @@ use super::memory::Memory;
 use crate::bits::ByteOrder;
 use crate::devices::biss::protocol::{Access, Decoding, Description, EdsBank, Name, Register, RegisterAddress};
 
-/// The banks of an encoder that nobody has described: as many as the kit encoder has.
+/// Last bank of an undescribed encoder: as in the kit encoder.
 const LAST_BANK: u8 = 0x43;
 
 /// The rows of all banks.
@@ -19,7 +19,7 @@ pub struct Table {
 pub struct Group {
     /// The bank; `None`: the direct registers.
     pub bank: Option<u8>,
-    /// What it is called, where the description says so.
+    /// Its name, if described.
     pub name: Option<Name>,
     rows: Vec<Row>,
 }
@@ -136,7 +136,7 @@ fn addresses(bank: Option<u8>) -> impl Iterator<Item = RegisterAddress> {
     })
 }
 
-/// A byte that nobody has described.
+/// Returns an undescribed byte.
 fn plain(address: RegisterAddress, access: Access) -> Register {
     Register {
         address,

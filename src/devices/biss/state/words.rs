@@ -1,4 +1,4 @@
-//! What a BiSS encoder says, and what is done with it, in words.
+//! The data and the jobs of a BiSS encoder in words.
 
 use std::sync::LazyLock;
 
@@ -30,7 +30,7 @@ pub(super) fn job(job: &BissJob) -> Text {
     }
 }
 
-/// Why an edit was not taken.
+/// Returns why an edit was refused.
 pub(super) fn not_edited(error: MemoryError) -> Text {
     match error {
         MemoryError::NotRead(at) => TEXTS.text("registers.unread").with("address", at),
@@ -47,7 +47,7 @@ pub fn filter(filter: Filter) -> Text {
     }
 }
 
-/// Why a bank of the data sheet cannot be relied upon.
+/// Returns why a bank of the data sheet is not reliable.
 pub fn sheet(error: &EdsError) -> Text {
     match error {
         EdsError::Checksum { expected, got, .. } => TEXTS
@@ -58,7 +58,7 @@ pub fn sheet(error: &EdsError) -> Text {
     }
 }
 
-/// What a field of the data sheet says.
+/// Returns the value of a field of the data sheet.
 pub fn eds(value: EdsValue) -> Text {
     let text = |id| TEXTS.text(id);
     match value {
@@ -87,7 +87,7 @@ pub fn eds(value: EdsValue) -> Text {
     }
 }
 
-/// What a field of the data sheet says beyond its number, which stands beside it; `None`: nothing.
+/// Returns the meaning of a field of the data sheet beyond its number; `None` without one.
 pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
     match value {
         EdsValue::Number(_, "") => None,
@@ -96,7 +96,7 @@ pub(super) fn beyond_number(value: EdsValue) -> Option<Text> {
     }
 }
 
-/// What a field of the data sheet is called, as the manual has it.
+/// Returns the name of a field of the data sheet, as in the manual.
 pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     let at = RegisterAddress::banked(bank.number(), field.offset);
     let described = at.zip(KIT.as_ref()).and_then(|(at, kit)| kit.at(at));
@@ -107,7 +107,7 @@ pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());
 
-/// How long a number of ticks is.
+/// Returns the duration of a number of ticks.
 fn ticks_long(value: EdsValue) -> Text {
     let microseconds = value.duration(EDS_TICK).map_or(0.0, |own| own.as_secs_f64() * 1e6);
     TEXTS.text("eds.ticks_long").with_number("time", microseconds, 2)

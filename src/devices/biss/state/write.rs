@@ -1,5 +1,5 @@
-//! What is written into an encoder: the edits or a profile as a wish, its jobs, a person at the motor where a plan needs
-//! one, and what is read again after it.
+//! Writing to an encoder: the edits or a profile as a request, its jobs, a person at the motor where needed, and what
+//! is read again afterwards.
 
 use std::time::Duration;
 
@@ -23,7 +23,7 @@ use crate::profile::{Body, PlanId, ProfileError};
 use crate::store::DeviceKey;
 use crate::worker::EndedEarly;
 
-/// How long a shaft that has to stand, with nobody asked to stop it, is waited for.
+/// How long to wait for a shaft to stand still if no one is asked to stop it.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
 
 impl Encoder {
@@ -113,7 +113,7 @@ impl WithMemory for Encoder {
         commit(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
-    /// A plan that needs somebody at the motor is followed step by step from here on.
+    /// Starts a write; one that needs a person at the motor is followed step by step from here on.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.agree(shown) else { return };
         let ops = &agreed.prepared.plan.ops;

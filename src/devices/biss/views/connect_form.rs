@@ -103,7 +103,7 @@ impl TypedConnectForm for BissConnectForm {
     }
 }
 
-/// Whether it is, or was, the configuration pin or the bus.
+/// Draws whether the encoder is connected by the configuration pin or the bus.
 fn reached(ui: &mut Ui, theme: &Theme, form: &mut BissForm) {
     let word = say(theme, "connect.biss_reached");
     entry(ui, theme, &word, |ui| {

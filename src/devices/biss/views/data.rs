@@ -11,7 +11,7 @@ use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
 
-/// What the page remembers.
+/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct DataUiState {
     area: usize,
@@ -131,7 +131,7 @@ fn bytes(
     }
 }
 
-/// Where the cursor stands, as a register.
+/// Draws the register at the cursor.
 fn place_ui(ui: &mut Ui, theme: &Theme, area: &Area, view: &DataUiState) {
     if let Some(at) = places(area).nth(view.hex.cursor()) {
         let text = TEXTS.text("data.at").with("address", at);

@@ -1,4 +1,4 @@
-//! Who the encoder is and how it is, its frame, the wiring, its data sheet.
+//! The encoder page: identity, status, frame, wiring, data sheet.
 
 use egui::{RichText, Ui};
 
@@ -109,7 +109,7 @@ fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
     }
 }
 
-/// What a profile says of the encoder that it was read from.
+/// Draws the recorded part of a profile.
 fn recorded(ui: &mut Ui, theme: &Theme, encoder: &Encoder, identity: &ProfileIdentity) {
     let or_none = |text: String| if text.is_empty() { say(theme, "biss_card.not_in_profile") } else { text };
     row(ui, theme, &theme.say("encoder_card.serial"), theme.mono(or_none(identity.serial_number.clone())));

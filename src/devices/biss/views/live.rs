@@ -56,7 +56,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     }
 }
 
-/// What is read beside the position: the usual registers here, any other in the register table.
+/// Draws the menu of values read with the position: the usual registers here, any other in the register table.
 pub(crate) fn watch_menu(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("live.watch");
     let Some(description) = &encoder.description else { return };

@@ -23,7 +23,7 @@ use crate::ui::{Theme, backups, icons, page, workspace};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Who it is, how it is, its frame, and how it is wired.
+    /// Identity, status, frame and wiring.
     #[default]
     Encoder,
     /// Registers, bank after bank.
@@ -53,7 +53,7 @@ impl Page {
     }
 }
 
-/// What the tab remembers of one session while the window is open: text buffers and selections.
+/// The state of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct BissUiState {
     registers: registers::RegistersUiState,
@@ -61,7 +61,7 @@ pub(crate) struct BissUiState {
     procedures: procedures::ProceduresUiState,
 }
 
-/// Why data were not read, where somebody wanted it.
+/// Draws why the data could not be read.
 fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = &encoder.refusal else { return };
     ui.horizontal_top(|ui| {

@@ -1,4 +1,4 @@
-//! What turns the virtual encoder's shaft, wherever that matters, and that something turns it still.
+//! The motor of the virtual encoder, on every page where it matters, with a note while it turns.
 
 use egui::{RichText, Ui};
 

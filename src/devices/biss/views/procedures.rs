@@ -17,7 +17,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// What the page remembers.
+/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct ProceduresUiState {
     motor: Option<MotorSource>,
@@ -97,7 +97,7 @@ fn stored(encoder: &Encoder) -> PresetForm {
     value.zip(layout).map(|(value, layout)| PresetForm::of(value, layout)).unwrap_or_default()
 }
 
-/// Somebody left the encoder in a device mode, or the password set.
+/// Draws that the encoder was left in a device mode, or with its password set.
 fn left_behind(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(status) = &encoder.status else { return };
     let elsewhere = status.mode.is_some_and(|mode| mode != DeviceMode::OPERATION);
@@ -169,7 +169,7 @@ fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &T
     });
 }
 
-/// What is wished, or why it cannot be reviewed yet.
+/// Returns the requested run, or why it cannot be reviewed yet.
 fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {

@@ -14,7 +14,7 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, icons};
 
-/// What the page remembers.
+/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct RegistersUiState {
     table: RegisterView,
@@ -64,7 +64,7 @@ pub(super) fn page_ui(
     });
 }
 
-/// What can be done with the bank and the register that are selected, and what is said to that.
+/// Draws the actions of the selected bank and register, and their messages.
 fn head(
     ui: &mut Ui,
     theme: &Theme,

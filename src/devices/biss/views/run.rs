@@ -101,7 +101,7 @@ fn step(
     step
 }
 
-/// What is measured while a person is to turn the motor. The marks say what the start does: both go by the same limits.
+/// Returns the gauges while a person turns the motor. The marks use the same limits as the start.
 fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];

@@ -91,7 +91,7 @@ fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     }
 }
 
-/// That the presence test has found a drive, and each that was there before it.
+/// Checks that the presence test has found a drive, and each that was there before it.
 fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
     if found.is_empty() {
         return Err(failed(&TEXTS.text("hd_cli.no_drives")));

@@ -1,4 +1,4 @@
-//! What these drives have on the command line that no other device has: `move`, and options of the shared commands.
+//! The arguments that only these drives have: `move`, and options of the shared commands.
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
@@ -47,10 +47,10 @@ pub(crate) struct Move {
     /// The kind of device: the others do not move.
     #[arg(value_parser = PossibleValuesParser::new([KIND]))]
     pub(crate) device: String,
-    /// Where to, in steps as the drive is scaled.
+    /// Target position in steps as the drive is scaled
     #[arg(allow_negative_numbers = true)]
     pub(crate) target: String,
-    /// Something moves: somebody has looked that it may.
+    /// Confirms that the drive may move
     #[arg(long)]
     pub(crate) yes: bool,
     #[command(flatten)]
@@ -66,7 +66,7 @@ pub(crate) struct Move {
     pub(crate) timeout: u16,
 }
 
-/// Which byte of a number comes first.
+/// Order of the bytes of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Order {
     /// The low one.

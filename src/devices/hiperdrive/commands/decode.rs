@@ -21,7 +21,7 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     show(output, &explained)
 }
 
-/// What an argument holds.
+/// The kind of an argument.
 enum Captured {
     /// 4 digits.
     Word(u16),

@@ -43,7 +43,7 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
     Err(Failure::Failed(vec![format!("{heard} Check supply, cable and address: {hint}")]))
 }
 
-/// Where a link leads: one device, or all in a network (enip:192.168.1.255).
+/// Returns the addresses of a link: one device, or all in a network (enip:192.168.1.255).
 fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     let (Scheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
         return Err(Failure::Usage("find hiperdrive takes --link enip:ADDRESS, or no link to ask all".to_owned()));

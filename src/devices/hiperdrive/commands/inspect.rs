@@ -108,7 +108,7 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// What something that is said comes to.
+/// The weight of a fact.
 #[derive(Clone, Copy, PartialEq)]
 enum Weight {
     Error,
@@ -131,9 +131,9 @@ impl DriveFact {
     }
 }
 
-/// What a drive reports. As many of its newest errors as it counts since the acknowledgement are errors, and at least one in a
-/// fault; the rest are of before, as the buffer has them also after power-up (reference 4), and say nothing of now. A drive that
-/// stands outside its limits is a warning, and so is one whose communication says something.
+/// Returns the facts that a drive reports. As many of its newest errors as it counts since the acknowledgement are
+/// errors, and at least one in a fault; the rest are older, as the buffer keeps them over power-up (reference 4), and
+/// say nothing about now. A drive outside its limits is a warning, and so is a message of its communication.
 fn said(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);

@@ -1,4 +1,4 @@
-//! What control words, status words and parameters say, in words.
+//! The meaning of control words, status words and parameters in words.
 
 use serde_json::{Value as Json, json};
 
@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::{
     Travel, Value, Variant,
 };
 
-/// What is known of bytes beside themselves.
+/// Known facts about bytes besides themselves.
 pub(super) struct Known {
     pub(super) direction: Option<Direction>,
     pub(super) order: ByteOrder,
@@ -76,7 +76,7 @@ fn of_status(status: StatusWord) -> Reading {
     Reading { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
 }
 
-/// What it does, then its bits.
+/// Returns the meaning of a control word, then its bits.
 pub(super) fn control_words(control: ControlWord) -> String {
     let bits: Vec<String> = control.set().map(|(bit, name)| format!("{bit} {name}")).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
@@ -171,7 +171,7 @@ pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
     }
 }
 
-/// What speaks against writing a number; empty where nothing does.
+/// Returns the warnings against writing a number; empty without any.
 pub(super) fn warning(row: &ParameterRow, number: i64) -> String {
     let beyond = row.allowed(Travel::UNKNOWN).filter(|range| !range.holds(number));
     match (row.access, beyond) {

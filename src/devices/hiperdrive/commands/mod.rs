@@ -29,7 +29,7 @@ use crate::devices::hiperdrive::protocol::{KIND, PARAMETERS};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::profile::Body;
 
-/// What can be done with drives.
+/// The commands for drives.
 pub(crate) struct HiperdriveCommands;
 
 impl DeviceCommands for HiperdriveCommands {

@@ -25,12 +25,12 @@ use crate::devices::hiperdrive::state::Measure;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::units::Moment;
 
-/// How often it is said that the motion is wanted still.
+/// Interval at which a motion is refreshed.
 const REFRESH: Duration = Duration::from_millis(20);
 /// The ladder, and the way to off.
 const END: Duration = Duration::from_secs(3);
 
-/// How it went.
+/// The end of a motion.
 enum Came {
     /// The act ended like this.
     Ended(Ended),
@@ -100,7 +100,7 @@ fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     u16::try_from(code).ok().map(ErrorCode::new).filter(|code| *code != ErrorCode::NONE)
 }
 
-/// Where it goes, and between which limits, as the drive is scaled now: whoever changed the scale sees what became of them.
+/// Returns the target and the limits in the present scale, so that a change of the scale is visible.
 fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option<PositionScale>) -> String {
     let turns = |steps: i32| match scale {
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
@@ -109,7 +109,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
     format!("drive {} goes to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
 }
 
-/// What the drive may do by its parameters as they are now, and its scale.
+/// Returns the permit of a drive by its present parameters, and its scale.
 fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Result<(Permit, Option<PositionScale>)> {
     let variant = identity.named(drive).map_err(|error| failed(&words::device(&error)))?.variant;
     let mut values = Vec::new();
@@ -167,7 +167,7 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
     }
 }
 
-/// How an act ended, where it has.
+/// Returns the end of an act, if it has ended.
 fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
     let view = runner.kept.view();
     let ended = view.drives.iter().find(|own| own.number == drive).and_then(|own| own.ended);

@@ -79,7 +79,7 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
 }
 
-/// What operations have made of what, a line each.
+/// Returns the operations with old and new values, a line each.
 pub(super) fn said(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
     for words in plan.ops.iter().map(words::op) {

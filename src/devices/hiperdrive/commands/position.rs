@@ -52,7 +52,7 @@ fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u
     })
 }
 
-/// Where a position lies.
+/// The location of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TurnPosition {
     /// Whole turns; −1 step lies in turn −1.

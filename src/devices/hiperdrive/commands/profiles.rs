@@ -1,4 +1,4 @@
-//! What the commands about profiles do with an adapter or a hub: `save`, `restore`, and reading it for a comparison.
+//! The commands about profiles of an adapter or a hub: `save`, `restore`, and reading it for a comparison.
 
 use serde_json::json;
 
@@ -36,7 +36,8 @@ fn saved(common: &Common) -> Result<HiperdriveProfile> {
     }
 }
 
-/// That two profiles are not of the same device, or of the same drives. One without a serial number is of none.
+/// Returns a message if two profiles are not of the same device, or of the same drives. One without a serial number
+/// matches none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let error =
         profile::check_device(profile.get::<HiperdriveProfile>()?, &device.get::<HiperdriveProfile>()?.identity)
@@ -49,7 +50,7 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     })
 }
 
-/// What the device does not have of the profile: a place without a drive once, not each of its parameters.
+/// Returns what the device lacks of the profile: a place without a drive once, not each of its parameters.
 fn absent(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {

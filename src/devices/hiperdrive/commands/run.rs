@@ -55,7 +55,7 @@ impl Runs for Hiperdrive {
         Some(Pace { replies: station.replies(), timeout: station.link.timeout, longest: Station::LONGEST_TIMEOUT })
     }
 
-    /// What moves is told to stop, and that is waited for; before the program ends, that the drives are off and let go.
+    /// Stops the motion and waits for it; before the program ends, also until the drives are off and released.
     fn interrupt(motion: &Motion) -> Box<dyn Fn(bool) + Send> {
         let motion = motion.clone();
         Box::new(move |again| {

@@ -32,7 +32,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     show_done(output, &item.to_string(), &operations, &spent, &[], &said)
 }
 
-/// What writing a value comes to. What no device takes is refused before anything is opened.
+/// Parses the change of a value. Values that no device accepts are refused before anything is opened.
 fn change(item: Item, text: &str) -> Result<Change> {
     let number = item.0;
     let refused = |error: PlanError| failed(&words::plan(&error));

@@ -14,7 +14,7 @@ use crate::link::{Clock, DatagramPort, LinkError, LinkErrorKind};
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// Who has the cyclic connection, and what drives may do over it.
+/// The cyclic connection and the permissions of the drives on it.
 pub(super) struct Control {
     port: Option<Box<dyn DatagramPort>>,
     clock: Arc<dyn Clock>,
@@ -47,7 +47,7 @@ impl Control {
         self.motion.clone()
     }
 
-    /// What a drive says over the cyclic connection, while there is one and something has come over it.
+    /// Returns the data of a drive over the cyclic connection, while there is one and data have arrived.
     pub(super) fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let view = self.motion.view();
         let speaks = view.open && view.link.received > 0;
@@ -66,7 +66,7 @@ impl Control {
         }
     }
 
-    /// What drives may do, by a survey that began at that moment.
+    /// Sets the permissions of the drives by a survey that began at that moment.
     pub(super) fn rule_by(&mut self, survey: &Survey, began: Moment) {
         for drive in &survey.identity.drives {
             let read = |base| match survey.values.get(&ParameterNumber::of_drive(base, drive.number)?)? {
@@ -156,8 +156,8 @@ impl Hiperdrive {
         self.control.open.is_some() && self.control.motion.is_leaving()
     }
 
-    /// A cyclic connection that was lost is closed at the other end as well, and told once. It is lost also where explicit
-    /// messages are: whoever cannot write parameters any more does not move anything either.
+    /// Closes a lost cyclic connection at the other end as well, and reports it once. It is also lost when explicit
+    /// messages are: motion is not allowed without access to parameters.
     pub(super) fn let_go_of_lost(&mut self, desk: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.lose_session();

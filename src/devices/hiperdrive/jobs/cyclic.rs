@@ -25,7 +25,7 @@ pub struct Cyclic {
     ended: Receiver<Never>,
 }
 
-/// What the thread is told.
+/// The state shared with the thread.
 #[derive(Default)]
 struct CyclicCommands {
     end: AtomicBool,
@@ -35,7 +35,7 @@ struct CyclicCommands {
 /// Nothing of this kind is ever sent: its channel tells by its end that the thread has ended.
 enum Never {}
 
-/// A cyclic connection without a thread: whoever owns one turns it, a test in virtual time.
+/// A cyclic connection without a thread: the owner runs it, in virtual time in a test.
 pub struct Pump {
     drives: Drives,
     port: Box<dyn Datagrams>,
@@ -47,7 +47,7 @@ pub struct Pump {
 
 /// The ladder, three packets that say off, and some time for the system.
 const PATIENCE: Duration = Duration::from_millis(1500);
-/// Packets that are taken after the next one was due: whoever floods the port does not keep it from being sent.
+/// Most packets handled after the next one was due: flooding the port must not delay sending.
 const AT_ONCE: usize = 64;
 
 impl Cyclic {
@@ -81,8 +81,7 @@ impl Cyclic {
         Ok(Cyclic { motion: motion.clone(), wishes, ended })
     }
 
-    /// Why it has ended, where nobody has closed it. What is to be closed over the session's own connection is closed by
-    /// whoever asks.
+    /// Returns why it has ended without being closed. The owner closes it over the session's own connection.
     pub fn lost(&self) -> Option<CyclicLost> {
         self.motion.lost()
     }

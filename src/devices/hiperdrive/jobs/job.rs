@@ -1,4 +1,4 @@
-//! What can be asked of an adapter or a hub with its drives, and what comes of it.
+//! The jobs of an adapter or a hub with its drives, and their results.
 
 use std::fmt;
 
@@ -15,21 +15,21 @@ use crate::worker::commit::wear;
 /// Saves from which a person should know that they may be numbered: an assumption, since the manual names no limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
-/// What a session with an adapter or a hub does. Reading changes nothing; drives move only between [`Take`](Self::Take) and
-/// [`Give`](Self::Give), by the session's `Motion`.
+/// A job of a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take)
+/// and [`Give`](Self::Give), by the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {
-    /// Who is there: for a window, after connecting.
+    /// Identifies the device after connecting, for a window.
     Hello,
     /// Everything that can be read.
     Survey,
-    /// Who is there.
+    /// Identifies the device.
     Identify,
     /// Errors and states of all drives.
     Status,
-    /// What device and drives say, with a verdict a line.
+    /// Checks device and drives, with a verdict a line.
     Check,
-    /// Where a drive is, once.
+    /// Reads the position of a drive once.
     Position(DriveNumber),
     /// A parameter.
     Read(ParameterNumber),
@@ -56,7 +56,6 @@ pub enum Change {
     Restore {
         /// The profile.
         profile: Box<HiperdriveProfile>,
-        /// What the restore may do.
         options: RestoreOptions,
     },
     /// Make it like this, and save it; what the image says nothing about stays as it is.
@@ -65,7 +64,6 @@ pub enum Change {
     Try(Box<Image>),
     /// The drive's place becomes this position.
     SetPosition {
-        /// Which drive.
         drive: DriveNumber,
         /// In steps as scaled; it is rounded to 64 of them.
         position: i32,
@@ -114,11 +112,10 @@ impl Change {
 pub struct Prepared {
     /// The kind of change that it is for.
     pub kind: ChangeKind,
-    /// What would be written.
     pub plan: HiperdrivePlan,
     /// The device it is for.
     pub identity: Identity,
-    /// What the device keeps, as it was read for the plan.
+    /// The stored values of the device, as read for the plan.
     pub image: Image,
     /// Saves that this computer has seen the device take; `None` where the logbook does not tell.
     pub cycles_seen: Option<u64>,
@@ -130,12 +127,12 @@ pub struct Prepared {
     pub mounting_left: Vec<Item>,
     /// The profile is of another type of device or drive: each difference.
     pub other_types: Vec<OtherType>,
-    /// Values of the mounting of another device that are written: they have to be set up anew.
+    /// Values of another device's mounting that are written: they have to be set up again.
     pub mounting_written: Vec<Item>,
 }
 
 impl Prepared {
-    /// So many saves after this, where a person should know.
+    /// Returns the number of saves after this, if the user should know.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
@@ -144,15 +141,15 @@ impl Prepared {
 /// A plan that a person consented to.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-/// What a commit did.
+/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
-/// What is said on the way.
+/// A message during a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {
     /// The cyclic connection was lost, and drives stop; what the session's `Motion` says of it tells why.
     ControlLost,
-    /// What rules a drive in hand cannot be read, and is asked for again and again.
+    /// The limits of a drive under control cannot be read, and are requested again repeatedly.
     RulesUnread(Box<Error>),
     /// It could be read again.
     RulesRead,
@@ -182,7 +179,7 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// What a job gives.
+/// The result of a job.
 #[derive(Debug)]
 pub enum HiperdriveOutput {
     Hello(Box<Identity>),
@@ -210,7 +207,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// How backups and the logbook know a device: saves are those of the adapter or hub, whatever is plugged into it.
+/// Returns the key of a device for backups and the logbook: saves are those of the adapter or hub, whatever is plugged
+/// into it.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey {
         kind: KIND.to_owned(),

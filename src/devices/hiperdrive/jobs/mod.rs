@@ -41,7 +41,7 @@ pub struct Hiperdrive {
     wire: Box<dyn ByteLink>,
     station: Station,
     control: Control,
-    /// Which drive is polled.
+    /// The polled drive.
     watched: DriveNumber,
     /// The virtual one.
     target: Option<Target>,
@@ -54,10 +54,10 @@ impl fmt::Debug for Hiperdrive {
     }
 }
 
-/// How often is looked after drives in control: a fraction of what may pass between two requests.
+/// Interval of checking drives under control: a fraction of the time allowed between two requests.
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
-/// What a job tells on its way.
+/// Receives the reports of a job.
 type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
@@ -67,13 +67,13 @@ impl Hiperdrive {
     }
 }
 
-/// What a session with an adapter or a hub begins with.
+/// The start of a session with an adapter or a hub.
 pub struct Way {
     /// Explicit messages.
     pub wire: Box<dyn ByteLink>,
-    /// Where cyclic data begin; `None` for a link that has none.
+    /// Port of cyclic data; `None` for a link without any.
     pub port: Option<Box<dyn DatagramPort>>,
-    /// What is known of the device.
+    /// The known state of the device.
     pub station: Station,
     /// The device, where it lives in this process.
     pub target: Option<Target>,
@@ -90,12 +90,13 @@ impl Session<Hiperdrive> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// What moves the drives. It is the same for the whole session; without the cyclic connection nothing comes of it.
+    /// Returns the handle that moves the drives. It is the same for the whole session; without the cyclic connection it
+    /// has no effect.
     pub fn motion(&self) -> Motion {
         self.device.control.motion()
     }
 
-    /// What is known about the device.
+    /// Returns the state of the device.
     pub fn station(&self) -> &Station {
         &self.device.station
     }

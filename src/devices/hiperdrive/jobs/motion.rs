@@ -1,5 +1,5 @@
-//! The handle through which a person moves drives: what is wanted goes into a cell, of which the latest counts, and what the
-//! drives say comes back. The thread of the cyclic connection reads the one and fills the other; nobody waits.
+//! The handle that moves drives: the request goes into a cell of which the latest value counts, and the state of the
+//! drives comes back. The thread of the cyclic connection reads the one and fills the other; neither side waits.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -24,7 +24,7 @@ struct Shared {
 
 struct Cell {
     intent: Intent,
-    /// What each drive may do: the only place where it stands.
+    /// The limits of each drive: this is their only place.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     /// Drives for which a person has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
@@ -43,13 +43,13 @@ struct Cell {
 pub struct Glance {
     /// The moment.
     pub at: Moment,
-    /// What they do.
+    /// The state of the drives.
     pub view: MotionSnapshot,
-    /// What they may do.
+    /// The limits of the drives.
     pub limits: BTreeMap<DriveNumber, DriveLimits>,
 }
 
-/// What the drives do, and how well their connection works.
+/// The state of the drives, and the quality of their connection.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MotionSnapshot {
     /// The cyclic connection is there.
@@ -60,22 +60,21 @@ pub struct MotionSnapshot {
     pub link: LinkFigures,
     /// The system wakes its thread before all ordinary ones.
     pub punctual: bool,
-    /// Why it is not there any more, where nobody has closed it.
+    /// Why it was lost without being closed.
     pub lost: Option<CyclicLost>,
 }
 
-/// What a drive does.
+/// The state of a drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveView {
-    /// Which one.
     pub number: DriveNumber,
-    /// What it said last.
+    /// The data received last.
     pub actual: Actual,
     /// When it said that; `None` before it has said anything.
     pub heard_at: Option<Moment>,
-    /// What it was sent last.
+    /// The setpoint sent last.
     pub sent: Setpoint,
-    /// What is done with it.
+    /// The phase of its motion.
     pub phase: Phase,
     /// The act that is under way, or the last one; 0 for none.
     pub act: u64,
@@ -110,8 +109,8 @@ impl Motion {
         number
     }
 
-    /// What was wanted last is wanted still. To be said every 100 ms while anything moves: 250 ms without it stop the drive,
-    /// and what comes after them is too late, also where the connection's thread stood still as long.
+    /// Refreshes the last request. Required every 100 ms while anything moves: 250 ms without it stop the drive, and a
+    /// later refresh has no effect, even if the connection's thread stood still meanwhile.
     pub fn refresh(&self) {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -131,7 +130,7 @@ impl Motion {
         self.lock().intent.number == number
     }
 
-    /// What the drives do.
+    /// Returns the state of the drives.
     pub fn view(&self) -> MotionSnapshot {
         self.lock().view.clone()
     }
@@ -141,14 +140,14 @@ impl Motion {
         self.lock().view.open
     }
 
-    /// What the drives do and may do, at one moment.
+    /// Returns the state and the limits of the drives at one moment.
     pub fn glance(&self) -> Glance {
         let at = self.0.clock.now();
         let cell = self.lock();
         Glance { at, view: cell.view.clone(), limits: cell.limits.clone() }
     }
 
-    /// What a drive may do, with the time of reading; the default for one of which nothing is known.
+    /// Returns the limits of a drive, with the time of reading; the default for an unknown one.
     pub fn limits(&self, drive: DriveNumber) -> DriveLimits {
         self.lock().limits.get(&drive).cloned().unwrap_or_default()
     }
@@ -158,7 +157,7 @@ impl Motion {
         self.with_limits(drive, |own| *own = limits);
     }
 
-    /// Changes what a drive may do, as one step: nobody reads or confirms limits in the middle of it.
+    /// Changes the limits of a drive atomically: they cannot be read or confirmed half-way.
     pub(super) fn with_limits<T>(&self, drive: DriveNumber, change: impl FnOnce(&mut DriveLimits) -> T) -> T {
         change(self.lock().limits.entry(drive).or_default())
     }
@@ -196,7 +195,7 @@ impl Motion {
         }
     }
 
-    /// What a drive may do at the moment, all things considered.
+    /// Returns the present permit of a drive, with everything considered.
     pub fn permitted(&self, drive: DriveNumber) -> Permit {
         let now = self.0.clock.now();
         self.lock().permitted(drive, now)
@@ -212,7 +211,7 @@ impl Motion {
         number
     }
 
-    /// What is wanted at this moment, for whoever makes the next packet of it.
+    /// Passes the present request to the maker of the next packet.
     pub(super) fn with_wanted<T>(&self, make: impl FnOnce(&Intent, &dyn Fn(DriveNumber) -> Permit) -> T) -> T {
         let now = self.0.clock.now();
         let cell = self.lock();
@@ -230,7 +229,7 @@ impl Motion {
         cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
     }
 
-    /// What has become of the drives.
+    /// Publishes the new state of the drives.
     pub(super) fn publish(&self, drives: &Drives) {
         let of = |man: &DeadMan| DriveView {
             number: man.drive(),
@@ -254,7 +253,7 @@ impl Motion {
         cell.view = MotionSnapshot { punctual: cell.punctual, ..view };
     }
 
-    /// Whether the system wakes the connection's thread before all ordinary ones.
+    /// Records whether the system gives the connection's thread priority over all ordinary ones.
     pub(super) fn set_punctual(&self, punctual: bool) {
         self.lock().punctual = punctual;
     }
@@ -330,7 +329,7 @@ mod tests {
     use crate::devices::hiperdrive::procedures::dead_man::Effort;
     use crate::link::VirtualClock;
 
-    /// Where the window and the thread of the connection stood still together, the window may be the first to wake up.
+    /// If the window and the thread of the connection stood still together, the window may wake up first.
     #[test]
     fn what_nobody_said_for_too_long_is_not_said_again() {
         let clock = Arc::new(VirtualClock::default());

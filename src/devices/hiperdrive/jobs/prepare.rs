@@ -93,7 +93,7 @@ pub(super) fn prepare(
     })
 }
 
-/// That there are the drives which a person has named. A profile may have more of them.
+/// Checks that the drives named by the user exist. A profile may have more.
 fn are_there(identity: &Identity, change: &Change) -> Result<(), Error> {
     let named = match change {
         Change::Write(wanted) | Change::Try(wanted) => wanted.drives(),

@@ -1,5 +1,5 @@
-//! What rules drives is read again and again while they may be moved, because somebody else may change it meanwhile: of the
-//! drive that is shown, and of the one that was moved last. It has a pace of its own, whatever else is polled.
+//! Reads the limits of drives repeatedly while they may be moved, because another master may change them: those of the
+//! drive that is shown, and of the one moved last. It has its own interval, whatever else is polled.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ const TURN_IN_MOTION: Duration = REQUEST;
 /// Behind a look that failed.
 const REST: Duration = Duration::from_millis(500);
 
-/// Whether what rules drives could be read.
+/// Whether the limits of the drives could be read.
 #[derive(Debug, Default)]
 pub(super) struct Looks {
     /// Until when nothing is asked, behind a look that failed.
@@ -33,7 +33,7 @@ fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     groups.into_iter().map(|(group, _)| group).collect()
 }
 
-/// How many turns of a group have begun until then.
+/// Returns how many turns of a group have begun until then.
 fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
     let begun = at.since_start().as_nanos() / turn.as_nanos();
     let groups = GROUPS as u128;
@@ -110,7 +110,7 @@ impl Hiperdrive {
         self.look_at_rules(desk);
     }
 
-    /// Reads what rules all drives. A wish to end is not heard: whoever has changed something has to know how it is now.
+    /// Reads the limits of all drives. Cancellation is ignored: after a change the new state must be known.
     ///
     /// # Errors
     /// The way.

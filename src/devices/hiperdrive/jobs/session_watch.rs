@@ -38,7 +38,7 @@ pub(super) struct SessionWatch {
     looked: Moment,
     /// The slowest answer, fading with each faster one.
     slowest: Duration,
-    /// What came last was no frame.
+    /// The last bytes were not a frame.
     broken: bool,
 }
 

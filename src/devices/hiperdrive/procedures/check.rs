@@ -24,17 +24,17 @@ pub type HiperdriveStepResult = check::StepResult<Step, Finding>;
 pub enum Step {
     /// Explicit messages are answered.
     Messages,
-    /// Which device it is.
+    /// Identity of the device.
     Device,
     /// The control supply.
     Supply,
-    /// How warm the device is.
+    /// Temperature of the device.
     Temperature,
-    /// Where its address comes from.
+    /// Source of its address.
     Address,
     /// Parameter 47: what was saved is whole, and nothing is being saved.
     Memory,
-    /// What is plugged in.
+    /// The drives plugged in.
     Drives,
     /// Whether a drive is requested.
     Request(DriveNumber),
@@ -44,7 +44,7 @@ pub enum Step {
     Timeout(DriveNumber),
     /// State and errors of a drive.
     Errors(DriveNumber),
-    /// How warm a drive is.
+    /// Temperature of a drive.
     DriveTemperature(DriveNumber),
     /// Scaling, limits and position of a drive.
     Range(DriveNumber),
@@ -77,14 +77,14 @@ impl fmt::Display for Step {
 pub enum Finding {
     /// A value was read so often, within so long a reply each.
     Replies {
-        /// How often.
+        /// Number of requests.
         asked: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
-        /// Frames that came after somebody had waited for them.
+        /// Frames that arrived after their time limit.
         late: u64,
     },
-    /// What it is.
+    /// The category.
     Category(String),
     /// Its serial number.
     SerialNumber(String),
@@ -94,11 +94,11 @@ pub enum Finding {
     Supply(i64),
     /// Degrees Celsius.
     Temperature(i64),
-    /// What the address switches say.
+    /// Setting of the address switches.
     Switch(AddressSwitch),
     /// The address switches say what there is not.
     UnknownSwitch(i64),
-    /// Where the address comes from with the switches at 0.
+    /// Source of the address with the switches at 0.
     Source(AddressSource),
     /// Nothing is being saved, and what was saved is whole.
     Saved,
@@ -106,9 +106,7 @@ pub enum Finding {
     NotSaved(i64),
     /// A drive is plugged in.
     Drive {
-        /// Where.
         number: DriveNumber,
-        /// Which one.
         variant: Variant,
         /// Its serial number.
         serial_number: String,
@@ -129,7 +127,7 @@ pub enum Finding {
     Timeout(i64),
     /// Parameter 186 is no time: a drive that is left alone goes on.
     NoTimeout,
-    /// Where it is in the state machine.
+    /// State in the state machine.
     State(State),
     /// Its status word cannot be: process data may have another byte order.
     StrayStatus(u16),
@@ -179,7 +177,7 @@ pub enum Finding {
     Within(i64),
     /// The position lies outside of the limits.
     Outside {
-        /// Where it is.
+        /// The position.
         position: i64,
         /// Parameter 158.
         lower: i64,
@@ -188,7 +186,7 @@ pub enum Finding {
     },
 }
 
-/// So often a value is read, to see how the device answers.
+/// How often a value is read to measure the device.
 const LOOKS: u32 = 20;
 /// Tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
 const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;

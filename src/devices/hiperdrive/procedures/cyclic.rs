@@ -1,5 +1,5 @@
-//! The cyclic connection as its originator sees it: what is sent when, what comes, what is counted, and when it is lost.
-//! Pure: packets and moments are handed in, and nobody waits here.
+//! The cyclic connection as seen by its originator: sending, receiving, counting, and loss. Pure: packets and moments
+//! are arguments, and nothing waits here.
 //!
 //! ```text
 //! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (whoever owns a clock and a port sends them)

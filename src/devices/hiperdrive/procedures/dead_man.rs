@@ -41,11 +41,11 @@ pub struct DeadMan {
     heard: Option<(Moment, Actual)>,
     /// When it was heard first.
     first: Option<Moment>,
-    /// How often something was heard.
+    /// Number of reports received.
     reports: u64,
     sent: Setpoint,
     stage: Stage,
-    /// What is held at rest.
+    /// The goal at rest.
     level: Goal,
     act: Option<Act>,
     /// No act up to this one begins any more.
@@ -65,9 +65,9 @@ struct Act {
     number: u64,
     /// As it was said last: a pause of a job is an act too.
     said: MotionRequest,
-    /// What moves, for what does.
+    /// The motion, if any.
     motion: Option<Motion>,
-    /// How it has gone, once it has begun.
+    /// Supervision of a motion that has begun.
     watch: Option<Watch>,
 }
 
@@ -80,15 +80,15 @@ struct Motion {
 
 /// A rung of the stop ladder.
 pub const RUNG: Duration = Duration::from_millis(200);
-/// What a drive is given to obey a word on the way to another state.
+/// Time for a drive to obey a word on the way to another state.
 const STEP: Duration = Duration::from_secs(2);
-/// What it is given to begin a motion.
+/// Time for a drive to begin a motion.
 const START: Duration = Duration::from_secs(1);
 /// Without a word from the drive for so long, nothing moves: beyond three of the longest intervals.
 const DEAF: Duration = Duration::from_millis(350);
-/// What a report may be late behind what it reports, between a hub and its drives (`U`).
+/// How late a report may be behind what it reports, between a hub and its drives (`U`).
 pub const SETTLE: Duration = Duration::from_millis(100);
-/// So long positions have to come before they are the drive's (`U`: a hub first asks all its drives).
+/// How long positions have to arrive before they count as the drive's (`U`: a hub first queries all its drives).
 pub const HEARD: Duration = Duration::from_millis(250);
 /// It stands without having arrived.
 const SHORT: Duration = Duration::from_millis(500);
@@ -113,7 +113,7 @@ impl DeadMan {
         }
     }
 
-    /// What the drive is sent now. `heard` is what it has said since the last call: `None` where nothing came.
+    /// Returns the setpoint to send now. `heard` is the data received since the last call; `None` if nothing arrived.
     pub fn next(&mut self, now: Moment, heard: Option<Actual>, intent: &Intent, permit: &Permit) -> Setpoint {
         if let Some(actual) = heard {
             self.hear(now, actual);
@@ -133,12 +133,12 @@ impl DeadMan {
         self.sent
     }
 
-    /// Which drive it is.
+    /// Returns the drive.
     pub const fn drive(&self) -> DriveNumber {
         self.drive
     }
 
-    /// What the drive said last; zero before it has said anything.
+    /// Returns the data received last; zero before the first.
     pub fn actual(&self) -> Actual {
         self.heard.map(|(_, actual)| actual).unwrap_or_default()
     }
@@ -148,7 +148,7 @@ impl DeadMan {
         self.heard.map(|(at, _)| at)
     }
 
-    /// What it was sent last.
+    /// Returns the setpoint sent last.
     pub const fn sent(&self) -> Setpoint {
         self.sent
     }
@@ -163,7 +163,7 @@ impl DeadMan {
         self.ended
     }
 
-    /// What it does.
+    /// Returns the phase of the motion.
     pub fn phase(&self) -> Phase {
         let motive = self.act.and_then(|act| act.motion).map(|motion| motion.motive);
         match (&self.stage, motive) {
@@ -196,7 +196,7 @@ impl DeadMan {
         }
     }
 
-    /// Nobody hears where the drive is, whoever is to blame: what moves is to stand, and nothing that moves begins.
+    /// Handles lost positions, for whatever reason: motion is stopped, and none begins.
     pub fn fall_deaf(&mut self, now: Moment) {
         self.deaf = true;
         if self.stage.has_motion() {
@@ -216,7 +216,8 @@ impl DeadMan {
         }
     }
 
-    /// What could not begin while it was fresh never does, nor what came before a stop or an act for another drive.
+    /// Forgets requests that could not begin while they were fresh, and those before a stop or an act for another
+    /// drive.
     fn forget_what_is_void(&mut self, now: Moment, intent: &Intent) {
         let rests = matches!(intent.wish, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
@@ -229,7 +230,7 @@ impl DeadMan {
         }
     }
 
-    /// An act ends. What it was about is stopped by whoever calls this.
+    /// Ends an act. The caller stops its motion.
     fn end(&mut self, how: Ended) {
         if let Some(act) = self.act.take() {
             self.spent = self.spent.max(act.number);
@@ -303,7 +304,7 @@ impl DeadMan {
 }
 
 impl Motive {
-    /// Where it leads, where it leads somewhere.
+    /// Returns the target, if there is one.
     pub const fn target(self) -> Option<i32> {
         match self {
             Motive::Job { target } => Some(target),

@@ -1,4 +1,4 @@
-//! Who is there: ListIdentity, asked of all at once, and what is answered within a second. Nothing is opened for it.
+//! Discovery: a ListIdentity request by broadcast, with one second for the replies. No connection is opened.
 
 use core::net::Ipv4Addr;
 use std::time::Duration;
@@ -11,11 +11,11 @@ use crate::link::{Cancel, Clock, Shout};
 /// A device that has answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// Where it answers from.
+    /// Address of the reply.
     pub address: Ipv4Addr,
-    /// Where it takes explicit messages.
+    /// Port of explicit messages.
     pub port: u16,
-    /// Who it is.
+    /// The identity.
     pub identity: IdentityItem,
 }
 
@@ -26,7 +26,7 @@ impl Found {
     }
 }
 
-/// So long answers are gathered: a device may wait for as long as it likes within what it is asked, and is not asked.
+/// How long replies are collected: a device may delay its reply within the requested limit, but none is requested.
 const GATHER: Duration = Duration::from_secs(1);
 /// A wish to end is heard at least so often.
 const SLICE: Duration = Duration::from_millis(50);
@@ -53,7 +53,7 @@ pub fn discover(shout: &mut dyn Shout, clock: &dyn Clock, cancel: &Cancel) -> Re
     Ok(found)
 }
 
-/// Who answers in a packet; `None` for what is no answer.
+/// Parses a reply; `None` if the packet is not one.
 fn answer(packet: &[u8]) -> Option<IdentityItem> {
     let frame = Frame::parse(packet).ok().filter(|frame| frame.command == Command::LIST_IDENTITY)?;
     match frame.body().ok()? {

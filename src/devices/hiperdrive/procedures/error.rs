@@ -1,4 +1,4 @@
-//! What can go wrong with drives behind EtherNet/IP, with the facts a person needs.
+//! Errors of drives behind EtherNet/IP, with the facts that a user needs.
 
 use std::fmt;
 use std::time::Duration;
@@ -11,7 +11,7 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// What a device was asked for.
+/// A request to a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
     /// A session.
@@ -20,16 +20,16 @@ pub enum Asked {
     Parameter(ParameterNumber),
     /// To take a parameter's value.
     Set(ParameterNumber),
-    /// Who it is: the identity object.
+    /// The identity object.
     Identity,
     /// An attribute of the TCP/IP object.
     Network {
-        /// Which.
+        /// The attribute.
         attribute: u16,
     },
     /// To take an attribute of the TCP/IP object.
     SetNetwork {
-        /// Which.
+        /// The attribute.
         attribute: u16,
     },
     /// The address of its network card.
@@ -80,38 +80,38 @@ pub enum Damage {
     /// Its end did not come.
     #[error("a frame that was cut off after {bytes} bytes")]
     Cut {
-        /// So much had come.
+        /// Number of bytes received.
         bytes: usize,
     },
 }
 
-/// Replies that came when nobody waited for them any more.
+/// Replies that arrived after their time limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late {
     /// The slowest of them.
     pub took: Duration,
-    /// So long one may take, beside the margin of the line.
+    /// Time limit of a reply, besides the margin of the line.
     pub waited: Duration,
 }
 
-/// Why a request was not done, as the device says it.
+/// Why a device refused a request.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
-    /// What was asked.
+    /// The service requested.
     pub service: Service,
-    /// What it says.
+    /// The status.
     pub status: GeneralStatus,
     /// The words behind it.
     pub extended: Vec<u16>,
 }
 
 impl Refusal {
-    /// What the first word behind the status says; `None` where there is none or it is not known.
+    /// Returns the meaning of the first word after the status; `None` if there is none or it is not known.
     pub fn row(&self) -> Option<&'static ExtendedStatusRow> {
         extended_row(self.service, self.status, *self.extended.first()?)
     }
 
-    /// What to do: of the word behind the status where that is known, else of the status.
+    /// Returns what to do: for the word after the status if it is known, else for the status.
     pub fn remedy(&self) -> Option<&'static str> {
         self.row().map(|row| row.remedy).or_else(|| self.status.row().map(|row| row.remedy))
     }
@@ -132,9 +132,9 @@ impl fmt::Display for Refusal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
 pub struct WrongLength {
-    /// Which.
+    /// The parameter.
     pub number: ParameterNumber,
-    /// What it is.
+    /// Its name.
     pub name: &'static str,
     /// Bytes of its type.
     pub expected: usize,
@@ -154,12 +154,12 @@ pub enum Error {
     /// Bytes keep coming that are no frames.
     #[error("bytes keep arriving that are no EtherNet/IP frames")]
     NeverSilent,
-    /// Nobody answers.
+    /// No reply.
     #[error("no answer: {asked}, tried {tries} times")]
     NoReply {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
         /// It did, but too late; `None` where nothing came.
         late: Option<Late>,
@@ -167,27 +167,27 @@ pub enum Error {
     /// It answers, and not as it should.
     #[error("{asked}: {cause}, tried {tries} times")]
     Damaged {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
-        /// What came last.
+        /// Damage of the last reply.
         cause: Damage,
     },
     /// The frame was refused.
     #[error("{asked}: {status}")]
     Encapsulation {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// What the device says.
+        /// The status.
         status: EncapsulationStatus,
     },
     /// The request was refused.
     #[error("{asked}: {refusal}")]
     Refused {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// What the device says.
+        /// The refusal.
         refusal: Refusal,
     },
     /// Another master has the cyclic connection.
@@ -221,7 +221,7 @@ pub enum Error {
     NoPlace {
         /// The drive that was meant.
         drive: DriveNumber,
-        /// What it is.
+        /// The topology of the device.
         topology: Topology,
     },
     /// No drive is plugged in there.
@@ -233,7 +233,7 @@ pub enum Error {
     /// Parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested {
-        /// Which.
+        /// The drive.
         drive: DriveNumber,
     },
     /// A value that it may not be; nothing was sent.
@@ -248,75 +248,75 @@ pub enum Error {
     /// The value does not fit its parameter; nothing was sent.
     #[error("parameter {number}: {cause}")]
     Value {
-        /// Which.
+        /// The parameter.
         number: ParameterNumber,
-        /// Why.
+        /// The cause.
         cause: ValueError,
     },
     /// It can only be read; nothing was sent.
     #[error("parameter {number} ({name}) can only be read")]
     ReadOnly {
-        /// Which.
+        /// The parameter.
         number: ParameterNumber,
-        /// What it is.
+        /// Its name.
         name: &'static str,
     },
     /// It can only be written.
     #[error("parameter {number} ({name}) can only be written")]
     WriteOnly {
-        /// Which.
+        /// The parameter.
         number: ParameterNumber,
-        /// What it is.
+        /// Its name.
         name: &'static str,
     },
     /// It moves the drive: over the cyclic connection alone; nothing was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
     Motion {
-        /// Which.
+        /// The parameter.
         number: ParameterNumber,
-        /// What it is.
+        /// Its name.
         name: &'static str,
     },
     /// The drive moves where it must stand still.
     #[error("drive {} moves", drive.get())]
     Moving {
-        /// Which.
+        /// The drive.
         drive: DriveNumber,
     },
-    /// What it says of itself is no HIPERDRIVE's.
+    /// Its identity is not that of a HIPERDRIVE.
     #[error("this is no HIPERDRIVE: {says:?}")]
     NotHiperdrive {
         /// Its category, or the name in its identity object.
         says: String,
     },
-    /// What was written does not read back.
+    /// A written value does not read back.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
     NotTaken {
-        /// Which.
+        /// The parameter.
         number: ParameterNumber,
-        /// What it should be.
+        /// The value written.
         wanted: i64,
-        /// What it is.
+        /// The value read.
         reads: i64,
     },
     /// Network settings that were written do not read back.
     #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
     NetworkNotTaken {
-        /// Which.
+        /// The attribute.
         attribute: u16,
     },
     /// Parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
     Busy {
-        /// What it says.
+        /// The value read.
         reads: i64,
-        /// So long it was waited for.
+        /// Time waited, in milliseconds.
         milliseconds: u64,
     },
-    /// What was read changed between the plan and its execution.
+    /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// What changed.
+        /// The item that changed.
         item: String,
     },
 }

@@ -1,4 +1,4 @@
-//! Who is there, what it says, and everything that can be read (reference 4). Nothing is set for it.
+//! Reads the identity, the status, and everything else that can be read (reference 4). Nothing is set for it.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::units::Moment;
 
-/// Who an adapter or a hub is, and its drives.
+/// The identity of an adapter or a hub, and of its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Places for drives.
@@ -30,7 +30,7 @@ pub struct Identity {
     pub drives: Vec<DriveIdentity>,
 }
 
-/// Who a drive is.
+/// The identity of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveIdentity {
     /// Its place.
@@ -52,7 +52,7 @@ pub struct DriveIdentity {
 /// Everything that can be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
-    /// Who is there.
+    /// The identity.
     pub identity: Identity,
     /// Its address and where it has it from.
     pub network: Network,
@@ -62,7 +62,7 @@ pub struct Survey {
     pub wrong_lengths: Vec<WrongLength>,
 }
 
-/// What a device and its drives say of themselves.
+/// The status of a device and its drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     /// Those that are plugged in.
@@ -73,7 +73,7 @@ pub struct Status {
     pub temperature: i64,
 }
 
-/// What a drive says of itself.
+/// The status of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveStatus {
     /// Its place.
@@ -92,10 +92,10 @@ pub struct DriveStatus {
     pub requested: bool,
 }
 
-/// Who is told what is read next, and how many of how many have been read.
+/// Receives the next item, and how many of how many have been read.
 pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumber);
 
-/// What is read, one after the other.
+/// The items that are read one after the other.
 struct Steps<'t> {
     done: u64,
     total: u64,
@@ -110,18 +110,18 @@ impl Steps<'_> {
         number
     }
 
-    /// So many are not read.
+    /// Skips items that are not read.
     fn skip(&mut self, count: u64) {
         self.done += count;
     }
 }
 
-/// Where a drive is and how fast, read at a moment.
+/// The position and speed of a drive at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// When.
     pub at: Moment,
-    /// Which drive.
+    /// The drive.
     pub drive: DriveNumber,
     /// Parameters 105 to 107.
     pub actual: Actual,
@@ -133,7 +133,7 @@ impl Identity {
         self.drives.iter().find(|drive| drive.number == number)
     }
 
-    /// A drive that somebody has named.
+    /// Returns a drive named by the user.
     ///
     /// # Errors
     /// [`Error::NoPlace`], [`Error::NoDrive`].
@@ -180,7 +180,7 @@ pub fn identify(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<I
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
-/// What a drive says of itself; nothing where it does not say it, as one of which nothing is wanted may (`U`).
+/// Reads a text of a drive; empty if it does not provide it, as a drive that is not requested may (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(of(base, drive)?) {
         Err(error) if error.is_unsaid() => Ok(String::new()),
@@ -188,7 +188,7 @@ pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber)
     }
 }
 
-/// What it says to be. What has no such parameter tells its name.
+/// Reads the category; the name of the device if it has no such parameter.
 fn category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(own(13)?) {
         Err(Error::Refused { .. }) => {
@@ -296,7 +296,7 @@ pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<Reading, 
     Ok(Reading { at: master.now(), drive, actual: Actual { status, speed, position } })
 }
 
-/// What it is, asked for once a session.
+/// Returns the topology, read once a session.
 pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
     if let Some(topology) = master.station().topology() {
         return Ok(topology);

@@ -10,7 +10,7 @@ use super::rules::{GROUPS, Rules};
 use crate::devices::hiperdrive::protocol::{ParameterNumber, PositionScale, Topology, Variant};
 use crate::units::Moment;
 
-/// What one drive may do.
+/// The limits of one drive.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
     rules: Rules,
@@ -72,8 +72,8 @@ impl DriveLimits {
         self.read.filter(|_| self.doubted.is_none())
     }
 
-    /// The parameters have to be read before the next motion begins: somebody else may have changed them. A motion that is
-    /// under way goes on for as long as the last reading is valid.
+    /// Requires the parameters to be read again before the next motion begins: another master may have changed them. A
+    /// running motion continues while the last reading is valid.
     pub fn doubt(&mut self, now: Moment) {
         // Who doubts reads the clock first: of two threads the later doubt may come first.
         self.doubted = self.doubted.max(Some(now));
@@ -135,7 +135,7 @@ impl DriveLimits {
         self.is_factory
     }
 
-    /// Why nothing may move, the weightiest reason first.
+    /// Returns why motion is locked, the weightiest reason first.
     pub fn locks(&self) -> Vec<Lock> {
         let Rules { requested, timeout, .. } = self.rules;
         // Numbers that make no scale and no range say no more than none.
@@ -151,7 +151,7 @@ impl DriveLimits {
         .collect()
     }
 
-    /// What the drive may do at this moment; `expert`: a person has allowed an endless run.
+    /// Returns the permit of the drive at this moment; `expert`: the user has allowed an endless run.
     pub fn permit(&self, now: Moment, expert: bool) -> Permit {
         let mut locks = self.locks();
         locks.extend((!locks.contains(&Lock::Unread) && !self.is_fresh(now)).then_some(Lock::Outdated));

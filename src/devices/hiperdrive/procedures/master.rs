@@ -51,7 +51,7 @@ impl<D: Into<Damage>> From<D> for ExchangeError {
     }
 }
 
-/// Whether what is asked may be asked again blindly.
+/// Whether a request may be repeated blindly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Repeats {
     Always,
@@ -61,7 +61,7 @@ enum Repeats {
     },
 }
 
-/// What is asked once, and answered as soon as anything else.
+/// For requests sent once, with the usual time limit.
 const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
@@ -76,12 +76,12 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// What is known of the connection.
+    /// Returns the state of the connection.
     pub fn station(&self) -> &Station {
         self.station
     }
 
-    /// What it says to be.
+    /// Takes over the reported topology.
     pub(super) fn learn(&mut self, topology: Topology) {
         self.station.known.topology = Some(topology);
     }
@@ -94,7 +94,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Whether the user wishes an end.
+    /// Checks whether the user has cancelled.
     pub(super) fn check_cancel(&self) -> Result<(), Error> {
         Ok(self.line.check_cancel()?)
     }
@@ -213,7 +213,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// So long one waits for the end of what setting this value of a parameter begins.
+    /// Returns how long to wait for the end of the operation that setting this value of a parameter starts.
     pub(super) fn patience(&self, number: ParameterNumber, value: i64) -> Duration {
         let takes = number.row().and_then(|row| row.takes(value, self.station.known.topology));
         Repeats::Never { takes }.within(self.station.link.timeout)
@@ -318,7 +318,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Tells bytes that are no frame to whoever watches.
+    /// Passes bytes that are not a frame to the trace.
     fn show_rest(&mut self) {
         let (now, rest) = (self.line.now(), self.station.receiver.take_rest());
         self.line.show(now, MaskedBytes::clear(&rest));
@@ -385,7 +385,7 @@ fn has_session(answer: &Frame) -> bool {
         && answer.session != 0
 }
 
-/// What a frame with a reply says.
+/// Parses the reply in a frame.
 fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeError> {
     let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
@@ -412,7 +412,7 @@ const fn does_something(row: &ParameterRow) -> bool {
 }
 
 impl Repeats {
-    /// So long a reply may take, beside the margin of the line; `timeout` is the usual.
+    /// Returns the time limit of a reply, besides the margin of the line; `timeout` is the usual one.
     fn within(self, timeout: Duration) -> Duration {
         match self {
             Repeats::Never { takes: Some(takes) } => timeout.max(takes + SPARE),

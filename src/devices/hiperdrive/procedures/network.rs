@@ -24,7 +24,7 @@ pub struct Network {
 const MAC: (u16, u16) = (0xF6, 3);
 
 impl Network {
-    /// What the switches say; `None` for digits that there are not.
+    /// Returns the setting of the switches; `None` for invalid digits.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         AddressSwitch::parse(u8::try_from(self.switch).ok()?)
     }
@@ -43,7 +43,7 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     Ok(Network { switch, control, interface, mac })
 }
 
-/// What a plan can change of it.
+/// Returns the settings that a plan can change.
 ///
 /// # Errors
 /// [`Error::Refused`] where the device has no such settings; the way.
@@ -65,7 +65,7 @@ fn attribute<T>(
     parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
 }
 
-/// What was told; nothing where it was refused.
+/// Returns the value; `None` if it was refused.
 fn told<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(told) => Ok(Some(told)),

@@ -48,7 +48,7 @@ pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, 
     Ok(Rules::by(|wanted| values.iter().find(|(base, _)| *base == wanted).map(|(_, value)| *value)))
 }
 
-/// What rules a drive is read again in so many groups: what belongs together is read together.
+/// Number of groups in which the limits of a drive are read again: related ones are read together.
 pub const GROUPS: usize = 4;
 
 /// Reads one group of the parameters that rule a drive again.

@@ -1,4 +1,4 @@
-//! What is read to be kept, and to be planned upon.
+//! Reads values to be saved, and to plan with.
 
 use super::identify::{IdentifyProgress, identify, of};
 use super::{DriveIdentity, Error, Identity, Master};
@@ -52,7 +52,8 @@ pub fn save(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Hiper
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
-/// What a plan needs to know of a device: all that it keeps, these parameters beside, and where its drives stand.
+/// Reads what a plan needs of a device: all stored values, these additional parameters, and the positions of its
+/// drives.
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; the way.

@@ -1,4 +1,4 @@
-//! What a session knows about an adapter or a hub, from one job to the next.
+//! The state of an adapter or a hub that is kept between jobs.
 
 use std::collections::VecDeque;
 use std::collections::hash_map::RandomState;
@@ -19,13 +19,13 @@ parameters! {
     /// The connection to an adapter or a hub, as a link says.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
-        /// So long from one cyclic packet to the next.
+        /// Interval between cyclic packets.
         pub interval: Duration = Duration::from_millis(10), "rpi" => Milliseconds(5..=100), "connect.interval";
-        /// Which byte of process data comes first.
+        /// Order of the bytes of process data.
         pub order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
-        /// Where cyclic data go, unless the device says otherwise.
+        /// Port of cyclic data, unless the device reports another.
         pub udp: Option<u16> = None, "udp" => Maybe(Whole(Quantity::Port, 1..=u16::MAX)), "connect.udp_port" like "2222";
-        /// So long a reply may take, beside the margin of the line.
+        /// Time limit of a reply, besides the margin of the line.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=LONGEST_TIMEOUT), "connect.reply_time";
     }
 }
@@ -33,12 +33,12 @@ parameters! {
 /// The longest time-out in milliseconds.
 const LONGEST_TIMEOUT: u64 = 2000;
 
-/// What a session knows about an adapter or a hub.
+/// The state of an adapter or a hub.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// What the link says.
+    /// Parameters of the link.
     pub link: LinkParameters,
-    /// Where cyclic data go, unless the device says otherwise.
+    /// Port of cyclic data, unless the device reports another.
     pub udp: u16,
     /// It is a recording that answers: its replies have the numbers of the requests of that time.
     pub recorded: bool,
@@ -49,23 +49,23 @@ pub struct Station {
     pub(super) next: u64,
     /// Numbers of the last requests that have no reply yet, when they were sent, and whether the device itself takes long.
     open: VecDeque<(u64, Moment, bool)>,
-    /// How long replies take, the late ones as well; not those for which the device itself takes long.
+    /// Times of replies, late ones included; without those for which the device itself takes long.
     pub(super) replies: Replies,
-    /// What has come and is no whole frame.
+    /// Bytes received that are not a whole frame.
     pub(super) receiver: Receiver,
-    /// Frames that came after somebody had waited for them.
+    /// Number of frames that arrived after their time limit.
     pub(super) late: u64,
-    /// Who opens connections: another one for each session.
+    /// Identifies the originator of connections: different for each session.
     pub(super) originator: u32,
-    /// How many connections this session has opened.
+    /// Number of connections opened by this session.
     pub(super) connections: u16,
     pub(super) known: Known,
 }
 
-/// What is known of the device.
+/// The known state of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Known {
-    /// What it is.
+    /// Its topology.
     pub(super) topology: Option<Topology>,
 }
 
@@ -75,7 +75,7 @@ impl Station {
     /// Requests without a reply whose late ones are told apart: more than are sent before one gives up.
     const OPEN: usize = 8;
 
-    /// A device that nobody has asked.
+    /// Creates the state of an unused device.
     pub fn new(margin: Duration) -> Self {
         // No two studios in a network may open their connections under the same name.
         let random = RandomState::new().build_hasher().finish();
@@ -107,17 +107,17 @@ impl Station {
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }
 
-    /// What it is; `None` before it was asked.
+    /// Returns the topology; `None` before it was read.
     pub const fn topology(&self) -> Option<Topology> {
         self.known.topology
     }
 
-    /// Frames that came after somebody had waited for them.
+    /// Returns the number of frames that arrived after their time limit.
     pub const fn late(&self) -> u64 {
         self.late
     }
 
-    /// How long replies take, also while a job runs.
+    /// Returns the reply times, also while a job runs.
     pub fn replies(&self) -> Replies {
         self.replies.clone()
     }

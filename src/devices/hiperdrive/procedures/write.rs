@@ -1,5 +1,4 @@
-//! How a plan is written into a device: what was read is read again, then each operation is carried out and read back
-//! (reference 4).
+//! Writes a plan into a device: reads its base again, carries out each operation and reads it back (reference 4).
 
 use std::time::Duration;
 
@@ -110,8 +109,8 @@ fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     drives
 }
 
-/// Scale or limits of a drive are begun before this operation and not yet whole: limits in another scale lie elsewhere, so that
-/// nobody ends in between.
+/// Returns whether scale or limits of a drive are only partly written before this operation: limits in another scale
+/// lie elsewhere, so a write must not end in between.
 fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), 154 | 156 | 158 | 160) => number.drive(),
@@ -196,7 +195,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
 }
 
-/// What ends the fault of a drive (reference 4).
+/// The way to end the fault of a drive (reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
     /// It has none.
@@ -234,7 +233,8 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
     }
 }
 
-/// Where the address comes from, then the addresses: setting it to stored stores the present address (reference 1).
+/// Writes the source of the address, then the addresses: setting the source to stored stores the present address
+/// (reference 1).
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;

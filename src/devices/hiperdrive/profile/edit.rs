@@ -161,7 +161,8 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
     }
 }
 
-/// That a drive's limits are in order and have the drive between them, once all is written; and in which order they are.
+/// Checks that a drive's limits are in order and include its position, once all is written; returns the order of
+/// writing them.
 fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
     let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::of_drive(number, drive));
     for number in missing {
@@ -190,7 +191,8 @@ fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Opti
     Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
 }
 
-/// Where a drive stands in steps of another scale: 256 · numerator / denominator of them a turn, rounded down as the drive does.
+/// Returns the position of a drive in steps of another scale: 256 · numerator / denominator of them a turn, rounded
+/// down as the drive does.
 fn rescaled(position: i32, old: PositionScale, new: PositionScale) -> i64 {
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());

@@ -3,7 +3,7 @@
 use super::item::{Item, ItemError};
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
 
-/// Why an entry of a profile cannot be.
+/// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A drive that stands in the list already.
@@ -12,10 +12,10 @@ pub enum EntryError {
     /// A parameter that has a value already.
     #[error("{0} stands twice")]
     Twice(Item),
-    /// What is marked is no parameter.
+    /// The marked item is not a parameter.
     #[error(transparent)]
     Marked(#[from] ItemError),
-    /// What is marked is no setting.
+    /// The marked item is not a setting.
     #[error("{0} is not kept, and belongs to no mounting")]
     NoMounting(Item),
     /// A parameter that is no setting.

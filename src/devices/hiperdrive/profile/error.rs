@@ -13,7 +13,7 @@ pub enum OtherType {
     Device {
         /// In the profile.
         profile: Topology,
-        /// What the device is.
+        /// Topology of the device.
         device: Topology,
     },
     /// At a place there is a drive of another variant than the profile's.
@@ -26,11 +26,11 @@ pub enum OtherType {
         device.row().map_or("in no table", |row| row.name)
     )]
     Drive {
-        /// Which place.
+        /// The drive.
         drive: DriveNumber,
         /// In the profile.
         profile: Variant,
-        /// What the drive is.
+        /// Variant of the drive.
         device: Variant,
     },
 }
@@ -49,7 +49,7 @@ pub enum PlanError {
     /// At a place there is another drive than the one that the profile was read from.
     #[error("drive {}: the profile is of serial number {profile:?}, the drive has {device:?}", drive.get())]
     OtherDrive {
-        /// Which place.
+        /// The drive.
         drive: DriveNumber,
         /// In the profile.
         profile: String,
@@ -65,25 +65,25 @@ pub enum PlanError {
     /// It can only be read.
     #[error("parameter {item} ({}) can only be read", item.name())]
     ReadOnly {
-        /// Which one.
+        /// The item.
         item: Item,
     },
     /// 101 to 104: with them drives are moved, which is done over the cyclic connection alone.
     #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
     Moves {
-        /// Which one.
+        /// The item.
         item: Item,
     },
     /// 47, 197 to 199: they do something, and are services of their own.
     #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
     Acts {
-        /// Which one.
+        /// The item.
         item: Item,
     },
     /// It is not known what it is now: it was not read, or its drive is not there.
     #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
     NotRead {
-        /// Which one.
+        /// The item.
         item: Item,
     },
     /// The upper limit would not be above the lower one.
@@ -99,9 +99,9 @@ pub enum PlanError {
     /// The drive stands outside the limits that would be.
     #[error("drive {}: the actual position {position} is outside the limits {lower} to {upper}", drive.get())]
     PositionOutside {
-        /// Which one.
+        /// The drive.
         drive: DriveNumber,
-        /// Where it stands, as it would be scaled.
+        /// Its position in the new scale.
         position: i64,
         /// As it would be.
         lower: i64,
@@ -111,7 +111,7 @@ pub enum PlanError {
     /// The actual position would have no room in 32 bits.
     #[error("drive {}: the actual position would be {position} steps, beyond −2147483648 to 2147483647", drive.get())]
     PositionTooLarge {
-        /// Which one.
+        /// The drive.
         drive: DriveNumber,
         /// As it would be scaled.
         position: i64,
@@ -122,7 +122,7 @@ pub enum PlanError {
         drive.get()
     )]
     ReferenceOutside {
-        /// Which one.
+        /// The drive.
         drive: DriveNumber,
         /// As asked for.
         position: i32,
@@ -136,7 +136,7 @@ pub enum PlanError {
     /// Addresses at which a device cannot be reached.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// A source of addresses that nobody knows is kept where it is found, and never set.
+    /// An unknown source of addresses is kept where it is found, and never set.
     #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
     Source(u8),
 }

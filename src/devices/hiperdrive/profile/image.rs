@@ -1,4 +1,4 @@
-//! What a device keeps of itself and its drives, and gives back when it is read.
+//! The values that a device stores for itself and its drives, and that can be read.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber,
 /// the drives that are there. What was not read, or what a profile does not say, is left out; empty places are.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Image {
-    /// What each is.
+    /// The values.
     pub values: BTreeMap<ParameterNumber, i64>,
 }
 
@@ -37,7 +37,7 @@ impl Image {
         drives
     }
 
-    /// How a drive's position is scaled (154, 156); `None` where that is not known, or cannot be.
+    /// Returns the scale of a drive's position (154, 156); `None` if it is not known, or not possible.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let part = |number| self.of_drive(drive, number).and_then(|value| u16::try_from(value).ok());
         PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
@@ -48,7 +48,7 @@ impl Image {
         Some((self.of_drive(drive, LOWER)?, self.of_drive(drive, UPPER)?))
     }
 
-    /// What it says of some parameters, as far as it does.
+    /// Returns the known values of these parameters.
     pub fn of(&self, numbers: impl IntoIterator<Item = ParameterNumber>) -> BTreeMap<ParameterNumber, i64> {
         numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
     }

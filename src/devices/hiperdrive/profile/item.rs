@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Item(pub ParameterNumber);
 
-/// Why a text names no parameter.
+/// Why a text does not name a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
     /// Not of the form of any.
@@ -51,7 +51,7 @@ impl Item {
         own.row().map(|_| Item(own)).ok_or(ItemError::NoParameter(number))
     }
 
-    /// What it is, in the words of the table; empty for one that is in none.
+    /// Returns its name in the table; empty for one that is not in it.
     pub fn name(self) -> &'static str {
         self.0.row().map_or("", |row| row.name)
     }

@@ -1,11 +1,11 @@
-//! How a device gets its IP address, and what its own plan would do: its TCP/IP object, CIP class F5h (reference 1). It counts
-//! where the address switch is at 0, its addresses also where that is at 97.
+//! The network settings of a device, and their plan: the TCP/IP object, CIP class F5h (reference 1). They apply with
+//! the address switch at 0, the addresses also with it at 97.
 
 use super::{Base, HiperdrivePlan, Op, PlanError};
 use crate::buses::ethernet_ip::protocol::{AddressSource, InterfaceConfiguration};
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
-/// What the object says.
+/// The content of the object.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkSettings {
     /// Attribute 3.

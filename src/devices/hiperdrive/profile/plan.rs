@@ -7,11 +7,11 @@ use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::profile::{Operation, Plan};
 
-/// What a write to an adapter or a hub would do.
+/// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
 
-/// What was read before a plan was made: all that its operations change or rest upon. Where a drive stands is not in it,
-/// since that changes by itself.
+/// The values that a plan is based on: everything that its operations change or depend on. Positions of drives are not
+/// included, since they change by themselves.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Parameters by their own numbers.
@@ -41,11 +41,11 @@ pub fn written(plan: &HiperdrivePlan) -> Image {
 pub enum Op {
     /// A parameter is written, and read back.
     Write {
-        /// Which one.
+        /// The parameter.
         number: ParameterNumber,
-        /// What it is; `None` where that is not known.
+        /// The old value; `None` if it is not known.
         old: Option<i64>,
-        /// What it will be.
+        /// The new value.
         new: i64,
     },
     /// The device does something.
@@ -59,7 +59,7 @@ pub enum Op {
     },
 }
 
-/// What a device does when it is asked to (parameters 47 and 197, reference 4).
+/// A service of a device (parameters 47 and 197, reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
     /// 47 = 1: everything that is saved is saved as it is now.
@@ -77,7 +77,7 @@ pub enum Service {
 }
 
 impl Service {
-    /// What parameter 47 is written for it; `None` for an acknowledgement.
+    /// Returns the value of parameter 47 for it; `None` for an acknowledgement.
     pub const fn code(self) -> Option<i64> {
         match self {
             Service::Save => Some(1),
@@ -142,8 +142,8 @@ impl Op {
         }
     }
 
-    /// What it changes, old and new, in one line for the logbook. Its words are the manual's, whatever the language of the
-    /// window.
+    /// Returns the changes, old and new, in one line for the logbook. The words are the manual's, whatever the language
+    /// of the window.
     pub fn note(&self) -> String {
         match self {
             Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),

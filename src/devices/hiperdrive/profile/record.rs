@@ -1,4 +1,4 @@
-//! What is saved of an adapter or a hub with its drives: who they are, and what they keep.
+//! The saved content of an adapter or a hub with its drives: identities, and stored values.
 
 use std::collections::BTreeMap;
 
@@ -10,17 +10,17 @@ use crate::profile::ron_text::Unknown;
 /// An adapter or a hub as it is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperdriveProfile {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
-    /// What it keeps. A parameter that is not in it: the profile says nothing about it.
+    /// The stored values. A parameter that is missing is not in the profile.
     pub image: Image,
-    /// What belongs to the mounting and is never restored.
+    /// Values that belong to the mounting and are never restored.
     pub mounting: Vec<MountingMark>,
     /// Entries that this program does not know.
     pub unknown: UnknownEntries,
 }
 
-/// Who an adapter or a hub is; of a profile that was made by hand nothing at all.
+/// The identity of an adapter or a hub; empty in a profile made by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
     /// By parameter 13.
@@ -39,7 +39,7 @@ pub struct ProfileIdentity {
     pub unknown: Unknown,
 }
 
-/// Who a drive is.
+/// The identity of a drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileDrive {
     /// Its place.
@@ -95,7 +95,7 @@ impl HiperdriveProfile {
         self.image.values.keys().copied().map(Item)
     }
 
-    /// Who the drive at a place is; `None` where nothing is known of it.
+    /// Returns the identity of the drive at a place; `None` if it is not known.
     pub fn drive(&self, number: DriveNumber) -> Option<&ProfileDrive> {
         self.identity.drives.iter().find(|drive| drive.number == number)
     }
@@ -113,7 +113,7 @@ impl ProfileIdentity {
 }
 
 impl ProfileDrive {
-    /// What it is one of, as far as its variant is known.
+    /// Returns its family, as far as its variant is known.
     pub fn family(&self) -> Option<Family> {
         self.variant?.row().map(|row| row.family)
     }

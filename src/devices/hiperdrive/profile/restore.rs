@@ -1,5 +1,5 @@
-//! What restoring a profile would do: only what differs, one save behind it, and never a drive's reference, which belongs to
-//! its machine.
+//! Planning a restore: only differences, one save after them, and never a drive's reference, which belongs to its
+//! machine.
 
 pub use crate::profile::RestoreOptions;
 
@@ -13,23 +13,23 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel}
 /// A device as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
-    /// What it keeps.
+    /// The stored values.
     pub image: Image,
-    /// Where its drives stand.
+    /// Positions of its drives.
     pub positions: Positions,
 }
 
 impl DeviceState {
-    /// How far the drive of a parameter turns, in the steps of an image.
+    /// Returns the travel of the drive of a parameter, in the steps of an image.
     pub(super) fn travel(&self, number: ParameterNumber, image: &Image) -> Travel {
         let Some(drive) = number.drive() else { return Travel::UNKNOWN };
         Travel { family: drive_at(&self.identity, drive).and_then(ProfileDrive::family), scale: image.scale(drive) }
     }
 }
 
-/// What a restore would do.
+/// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
 /// Plans a restore: onto another device, at the places that both have. What belongs to the mounting is what a person has
@@ -73,7 +73,7 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// What differs between the types of a profile and of a device: of the whole, then of each drive.
+/// Returns the types of a profile and of a device that differ: of the whole, then of each drive.
 pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {

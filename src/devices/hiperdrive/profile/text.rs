@@ -103,7 +103,7 @@ impl HiperdriveProfile {
         writer.close('}');
     }
 
-    /// What a parameter is; of a limit also in turns.
+    /// Returns the name of a parameter as a comment; a limit also in turns.
     fn comment(&self, number: ParameterNumber, value: i64) -> String {
         let Some(row) = number.row() else { return String::new() };
         let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
@@ -225,7 +225,7 @@ fn read_parameters(
     Ok(())
 }
 
-/// Why a number stands for no parameter where it stands.
+/// Returns why a number does not name a parameter at its place.
 fn no_parameter(number: &ron::value::Number, drive: Option<DriveNumber>) -> EntryError {
     let number = number.into_f64().to_string();
     match drive {

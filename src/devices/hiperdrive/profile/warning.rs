@@ -1,11 +1,11 @@
-//! What a person should know of a plan before it is carried out.
+//! The warnings of a plan before it is carried out.
 
 use super::network::SWITCH;
 use super::{HiperdrivePlan, Image, Item, written};
 use crate::devices::hiperdrive::protocol::drive_parameter::REQUESTED;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
-/// What a plan brings along.
+/// A consequence of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// With another scale the same limits lie elsewhere (reference 3, *Scaling moves soft limits*): in turns, now and then.

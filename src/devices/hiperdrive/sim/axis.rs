@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// What the spindle has to move.
+/// The load of the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
     /// Percent of the nominal torque that it takes. With less effective torque nothing moves.
@@ -13,7 +13,7 @@ pub struct Load {
     pub wall_above: Option<f64>,
     /// Degrees Celsius around the drive.
     pub ambient: f64,
-    /// What is wrong with the drive itself.
+    /// Defect of the drive itself.
     pub defect: Option<Defect>,
 }
 
@@ -34,7 +34,7 @@ impl Default for Load {
     }
 }
 
-/// Where the spindle is and how fast it turns.
+/// The position and the speed of the spindle.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Axis {
     place: f64,
@@ -42,19 +42,19 @@ pub(super) struct Axis {
     speed: f64,
 }
 
-/// What is wanted of the spindle.
+/// The demand on the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Wanted {
-    /// That it stands.
+    /// Stands still.
     Rest,
-    /// That it gets there, no faster than this.
+    /// Moves to a place, no faster than this.
     Place { at: f64, speed: f64 },
-    /// That it turns like this, with its sign.
+    /// Turns at this signed speed.
     Speed(f64),
 }
 
 impl Wanted {
-    /// What becomes of it in a drive with a defect, from this place.
+    /// Returns the effective demand in a drive with a defect, from this place.
     pub(super) fn with(self, defect: Option<Defect>, place: f64) -> Wanted {
         let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
         match (self, defect) {
@@ -65,7 +65,7 @@ impl Wanted {
     }
 }
 
-/// What came of a millisecond.
+/// The outcome of a millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Came {
     /// It is under way.

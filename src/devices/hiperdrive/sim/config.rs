@@ -13,12 +13,12 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// What a virtual adapter or hub and its drives shall be like. The default is an adapter with one drive HDA30A from the
-    /// factory, at rest, without faults. What concerns drives concerns all of them.
+    /// The settings of a virtual adapter or hub and its drives. The default is an adapter with one drive HDA30A with
+    /// factory settings, at rest, without faults. Settings of drives apply to all of them.
     pub struct Config: ConfigError {
         /// Without it an adapter with one drive.
         pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(Expected::Hub, |text| HUBS.read(text));
-        /// Which places have a drive; without it all, behind a list's end none.
+        /// The places with a drive; by default all, and none beyond the end of a list.
         drives: Option<String> = None, "drives" => Maybe(ANY), "connect.plugged" like "1,0,1";
         /// The same, place by place; `None`: everywhere is a drive.
         plugged: Option<Vec<bool>> = None;
@@ -26,11 +26,11 @@ parameters! {
         pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
         /// Parameter 152; without it as from the factory.
         pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
-        /// Where the drives stand, in steps of which a turn has 65536.
+        /// Position of the drives, in steps of 65536 a turn.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
         /// Parameter 166: greatest speed in tenths of rpm.
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
-        /// What the spindle takes: above 100 no drive can move it.
+        /// Load of the spindle: above 100 no drive can move it.
         load: u8 = Load::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         /// The spindle is held where it stands.
         blocked: bool = false, "blocked" => SWITCH;
@@ -44,7 +44,7 @@ parameters! {
         pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
         pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
-        /// So long a reset of all drives takes (47 = −4): it is answered when it is done.
+        /// Duration of a reset of all drives (47 = −4): it is answered when it is done.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
         /// Parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
@@ -79,7 +79,7 @@ impl Config {
         (self.volts * 10.0).round() as u16
     }
 
-    /// What is plugged into a place.
+    /// Returns the drive plugged into a place.
     pub(super) fn drive(&self, number: DriveNumber) -> Option<(Variant, Load)> {
         let place = usize::from(number.get()) - 1;
         let plugged = self.plugged.as_ref().is_none_or(|places| places.get(place) == Some(&true));
@@ -91,13 +91,13 @@ impl Config {
         Load { percent: self.load, wall_below: wall, wall_above: wall, ambient: self.temperature, defect: self.defect }
     }
 
-    /// Where the drives stand, in steps of 65536 a turn.
+    /// Returns the position of the drives, in steps of 65536 a turn.
     fn place(&self) -> f64 {
         f64::from(self.position)
     }
 }
 
-/// What is no adapter.
+/// The hubs, as distinct from an adapter.
 const HUBS: Words<Topology> = Words(&[("4", Topology::Hub4), ("8", Topology::Hub8)]);
 
 fn variant(text: &str) -> Option<Variant> {
@@ -114,7 +114,7 @@ fn name(text: &str) -> Option<String> {
     fits.then(|| text.to_owned())
 }
 
-/// Which places have a drive.
+/// Parses the places with a drive.
 fn places(text: &str, topology: Topology) -> Result<Vec<bool>, Refused> {
     let count = topology.drives();
     let place = |own: &str| match own.trim() {
@@ -201,7 +201,7 @@ mod tests {
         }
     }
 
-    /// What a drive says of a setting: read from it, not from the settings.
+    /// The settings as read from the drive, not from the configuration.
     #[test]
     fn a_station_is_as_it_was_asked_for() {
         let query = "hub=4&drives=0,1&variant=HDA70&requested=1&position=-100&speed=200&switch=17&supply=23.5&serial=16&name=Feeder";

@@ -24,7 +24,7 @@ pub struct Drive {
     pub(super) variant: Variant,
     pub(super) memory: Memory,
     pub(super) axis: Axis,
-    /// What is added to the axis' place to be its position, in its steps.
+    /// Added to the axis' place to give its position, in its steps.
     pub(super) offset: f64,
     pub(super) out: OutData,
     pub(super) errors: VecDeque<ErrorCode>,
@@ -106,13 +106,13 @@ impl Drive {
         }
     }
 
-    /// What it says at a moment.
+    /// Returns the process data at a moment.
     pub fn actual(&mut self, now: Moment) -> Actual {
         self.advance(now);
         Actual { status: self.status(), speed: self.speed_scale().speed(self.axis.rpm()), position: self.position() }
     }
 
-    /// What it has to move, from now on.
+    /// Changes the load.
     pub fn set_load(&mut self, now: Moment, load: Load) {
         self.advance(now);
         self.load = load;
@@ -150,7 +150,7 @@ impl Drive {
         self.allowed = allowed;
     }
 
-    /// It starts anew, with its parameters as they are.
+    /// Restarts with its present parameters.
     pub(super) fn reset(&mut self, now: Moment) {
         self.advance(now);
         self.axis.halt();
@@ -331,7 +331,7 @@ impl Drive {
         }
     }
 
-    /// What comes with a state.
+    /// Carries out the effects of entering a state.
     fn enter(&mut self, state: State) {
         if self.state == State::Fault && state == State::Locked {
             self.forgive();
@@ -345,7 +345,7 @@ impl Drive {
         self.state = state;
     }
 
-    /// What the word says of a motion that is under way. A jog step is left alone.
+    /// Applies the control word to a running motion. A jog step is not affected.
     fn obey(&mut self) {
         let has = |bit| self.control.has(bit);
         let speed_mode = has(ControlBit::SpeedMode);

@@ -1,9 +1,9 @@
-//! What goes wrong with the writes of a parameter, on purpose.
+//! Injected faults of writing a parameter.
 
 use super::parameters::Refused;
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 
-/// What goes wrong.
+/// The kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hindrance {
     /// They are refused: not in this state.
@@ -12,7 +12,7 @@ pub enum Hindrance {
     CutOff,
 }
 
-/// What does at the moment, and whether the line was lost by it.
+/// The present fault, and whether the line was lost by it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Hindered {
     what: Option<(ParameterNumber, Hindrance)>,

@@ -1,4 +1,4 @@
-//! What reading and writing a drive's parameters does.
+//! Reading and writing of a drive's parameters.
 //!
 //! Chosen here (`U`): a value that is refused is kept as error 8501, as the manual has it, and a fault while the drive is
 //! operational; 198 is taken only while the drive stands still.
@@ -78,7 +78,7 @@ impl Drive {
         Some(Value::Number(value))
     }
 
-    /// It starts anew when this is written: 0 → 1 of 152, and 199.
+    /// Returns whether writing this restarts the drive: 0 → 1 of 152, and 199.
     pub(super) fn is_reset_by(&self, number: u16, value: i64) -> bool {
         number == 199 || (number, value) == (152, 1) && self.memory.get(152) == Some(0)
     }

@@ -18,12 +18,12 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::units::Moment;
 
-/// What a station is made of.
+/// The parts of a station.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setup {
     /// Places for drives.
     pub topology: Topology,
-    /// What is plugged in, from the first place on.
+    /// The drives, from the first place on.
     pub drives: Vec<Option<(Variant, Load)>>,
     /// Parameter 17.
     pub serial_number: u16,
@@ -50,7 +50,7 @@ pub struct Station {
     hindered: Hindered,
 }
 
-/// What it says of itself that no [`Setup`] is about.
+/// The identity data that no [`Setup`] contains.
 #[derive(Clone, Debug)]
 struct Plate {
     name: String,
@@ -58,10 +58,10 @@ struct Plate {
     supply_tenths: u16,
 }
 
-/// What a save may come to.
+/// The possible ends of a save.
 #[derive(Clone, Copy, Debug, Default)]
 struct Store {
-    /// How many there were.
+    /// Number of saves.
     count: u32,
     /// In this one the supply is lost, counted from 1.
     dies_in: Option<u32>,
@@ -136,7 +136,7 @@ impl Station {
         station
     }
 
-    /// How its process data and parameters are laid out.
+    /// Returns the topology, which determines the layout of process data and parameters.
     pub const fn topology(&self) -> Topology {
         self.setup.topology
     }
@@ -186,7 +186,7 @@ impl Station {
         }
     }
 
-    /// Whether a master has the cyclic connection.
+    /// Returns whether a master has the cyclic connection.
     pub fn is_open(&mut self, now: Moment) -> bool {
         self.advance(now);
         self.master.is_some()
@@ -376,8 +376,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// What happens by itself happens at its moment, not when somebody looks: the supply is lost in a save, a master that was
-    /// not heard for too long is lost.
+    /// Carries out what happens by itself at its moment, not at the next access: the supply is lost during a save, a
+    /// silent master times out.
     fn advance(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

@@ -1,5 +1,5 @@
-//! What the user asks of a device and its drives, carried out: edits and motion at once, everything else as a job on its line
-//! or a task.
+//! The user's actions on a device and its drives: edits and motion take effect at once, everything else is a job on its
+//! line or a task.
 
 use super::action::{Action, Motor};
 use super::staged::Edit;
@@ -53,7 +53,7 @@ impl Unit {
         }
     }
 
-    /// What moves a drive: refused in words where it may not be, so that nobody waits for a motion that does not come.
+    /// Moves a drive; refused with a reason if it may not move.
     fn drive_by(&mut self, motor: Motor, services: &mut Services) {
         let drive = self.drive();
         let wish = match motor {

@@ -1,4 +1,4 @@
-//! What can be asked of an adapter or a hub that is shown, and of its drives.
+//! The actions of an adapter or a hub that is shown, and of its drives.
 
 use std::path::PathBuf;
 
@@ -38,7 +38,7 @@ pub enum Action {
     Save(PathBuf),
 }
 
-/// What a person wants of the drive that is shown.
+/// A motion request of the user for the drive that is shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motor {
     /// Another state.
@@ -47,14 +47,12 @@ pub enum Motor {
     Acknowledge,
     /// A jog is pressed.
     JogPress {
-        /// Which way.
         direction: Direction,
         /// The key repeats by itself: nothing begins by that.
         repeated: bool,
     },
     /// A jog of the axis set-up is pressed: slow and weak, whatever is chosen for the others.
     SlowJogPress {
-        /// Which way.
         direction: Direction,
         /// The key repeats by itself: nothing begins by that.
         repeated: bool,
@@ -65,7 +63,7 @@ pub enum Motor {
     JogHold,
     /// It was let go.
     JogRelease,
-    /// So many steps from where it stands; runs to its end.
+    /// This many steps from the present position; runs to its end.
     Step {
         /// In steps as scaled.
         by: i32,
@@ -77,22 +75,21 @@ pub enum Motor {
     },
     /// Turning in speed mode.
     Run {
-        /// Which way.
         direction: Direction,
-        /// How far.
+        /// The end of the run.
         end: RunEnd,
     },
     /// The job waits.
     Pause,
     /// It goes on.
     Resume,
-    /// What moves stops.
+    /// Stops the motion.
     Stop,
     /// Jog like this.
     JogEffort(Effort),
     /// Move, step and run like this.
     MoveEffort(Effort),
-    /// Somebody knows what an endless run is, or nobody any more.
+    /// The user has confirmed to know what an endless run is, or has revoked it.
     Expert(bool),
     /// A person has looked at the limits in their own unit.
     ConfirmLimits(DriveNumber),

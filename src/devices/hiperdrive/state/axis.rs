@@ -1,6 +1,6 @@
-//! The set-up of an axis as one run: from a drive that nobody has asked for to limits in millimetres that have survived the
-//! supply. A state machine over what is read ([`Seen`]) and what is to be done ([`Ask`]); it does nothing itself, and no step
-//! goes on before its drive says what the step is about.
+//! The set-up of an axis as one run: from an unknown drive to limits in millimetres that have survived a loss of the
+//! supply. A state machine over what is read ([`Seen`]) and what is to be done ([`Ask`]); it does nothing itself, and
+//! no step continues before the drive confirms it.
 //!
 //! What the steps have made sure of is a chain: each result rests on facts of the drive (its scale, the pitch, the reference,
 //! the limits), and falls with them and with all that come after it, whoever changed them. The step that is shown is another
@@ -63,7 +63,7 @@ pub enum Step {
     PowerCycle,
 }
 
-/// How far a step is.
+/// The progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
     /// It is over.
@@ -78,16 +78,16 @@ pub enum Reached {
     Ahead,
 }
 
-/// How the run ended.
+/// The end of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// To its end.
     Done,
-    /// Somebody has cancelled it.
+    /// Cancelled by the user.
     Cancelled,
 }
 
-/// What has been changed, in its order.
+/// A change made by the run, in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Change {
     /// A parameter, by the number of drive 1.
@@ -99,7 +99,6 @@ pub enum Change {
 /// The end of a run: how, when, and what was known then.
 #[derive(Clone, Debug)]
 pub struct Over {
-    /// How.
     pub end: End,
     /// The time, as it is written.
     pub when: String,
@@ -122,11 +121,11 @@ struct Confirmed {
 #[derive(Clone, Debug)]
 pub struct Axis {
     drive: DriveNumber,
-    /// Which one is shown.
+    /// The step that is shown.
     step: Step,
-    /// What is typed.
+    /// The entered text.
     entries: Entries,
-    /// What was made sure of.
+    /// The confirmed results.
     chain: Chain,
     confirmed: Option<Confirmed>,
     travel: Travel,
@@ -147,9 +146,9 @@ pub struct Axis {
     changes: Vec<Change>,
     /// Not all of the changes may have been made.
     partly: bool,
-    /// What was written back.
+    /// The values written back.
     returned: Vec<(u16, i64)>,
-    /// What is being written.
+    /// The pending write.
     asked: Option<Ask>,
     over: Option<Over>,
 }
@@ -232,12 +231,12 @@ impl Axis {
         self.step
     }
 
-    /// What is typed.
+    /// Returns the entered text.
     pub const fn entries(&self) -> &Entries {
         &self.entries
     }
 
-    /// How it ended; `None`: it goes on.
+    /// Returns the end; `None` while it runs.
     pub fn end(&self) -> Option<End> {
         self.over.as_ref().map(|over| over.end)
     }
@@ -247,12 +246,12 @@ impl Axis {
         self.over.as_ref()
     }
 
-    /// What was known at its end; before that, what is.
+    /// Returns the facts known at its end; before that, the present ones.
     pub fn as_seen<'a>(&'a self, now: &'a Seen) -> &'a Seen {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
 
-    /// What was changed, the first first.
+    /// Returns the changes, the first one first.
     pub fn changes(&self) -> &[Change] {
         &self.changes
     }
@@ -272,7 +271,7 @@ impl Axis {
         self.asked.is_some()
     }
 
-    /// How far the axis was moved by hand.
+    /// Returns how far the axis was moved by hand.
     pub const fn travel(&self) -> Travel {
         self.travel
     }
@@ -282,7 +281,7 @@ impl Axis {
         self.reference.map(|(position, _)| position)
     }
 
-    /// What came of a test move.
+    /// Returns the outcome of a test move.
     pub fn outcome(&self, place: TestTarget) -> Option<Outcome> {
         self.outcomes.get(place as usize).copied().flatten()
     }
@@ -292,7 +291,7 @@ impl Axis {
         self.going.map(|(place, ..)| place)
     }
 
-    /// What came of the supply.
+    /// Returns the outcome of the supply test.
     pub const fn power(&self) -> Option<Power> {
         self.power
     }
@@ -302,7 +301,7 @@ impl Axis {
         self.chain.end().filter(|step| *step < self.step)
     }
 
-    /// How far each step is.
+    /// Returns the progress of each step.
     pub fn reached(&self, step: Step) -> Reached {
         let is_shown = step == self.step && self.over.is_none();
         match step {

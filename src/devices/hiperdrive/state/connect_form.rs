@@ -1,4 +1,4 @@
-//! What a person fills in to connect a HIPERDRIVE, and the link it stands for. Nothing is opened here.
+//! The connection form of a HIPERDRIVE, and its link. Nothing is opened here.
 
 use super::discovery::DiscoveryFinder;
 use crate::app::Text;
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// How the drives are reached.
+/// The way to the drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HiperdriveWay {
     /// Virtual drives in this program.
@@ -23,7 +23,7 @@ pub enum HiperdriveWay {
     Replay,
 }
 
-/// What the virtual device is.
+/// The topology of the virtual device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VirtualHub {
     /// An adapter with its drive.
@@ -39,9 +39,7 @@ pub enum VirtualHub {
 /// for what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
-    /// How the drives are reached.
     pub way: HiperdriveWay,
-    /// What the virtual device is.
     pub hub: VirtualHub,
     /// Name or address of the device.
     pub host: String,
@@ -51,7 +49,7 @@ pub struct HiperdriveForm {
     pub file: String,
     /// The high byte of process data comes first.
     pub big_endian: bool,
-    /// What is typed for other parameters.
+    /// Text of other parameters.
     pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
@@ -121,7 +119,7 @@ impl HiperdriveForm {
         [own, LinkParameters::entries()].concat()
     }
 
-    /// That of how often set-points go to the drives while they are moved from here, and those that are rarely needed.
+    /// Returns the entry of the setpoint interval, and the rarely used ones.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }

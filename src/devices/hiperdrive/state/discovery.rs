@@ -1,4 +1,4 @@
-//! Who is there in this network: asked of all at once, answered within a second, while the window goes on.
+//! Discovery in this network: a broadcast request, with replies within a second, while the window keeps running.
 
 use std::fmt;
 use std::net::Ipv4Addr;
@@ -19,20 +19,20 @@ use crate::link::{Cancel, Clock, RealClock, UdpShout};
 /// A question to all, and its answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discovery {
-    /// Which one it is: answers to an earlier one are dropped.
+    /// Number of the discovery: replies to an earlier one are dropped.
     number: u32,
-    /// Who has answered, or why nobody could be asked; `None` while answers come.
+    /// The devices found, or why the request failed; `None` while replies arrive.
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
 /// A device that has answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundDevice {
-    /// Where it answers from.
+    /// Address of the reply.
     pub address: Ipv4Addr,
-    /// Where it takes explicit messages.
+    /// Port of explicit messages.
     pub port: u16,
-    /// What it calls itself.
+    /// Its name.
     pub name: String,
     /// Its serial number in its identity object.
     pub serial_number: u32,
@@ -102,7 +102,7 @@ pub struct DiscoveryFinder {
     pub discovery: Option<Discovery>,
 }
 
-/// What can be done with the answers.
+/// An action on the result.
 pub enum DiscoveryAction {
     /// Ask who is there.
     Discover,
@@ -110,7 +110,7 @@ pub enum DiscoveryAction {
     Choose(usize),
 }
 
-/// Devices that answer, or why nobody could be asked.
+/// The devices found, or why the request failed.
 pub struct Answers {
     number: u32,
     found: Result<Vec<FoundDevice>, Text>,

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Document;
 
-/// What is edited, each with its number.
+/// The edits, each with its number.
 pub(crate) type Edits = Vec<SavedEdit>;
 
 impl HasSession for Unit {

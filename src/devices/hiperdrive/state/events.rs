@@ -1,4 +1,4 @@
-//! What the line to a device tells: results of jobs, where drives are, and its loss.
+//! Events of the line to a device: results of jobs, positions of drives, and loss.
 
 use std::time::Duration;
 
@@ -23,17 +23,18 @@ use crate::link::{LinkUrl, TraceEntry};
 use crate::store::Store;
 use crate::worker::{OpenError, Session};
 
-/// How often a drive is asked where it is, to begin with.
+/// Default interval of reading a drive's position.
 const PACE: Duration = Duration::from_millis(200);
-/// What is told where the rules of a drive in hand cannot be read: true no more once they were, or are not needed.
+/// Text id of the notice that the limits of a drive under control cannot be read; it ends once they were read, or are
+/// not needed.
 const RULES: &str = "hd_end.rules";
 
-/// A drive in this state does not move until somebody has acknowledged.
+/// Returns whether a drive in this state moves only after an acknowledgement.
 const fn has_failed(state: State) -> bool {
     matches!(state, State::Fault | State::Locked)
 }
 
-/// What is kept of a session beside its thread.
+/// The part of a session that stays outside its thread.
 pub struct DriveHandle {
     /// Moves its drives.
     pub(super) motion: Motion,
@@ -88,7 +89,8 @@ impl Kind for Hiperdrive {
 }
 
 impl Unit {
-    /// What is to be asked as soon as the line is free: why a drive has failed, and where the one is that is shown.
+    /// Requests what is needed as soon as the line is free: why a drive has failed, and the position of the one that is
+    /// shown.
     fn ask_on(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
@@ -140,7 +142,7 @@ impl Unit {
         self.tell_of(drive, weight, vec![words], services);
     }
 
-    /// Where a drive is: recorded where it is the one that is shown.
+    /// Takes the position of a drive; it is recorded for the one that is shown.
     fn see(&mut self, reading: Reading) {
         self.take_reading(reading);
         let drive = reading.drive;
@@ -150,7 +152,7 @@ impl Unit {
         }
     }
 
-    /// The drive that is shown is asked where it is, unless somebody has chosen another pace.
+    /// Polls the position of the drive that is shown, unless the user has chosen another interval.
     fn poll(&mut self) {
         let Some(line) = self.session.line.as_mut().filter(|line| line.polling().is_none()) else { return };
         line.poll(Some(PACE));

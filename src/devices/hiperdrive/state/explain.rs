@@ -45,12 +45,12 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// The link is open, and nobody answers over it.
+/// Returns whether the error means that the link is open but nothing answers.
 pub fn is_silence(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 
-/// What a job does at the moment.
+/// Returns the text of the present step of a job.
 pub fn doing(doing: &JobStep) -> Text {
     match doing {
         JobStep::Parameter(number) => parameter(*number),

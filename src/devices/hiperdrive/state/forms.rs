@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, Scale
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// How far a step is to go, as it was typed; `sign` is −1 for back.
+/// Parses the distance of a step; `sign` is −1 for back.
 ///
 /// # Errors
 /// What cannot be, in words.

@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::jobs::HiperdriveJob;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// What it is called in the list of jobs.
+/// Returns its name in the list of jobs.
 pub(super) fn words(job: &HiperdriveJob) -> Text {
     match job {
         HiperdriveJob::Hello | HiperdriveJob::Identify => TEXTS.text("hd_job.identify"),

@@ -1,4 +1,4 @@
-//! What the studio knows of HIPERDRIVE before there is a device.
+//! The kind HIPERDRIVE for the studio, before there is a device.
 
 use super::staged::Staged;
 use super::{HiperdriveForm, Unit};

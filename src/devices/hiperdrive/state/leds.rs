@@ -1,10 +1,10 @@
-//! What the lamps say: what is lit is picked, what it means and what to do stand beside it. It needs no device.
+//! The meaning of the LEDs: the user picks what is lit, and sees the meaning and what to do. It needs no device.
 
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// What somebody sees.
+/// The LEDs as entered by the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leds {
     /// It is a hub; else a bus adapter.
@@ -32,12 +32,12 @@ pub enum Lamp {
     Port,
 }
 
-/// What a lamp says.
+/// The meaning of an LED.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LedMeaning {
-    /// How much it matters.
+    /// The severity.
     pub severity: Severity,
-    /// What it means.
+    /// The meaning.
     pub meaning: Text,
     /// What to do.
     pub remedy: Text,
@@ -77,7 +77,7 @@ impl Leds {
         Leds { hub: topology != Topology::Adapter, ..Leds::default() }
     }
 
-    /// What the lamp RS485 is about.
+    /// Returns the subject of the RS485 LED.
     pub const fn subject(&self) -> LedSubject {
         match (self.hub, self.s3) {
             (false, _) => LedSubject::Adapter,
@@ -107,7 +107,7 @@ impl Leds {
         }
     }
 
-    /// What a lamp says as it is.
+    /// Returns the meaning of an LED in its present state.
     pub fn said(&self, lamp: Lamp) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
             Lamp::Drives => drives(self.subject(), self.drives),
@@ -117,7 +117,7 @@ impl Leds {
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
-    /// What a lamp shows, in words.
+    /// Returns the state of an LED in words.
     pub fn shown(&self, lamp: Lamp) -> Text {
         TEXTS.text(match lamp {
             Lamp::Drives => match self.drives {
@@ -161,7 +161,7 @@ fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// What it means and what to do, as rows of the table of texts: in English they are the protocol's words.
+/// The ids of the texts of meaning and remedy: in English they are the protocol's words.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLight) -> Row {

@@ -18,10 +18,10 @@ use crate::units::Moment;
 pub struct Moves {
     /// While the session is open.
     motion: Option<Motion>,
-    /// What the drives said at the last look.
+    /// The state of the drives at the last update.
     view: MotionSnapshot,
     act: Option<Act>,
-    /// How drives are jogged, and moved, where that is not as it usually is.
+    /// Speed and torque of jogs and moves, where they differ from the default.
     jogs: BTreeMap<DriveNumber, Effort>,
     jobs: BTreeMap<DriveNumber, Effort>,
     /// Drives for which a person has allowed an endless run.
@@ -29,16 +29,16 @@ pub struct Moves {
     /// The way further out from outside the limits, freed for the next press, and used by the one that is held.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
-    /// What drives might do at the last look, and when that was. Limits to be confirmed outlive a session.
+    /// The limits of the drives at the last update, and its time. Limits to be confirmed outlive a session.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     looked: Moment,
-    /// Drives whose limits have changed since somebody asked.
+    /// Drives whose limits have changed since the last query.
     limits_changed: BTreeSet<DriveNumber>,
-    /// The cyclic connection was opened since somebody asked.
+    /// The cyclic connection was opened since the last query.
     taken: bool,
 }
 
-/// What was asked for last.
+/// The last request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Act {
     drive: DriveNumber,
@@ -46,11 +46,11 @@ struct Act {
     kind: Kind,
     /// The drive moves by it, or has a job that waits.
     moves: bool,
-    /// How it ended was told.
+    /// Its end has been reported.
     told: bool,
 }
 
-/// What keeps an act alive.
+/// The kind of an act, which determines how it is kept alive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// A button or a key that is held.
@@ -81,7 +81,7 @@ impl Default for Moves {
 }
 
 impl Moves {
-    /// A session is open. Limits that nobody has looked at stay so, and nobody is an expert yet.
+    /// Begins a session. Unconfirmed limits stay so, and the endless run is not enabled yet.
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed() {
             motion.unconfirm_limits(drive);
@@ -149,7 +149,7 @@ impl Moves {
         std::mem::take(&mut self.taken)
     }
 
-    /// How the last act ended, once it has: to be told once.
+    /// Returns the end of the last act, once.
     pub(super) fn take_end(&mut self) -> Option<(DriveNumber, Ended)> {
         let act = self.act.filter(|act| !act.told)?;
         let (number, ended) = self.drive(act.drive)?.ended?;
@@ -199,7 +199,7 @@ impl Moves {
         self.stop_those(|kind| kind == Kind::Held);
     }
 
-    /// Nobody is there for what has no end of its own: a jog, a run.
+    /// Lets go of everything without an end: a jog, a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
         self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
@@ -291,37 +291,37 @@ impl Moves {
         self.view.open
     }
 
-    /// What the drives said at the last look, and how well their connection works.
+    /// Returns the state of the drives at the last update, and the quality of their connection.
     pub fn view(&self) -> &MotionSnapshot {
         &self.view
     }
 
-    /// What a drive said at the last look; `None` without a cyclic connection.
+    /// Returns the state of a drive at the last update; `None` without a cyclic connection.
     pub fn drive(&self, drive: DriveNumber) -> Option<&DriveView> {
         self.view.drives.iter().find(|own| own.number == drive).filter(|_| self.view.open)
     }
 
-    /// Where a drive is.
+    /// Returns the data of a drive.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         self.drive(drive).map(|own| own.actual)
     }
 
-    /// What a drive was sent last.
+    /// Returns the setpoint sent last.
     pub fn sent(&self, drive: DriveNumber) -> Option<Setpoint> {
         self.drive(drive).map(|own| own.sent)
     }
 
-    /// What is done with a drive.
+    /// Returns the phase of a drive's motion.
     pub fn phase(&self, drive: DriveNumber) -> Option<Phase> {
         self.drive(drive).map(|own| own.phase)
     }
 
-    /// What a drive may do; `None` while the session is not open.
+    /// Returns the permit of a drive; `None` while the session is not open.
     pub fn permit(&self, drive: DriveNumber) -> Option<Permit> {
         self.motion.as_ref().map(|motion| motion.permitted(drive))
     }
 
-    /// What a drive might do at the last look; `None` where nothing is known of it.
+    /// Returns the limits of a drive at the last update; `None` if they are not known.
     pub fn limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
         self.limits.get(&drive)
     }
@@ -339,7 +339,7 @@ impl Moves {
         }
     }
 
-    /// Why a drive may not move.
+    /// Returns why a drive may not move.
     pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
         let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
         // Without control nothing moves, the limits are read with it, and a slow answer ends nothing.
@@ -362,7 +362,7 @@ impl Moves {
         }
     }
 
-    /// What the drives say has come for a while: the first packets of a connection are no position of theirs.
+    /// Returns whether data have arrived for long enough: the first packets of a connection contain no valid positions.
     pub fn is_heard(&self) -> bool {
         let link = &self.view.link;
         let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
@@ -397,12 +397,12 @@ impl Moves {
         asked.or_else(|| busy.map(|own| own.number))
     }
 
-    /// How a jog of a drive turns.
+    /// Returns speed and torque of a jog.
     pub fn jog_effort(&self, drive: DriveNumber) -> Effort {
         self.jogs.get(&drive).copied().unwrap_or(Effort::JOG)
     }
 
-    /// How a move, a step and a run of a drive turn.
+    /// Returns speed and torque of a move, a step and a run.
     pub fn move_effort(&self, drive: DriveNumber) -> Effort {
         self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
     }

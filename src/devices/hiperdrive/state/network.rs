@@ -1,5 +1,5 @@
-//! How a device gets its address: what its TCP/IP object says beside what is wanted of it, what the switches S1 and S2 make of
-//! that, and what will be at the next power-up (reference 1). Nothing is asked of the device here.
+//! The network settings of a device: its TCP/IP object and the edited values, the effect of the switches S1 and S2, and
+//! the result at the next power-up (reference 1). Nothing is requested of the device here.
 
 use core::net::Ipv4Addr;
 
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// What is wanted, as it is typed.
+/// The edited values, as entered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
     /// Attribute 3.
@@ -48,7 +48,7 @@ pub enum PowerUp {
 pub struct Position {
     /// The two digits: `0`, `1…96`.
     pub digits: &'static str,
-    /// What they mean.
+    /// Their meaning.
     pub meaning: Text,
     /// They stand so.
     pub is_now: bool,
@@ -74,7 +74,7 @@ impl Form {
         self.source == AddressSource::Stored
     }
 
-    /// What is wanted. Where a server says the addresses, those of now stay as they are.
+    /// Returns the edited settings. If a server assigns the addresses, the present ones stay.
     ///
     /// # Errors
     /// In words.
@@ -112,7 +112,7 @@ fn needed(what: &'static str, text: &str) -> Result<Ipv4Addr, Text> {
     }
 }
 
-/// Why a device could not be reached so.
+/// Returns why a device could not be reached with these settings.
 pub fn refused(error: &AddressError) -> Text {
     match error {
         AddressError::None => TEXTS.text("hd_net.none"),
@@ -129,7 +129,8 @@ pub fn refused(error: &AddressError) -> Text {
 }
 
 impl PowerUp {
-    /// With the switches and settings as they are. Switches that nobody can read are taken for 0: not all devices have any.
+    /// Returns the address with the switches and settings as they are. Unreadable switches count as 0: not all devices
+    /// have any.
     pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
             address if address.is_unspecified() => PowerUp::NothingStored,
@@ -170,8 +171,8 @@ impl PowerUp {
     }
 }
 
-/// What will be after the next power-up if this is written, and what follows from it for the link. `host` is where the device
-/// answers now, where that is a number.
+/// Returns the result of writing this after the next power-up, and the consequences for the link. `host` is the present
+/// address of the device, if it is a number.
 pub fn consequences(
     switch: Option<AddressSwitch>,
     now: &NetworkSettings,
@@ -204,7 +205,7 @@ pub fn consequences(
     texts
 }
 
-/// What each position of the switches S1 and S2 means.
+/// Returns the meaning of each position of the switches S1 and S2.
 pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
     let row = |digits, meaning, is_now| Position { digits, meaning: TEXTS.text(meaning), is_now };
     let at = |own: AddressSwitch| switch == Some(own);
@@ -217,7 +218,7 @@ pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
     ]
 }
 
-/// Where an address comes from.
+/// Returns the source of an address in words.
 pub fn source(own: AddressSource) -> Text {
     match own {
         AddressSource::Stored => TEXTS.text("hd_net.source_stored"),

@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 /// A drive outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OutsideSeen {
-    /// Where it is.
+    /// How it is outside.
     pub outside: Outside,
     /// In steps as scaled.
     pub position: i32,
@@ -23,8 +23,8 @@ pub struct OutsideSeen {
 }
 
 impl Unit {
-    /// Where a drive is outside its limits, by its position or by status bit 15; `None` inside, and where one of both is not
-    /// known.
+    /// Returns how a drive is outside its limits, by its position or by status bit 15; `None` inside, and if either is
+    /// not known.
     pub fn outside(&self, drive: DriveNumber) -> Option<OutsideSeen> {
         let (actual, limits) = (self.actual(drive)?, self.limits(drive)?);
         let degree = self.drive_limits(drive).map_or(1, |own| own.degree());
@@ -45,7 +45,7 @@ impl Unit {
         Some(text.with_text("range", self.places(drive, own.limits)))
     }
 
-    /// Whether a drive may be jogged this way now.
+    /// Returns whether a drive may be jogged in this direction now.
     ///
     /// # Errors
     /// Why not, in words.

@@ -1,4 +1,4 @@
-//! What is recorded of the drive that is shown: its position, its own speed, its target.
+//! The recording of the drive that is shown: its position, its own speed, its target.
 
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -11,12 +11,12 @@ use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
-/// What stands beside the position.
+/// A value recorded with the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Beside {
     /// The drive's own speed, in rpm.
     Speed,
-    /// Where it is sent, in steps of this ruler.
+    /// The target, in steps of this ruler.
     Target(Ruler),
 }
 
@@ -34,7 +34,7 @@ impl Record {
         self.track.begin(began);
     }
 
-    /// So many readings were dropped before those that come next.
+    /// Records that readings were dropped before the next ones.
     pub(super) fn lose(&mut self, dropped: u64) {
         self.track.lose(dropped);
     }
@@ -63,7 +63,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    /// What came last.
+    /// Returns the last reading.
     pub fn last(&self) -> Option<&Reading> {
         self.last.as_ref()
     }
@@ -81,7 +81,7 @@ impl Record {
     }
 }
 
-/// What positions mean: in millimetres first, where the drive turns a spindle.
+/// Returns the meaning of positions: in millimetres first, if the drive turns a spindle.
 fn meaning(ruler: Ruler) -> Meaning {
     let mut meaning = Meaning::of_turns(None, ruler.scale.steps_per_turn());
     if let Some(millimetres) = ruler.of(1, Measure::Millimetres) {

@@ -1,4 +1,4 @@
-//! What a device's session and the settings tell each other of its drives.
+//! The exchange between a device's session and the settings about its drives.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,10 +7,10 @@ use super::unit::Unit;
 use crate::app::{Marks, RememberedDrives, RemembersDrives};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
-/// What a device's session and the settings told each other last.
+/// The values last exchanged between a device's session and the settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Exchanged {
-    /// What the settings said.
+    /// The values of the settings.
     kept: RememberedDrives,
     pitches: BTreeMap<u8, u64>,
     measure: Measure,

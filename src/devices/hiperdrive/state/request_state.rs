@@ -1,4 +1,4 @@
-//! What may be asked of a drive at the moment, why not, and how it stands with what was asked: in words.
+//! The requests that a drive accepts at the moment, why not, and the state of the last one, in words.
 
 use super::action::Motor;
 use super::ruler::Measure;
@@ -13,17 +13,17 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, Percent, RunEnd, State, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// How it stands with what was asked of a drive.
+/// The state of a request to a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestState {
     /// In words.
     pub words: Text,
-    /// Nobody has to do anything about it.
+    /// Needs no action.
     pub is_well: bool,
 }
 
 impl Unit {
-    /// Whether the cyclic connection can be opened now.
+    /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
     /// Why not, in words.
@@ -37,7 +37,7 @@ impl Unit {
         }
     }
 
-    /// Whether the cyclic connection can be closed now.
+    /// Checks whether the cyclic connection can be closed now.
     ///
     /// # Errors
     /// Why not, in words.
@@ -51,7 +51,7 @@ impl Unit {
         }
     }
 
-    /// Whether a drive may be moved now.
+    /// Checks whether a drive may be moved now.
     ///
     /// # Errors
     /// Why not, in words.
@@ -73,7 +73,7 @@ impl Unit {
         }
     }
 
-    /// Whether a drive may run past its limits.
+    /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
     /// Why not, in words.
@@ -83,7 +83,7 @@ impl Unit {
         if permitted { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
     }
 
-    /// Whether an endless run can be switched on: limits and scaling of the drive are the factory's.
+    /// Checks whether an endless run can be enabled: limits and scaling of the drive are the factory settings.
     ///
     /// # Errors
     /// Why not, in words.
@@ -102,7 +102,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Whether this may be asked of a drive now.
+    /// Checks whether a drive accepts this request now.
     pub(super) fn may(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
         let asks_target = match wish {
             MotionRequest::Move { target, .. } => Some(target),
@@ -120,8 +120,8 @@ impl Unit {
         permit.check(wish, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 
-    /// Whatever is asked of a drive ends what moves just now. A stop is meant so, and a jog of the same drive; no other drive's
-    /// motion ends that way, and no step or move becomes another one before its end.
+    /// Checks that a request may end the present motion. A stop is meant to, and so is a jog of the same drive; no
+    /// other drive's motion may be ended that way, and no step or move may become another one before its end.
     fn may_end_what_moves(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
         match self.moves.mover() {
             Some(mover) if mover != drive && wish != MotionRequest::Stop => {
@@ -191,7 +191,7 @@ impl Unit {
         (value, ruler.decimals(measure), TEXTS.text(measure.unit()))
     }
 
-    /// States to which a drive can be led from the one it is in, by one word; none while nobody has control.
+    /// Returns the states to which one word leads from the present one; none without control.
     pub fn reachable(&self, drive: DriveNumber) -> Vec<State> {
         let Some(state) = self.state(drive).filter(|_| self.may_be_led().is_ok()) else { return Vec::new() };
         let mut reachable = Vec::new();
@@ -203,15 +203,15 @@ impl Unit {
         reachable
     }
 
-    /// What leads a drive to a state: its control word, and whether the manual says so.
+    /// Returns the control word that leads a drive to a state, and whether the manual describes it.
     pub fn hint(&self, drive: DriveNumber, to: State) -> Option<Text> {
         let row = self.state(drive)?.transitions().find(|row| row.to == to && row.word.is_some())?;
         let id = if row.assumed { "hd_hint.assumed" } else { "hd_hint.word" };
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// What leads a drive to a state that is [`reachable`](Self::reachable); `None` for those to which no word leads. A fault
-    /// is left by acknowledging, which locks.
+    /// Returns the request that leads a drive to a state that is [`reachable`](Self::reachable); `None` for states
+    /// without one. A fault is left by acknowledging, which locks.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
             State::NotReady => Some(Motor::Lead(Goal::Off)),
@@ -223,7 +223,8 @@ impl Unit {
         }
     }
 
-    /// What is done with a drive, or how the last act ended; `None` without a cyclic connection, and before the first.
+    /// Returns the running act of a drive, or how the last one ended; `None` without a cyclic connection, and before
+    /// the first.
     pub fn said(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
@@ -234,13 +235,13 @@ impl Unit {
         Some(RequestState { words, is_well: words::weight(ended) == Severity::Note })
     }
 
-    /// Why the control was lost, until somebody takes it again; `None` where nobody had it, and where it was given back.
+    /// Returns why control was lost, until it is taken again; `None` if it was never taken, or was given up.
     pub fn why_lost(&self) -> Option<Text> {
         let view = self.moves.view();
         view.lost.as_ref().filter(|_| !view.open).map(|lost| words::lost(Some(lost)))
     }
 
-    /// What so many percent of the speed are, by parameter 166.
+    /// Returns the speed of a percentage, by parameter 166.
     pub fn speed_of(&self, percent: Percent) -> Option<Text> {
         let most = self.number(self.drive(), 166)?;
         // Tenths of rpm, of a hundred.
@@ -248,7 +249,7 @@ impl Unit {
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
     }
 
-    /// What so many percent of the torque are as the drive takes them: the next 25 % above.
+    /// Returns the torque of a percentage as the drive applies it: rounded up to the next 25 %.
     pub fn torque_of(&self, percent: Percent) -> Option<Text> {
         let effective = effective_torque(percent.get());
         (effective != percent.get()).then(|| TEXTS.text("hd_entry.torque").with("percent", effective))

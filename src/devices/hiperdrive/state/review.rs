@@ -18,7 +18,7 @@ use crate::profile::Plan;
 
 /// A write on its way.
 pub type Review = review::Review<Hiperdrive>;
-/// How far it is.
+/// The state of a review.
 pub type ReviewState = review::ReviewState<Hiperdrive>;
 
 impl Reviewed for Hiperdrive {
@@ -115,7 +115,8 @@ pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber)
     words
 }
 
-/// What a value means that the number alone does not say: places in millimetres, else in turns, under the scale of then.
+/// Returns the meaning of a value beyond its number: positions in millimetres, else in turns, under the scale of that
+/// time.
 fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Length>) -> Option<Text> {
     match (number.base(), number.drive()) {
         (158 | 160 | 170 | 176 | 198, Some(drive)) => {
@@ -131,7 +132,7 @@ fn meaning(number: ParameterNumber, value: i64, image: &Image, pitch: Option<Len
     }
 }
 
-/// Where the device answers after a change of its network settings, once its supply was off.
+/// Returns the address of the device after a change of its network settings and a power cycle.
 fn power_up(plan: &Plan<Base, Op>) -> Option<Text> {
     let to = plan.ops.iter().find_map(|op| match op {
         Op::Network { to, .. } => Some(to),

@@ -18,36 +18,36 @@ use crate::devices::hiperdrive::state::explain as explained;
 pub struct Row {
     /// Its own number.
     pub number: ParameterNumber,
-    /// What it is called.
+    /// Its name.
     pub name: Text,
-    /// What the manual says of it.
+    /// Its row of the manual's table.
     pub kind: &'static ParameterRow,
     /// As it was read; `None` where it was not, or a profile does not say it.
     pub value: Option<Value>,
     /// The same as it is written in a table; empty where there is none.
     pub shown: String,
-    /// What that means, where the number alone does not say it.
+    /// The meaning of the value, if the number does not show it.
     pub meaning: Option<Text>,
     /// Its unit; `None` where it has none.
     pub unit: Option<Text>,
-    /// What it may be; `None` of texts.
+    /// The allowed range; `None` for texts.
     pub range: Option<Text>,
-    /// How far its drive turns, in steps as they are wanted to be scaled.
+    /// Travel of its drive, in steps of the edited scale.
     pub travel: Travel,
-    /// What it is from the factory; empty where nothing is said of it.
+    /// The factory setting; empty if not known.
     pub factory: String,
-    /// What is wanted of it; `None` where it cannot be edited, or nothing is.
+    /// The edited value; `None` if it cannot be edited, or is not.
     pub staged: Option<i64>,
     /// It is wanted otherwise than it is.
     pub is_edited: bool,
-    /// What it was before it was read the last time, where that was something else.
+    /// The value of the previous reading, if it differed.
     pub changed_from: Option<i64>,
     /// It can be edited as a value.
     pub is_editable: bool,
 }
 
 impl Row {
-    /// Why it cannot be edited as a value; `None` where it can.
+    /// Returns why it cannot be edited as a value; `None` if it can.
     pub fn why_not_editable(&self) -> Option<Text> {
         let id = match self.kind.access {
             _ if self.is_editable => return None,
@@ -104,7 +104,7 @@ impl Unit {
         }
     }
 
-    /// What a drive has been sent and has said since everything was read: its words, what it measures, its errors.
+    /// Returns the cyclic data of a drive that are newer than the reading: its words, measurements, errors.
     fn said_since(&self, number: ParameterNumber) -> Option<Value> {
         let drive = number.drive()?;
         let value = match number.base() {
@@ -121,7 +121,7 @@ impl Unit {
         Some(Value::Number(value))
     }
 
-    /// What a parameter is from the factory, by what the device and the drive are.
+    /// Returns the factory setting of a parameter, depending on device and drive.
     pub fn factory_value(&self, number: ParameterNumber, kind: &ParameterRow) -> Option<i64> {
         let profile = || self.profile_identity().and_then(|own| own.topology);
         let topology = self.identity().map(|own| own.topology).or_else(profile).unwrap_or(Topology::Adapter);
@@ -129,14 +129,14 @@ impl Unit {
         kind.factory_value(topology, family)
     }
 
-    /// What a drive is one of, as far as its variant is known.
+    /// Returns the family of a drive, as far as its variant is known.
     fn family(&self, drive: DriveNumber) -> Option<Family> {
         let in_profile = || self.profile()?.drive(drive)?.variant;
         let variant = self.drive_identity(drive).map(|own| own.variant).or_else(in_profile)?;
         variant.row().map(|row| row.family)
     }
 
-    /// How far the drive of a parameter turns, in steps as they are wanted to be scaled.
+    /// Returns the travel of the drive of a parameter, in steps of the edited scale.
     fn travel(&self, number: ParameterNumber) -> Travel {
         number.drive().map_or(Travel::UNKNOWN, |drive| Travel {
             family: self.family(drive),
@@ -144,7 +144,7 @@ impl Unit {
         })
     }
 
-    /// What a value means, where the number alone does not say it.
+    /// Returns the meaning of a value, if the number does not show it.
     fn meaning(&self, number: ParameterNumber, value: &Value) -> Option<Text> {
         let value = match value {
             Value::Number(value) => value,

@@ -3,12 +3,12 @@
 pub use crate::app::Measure;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// How far a step is.
+/// The size of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ruler {
     /// Parameters 154 and 156.
     pub scale: PositionScale,
-    /// Millimetres a turn, where somebody has said so.
+    /// Millimetres a turn, if entered by the user.
     pub pitch: Option<Length>,
 }
 

@@ -22,12 +22,12 @@ use crate::store::write_atomically;
 const AXIS: std::ops::RangeInclusive<u16> = 152..=198;
 
 impl Unit {
-    /// The set-up of the drive that is shown; `None` where nobody has begun one.
+    /// Returns the set-up of the drive that is shown; `None` if none has begun.
     pub fn axis(&self) -> Option<&Axis> {
         self.axes.get(&self.drive())
     }
 
-    /// Whether the drive that is shown can be set up.
+    /// Checks whether the drive that is shown can be set up.
     ///
     /// # Errors
     /// Why not, in words.
@@ -42,7 +42,7 @@ impl Unit {
         }
     }
 
-    /// Whether a change can be planned now.
+    /// Checks whether a change can be planned now.
     ///
     /// # Errors
     /// Why not, in words.
@@ -50,7 +50,7 @@ impl Unit {
         self.session.why_not_ready().map_or(Ok(()), Err)
     }
 
-    /// What is known of a drive, for its set-up.
+    /// Returns the known facts of a drive, for its set-up.
     pub fn seen(&self, drive: DriveNumber) -> Seen {
         let view = self.moves.drive(drive);
         let actual = self.actual(drive);
@@ -83,13 +83,13 @@ impl Unit {
         }
     }
 
-    /// What its TCP/IP object says; `None` where it was not read, or does not say it.
+    /// Returns the TCP/IP object; `None` if it was not read, or is not provided.
     pub fn network_settings(&self) -> Option<NetworkSettings> {
         let own = self.network()?;
         Some(NetworkSettings { source: own.control?.source(), interface: own.interface.clone()? })
     }
 
-    /// Where its address switches stood at power-up.
+    /// Returns the address switches as they were at power-up.
     pub fn address_switch(&self) -> Option<AddressSwitch> {
         self.network()?.address_switch()
     }
@@ -228,7 +228,7 @@ impl Unit {
         }
     }
 
-    /// How it stands with all set-ups: called with every look at what has come.
+    /// Updates all set-ups; called after each update of the drives.
     pub(super) fn follow_axes(&mut self) {
         if self.axes.is_empty() {
             return;

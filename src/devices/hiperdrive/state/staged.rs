@@ -1,5 +1,5 @@
-//! What an adapter or a hub (or a profile of one) says, and beside it what the user wants. Nothing here is written to a
-//! device; a plan is made of the difference.
+//! The values of an adapter or a hub (or a profile of one), and the edited ones beside them. Nothing is written to a
+//! device here; a plan is made of the difference.
 //!
 //! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
 //! changed stays as he wants it, and all else follows the device, in the steps before too. What was not read cannot be
@@ -22,7 +22,7 @@ use crate::app::history::History;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, ParameterNumber, ParameterRow, Travel};
 
-/// What the edits stand beside.
+/// The values that the edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Ground {
     /// A device: what was not read is not known.
@@ -32,23 +32,23 @@ enum Ground {
     Profile,
 }
 
-/// What is, what is wanted, and the way there and back.
+/// The base, the edited values, and the steps of undo and redo.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
     ground: Ground,
-    /// What the device or the profile says; both or none.
+    /// The values of the device or the profile; both or none.
     base: Option<Image>,
     wanted: Option<Image>,
-    /// What the device said before it was read the last time.
+    /// The values of the previous reading.
     earlier: Option<Image>,
     history: History<Image>,
     /// Edits of an earlier time whose parameter was not read yet.
     waiting: Vec<SavedEdit>,
-    /// What the drives are, as far as their variants are known.
+    /// The families of the drives, as far as their variants are known.
     families: Families,
 }
 
-/// What drives are, and so how many turns they have.
+/// The families of drives, which determine their turns.
 pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
 /// An edit that is kept: the parameter's own number, and what is wanted of it.
@@ -58,7 +58,7 @@ pub struct SavedEdit(pub u16, pub Option<i64>);
 /// Something that is wanted otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
-    /// Which parameter.
+    /// The parameter.
     pub number: ParameterNumber,
     /// Now; `None`: a profile does not say it.
     pub from: Option<i64>,
@@ -66,8 +66,8 @@ pub struct Differs {
     pub to: Option<i64>,
 }
 
-/// What can be edited as a value: what is kept, and the steps of the drive's own keys, which are not. Setting the position
-/// (198) is a change of its own.
+/// Returns whether a parameter can be edited as a value: stored ones, and the steps of the drive's own keys, which are
+/// not stored. Setting the position (198) is a change of its own.
 pub fn is_editable(row: &ParameterRow) -> bool {
     let is_of_keys = matches!(row.number, 170..=182);
     row.access == Access::ReadWrite && row.number != 198 && (Image::holds(row) || is_of_keys)
@@ -130,23 +130,23 @@ impl Staged {
         self.base.as_ref()
     }
 
-    /// What is wanted; `None`: nothing was read.
+    /// Returns the edited values; `None` if nothing was read.
     pub fn wanted(&self) -> Option<&Image> {
         self.wanted.as_ref()
     }
 
-    /// What a parameter is to be; `None`: nothing is known of it, or nothing said.
+    /// Returns the edited value of a parameter; `None` if it is not known.
     pub fn value(&self, number: ParameterNumber) -> Option<i64> {
         self.wanted.as_ref()?.get(number)
     }
 
-    /// What a parameter was before it was read the last time, where that was something else.
+    /// Returns the value of the previous reading, if it differed.
     pub fn changed_from(&self, number: ParameterNumber) -> Option<i64> {
         let was = self.earlier.as_ref()?.get(number)?;
         (self.base.as_ref()?.get(number)? != was).then_some(was)
     }
 
-    /// How a parameter is wanted otherwise than it is; `None` where it is not.
+    /// Returns how a parameter differs; `None` if it does not.
     pub fn differs(&self, number: ParameterNumber) -> Option<Differs> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.get(number), wanted.get(number));
@@ -160,7 +160,7 @@ impl Staged {
         numbers.into_iter().filter_map(|number| self.differs(number)).collect()
     }
 
-    /// What is wanted otherwise than the device has it, for a plan.
+    /// Returns the edited values that differ from the device, for a plan.
     pub fn edited(&self) -> Image {
         let wanted = |differs: Differs| Some((differs.number, differs.to?));
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
@@ -175,7 +175,7 @@ impl Staged {
         Ok(self.step(after))
     }
 
-    /// What would be wanted after a change, which is not made: for a preview.
+    /// Returns the values after an edit without making it: for a preview.
     ///
     /// # Errors
     /// Why it cannot be.
@@ -257,7 +257,7 @@ impl PendingEdits for Staged {
     }
 }
 
-/// How far the drive of a parameter turns, in the steps of an image.
+/// Returns the travel of the drive of a parameter, in the steps of an image.
 fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel {
     let Some(drive) = number.drive() else { return Travel::UNKNOWN };
     Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }

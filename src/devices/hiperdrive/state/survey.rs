@@ -1,4 +1,5 @@
-//! What was read of a device: it is taken over with a survey, as drives say it, and where somebody else has changed it since.
+//! The survey of a device: how it is taken over, updated by the drives' data, and compared with changes by other
+//! masters.
 
 use super::staged::is_editable;
 use super::unit::Unit;
@@ -49,7 +50,7 @@ impl Unit {
         self.axes_surveyed();
     }
 
-    /// Where a scale is another one than it was, nobody has looked at the limits since.
+    /// Marks the limits as unconfirmed where a scale has changed.
     pub(super) fn notice_scales(&mut self, now: &Image) {
         let Some(before) = self.staged.base() else { return };
         let is_other = |drive: &DriveNumber| {
@@ -61,8 +62,8 @@ impl Unit {
         }
     }
 
-    /// While there is control, the worker reads again and again what a drive may do. Where that is no longer what the table of
-    /// parameters shows, everything is read anew. So it is from the moment at which control was taken.
+    /// Reads everything again if the limits that the worker reads under control differ from the table of parameters;
+    /// also when control is taken.
     pub(super) fn notice_limits(&mut self) {
         if self.moves.take_taken() {
             (self.is_stale, self.marks) = (true, Marks::Unread);
@@ -87,7 +88,7 @@ impl Unit {
             .is_some_and(|(own, shown)| own != shown)
     }
 
-    /// Why what is known of a drive's parameters is no ground to move it on; `None` where it is.
+    /// Returns why the known parameters of a drive do not suffice to move it; `None` if they do.
     pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
@@ -100,7 +101,8 @@ impl Unit {
         }
     }
 
-    /// Whether the limits of a drive that are shown can be confirmed: they have to be those that it has, by all that is known.
+    /// Checks whether the displayed limits of a drive can be confirmed: they have to be the ones that it has, as far as
+    /// is known.
     ///
     /// # Errors
     /// Why not, in words.
@@ -163,14 +165,14 @@ impl Unit {
         self.session.log_answer(vec![fact], services);
     }
 
-    /// The connection is gone: where drives are nobody knows any more.
+    /// Forgets positions after a lost connection.
     pub(super) fn forget_readings(&mut self) {
         self.readings.clear();
         (self.looks_at_errors, self.looks_at_all) = (false, false);
     }
 }
 
-/// What can be edited of what was read.
+/// Returns the editable part of a survey.
 fn image(survey: &Survey) -> Image {
     let editable = |(number, value): (&ParameterNumber, &Value)| match value {
         Value::Number(value) if number.row().is_some_and(is_editable) => Some((*number, *value)),

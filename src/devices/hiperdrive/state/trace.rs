@@ -1,4 +1,4 @@
-//! What the frames of the trace say: which parameter is asked for or set, and what a device refuses.
+//! The meaning of the frames in the trace: which parameter is read or written, and what a device refuses.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
-/// What a frame says.
+/// Returns the meaning of a frame.
 pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
     let broken = |error| Explained::broken(explained::damage(&Damage::Packet(error)));

@@ -29,7 +29,6 @@ use crate::units::Moment;
 
 /// An adapter or a hub with its drives, or a profile of one.
 pub struct Unit {
-    /// What every session has.
     pub session: Session<Hiperdrive>,
     /// Everything that was read.
     pub survey: Option<Survey>,
@@ -39,44 +38,44 @@ pub struct Unit {
     pub check: Option<Vec<CheckLine>>,
     /// Parameters beside the edits of them.
     pub staged: Staged,
-    /// What was recorded of the drive that is shown.
+    /// The recording of the drive that is shown.
     pub record: Record,
-    /// What was recorded of the others while they were shown.
+    /// The recordings of the others.
     pub(super) records: BTreeMap<DriveNumber, Record>,
     /// When the session began, by which the times of recordings count.
     pub(super) began: Option<Zoned>,
     /// The drives as they are moved.
     pub moves: Moves,
-    /// What positions are shown in.
+    /// Unit of the positions.
     pub measure: Measure,
-    /// Why the last edit was not taken.
+    /// Why the last edit was refused.
     pub refusal: Option<Text>,
     /// The virtual device behind the session.
     pub target: Option<Target>,
-    /// Which drive is shown.
+    /// The drive that is shown.
     pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
-    /// Set-ups of axes that somebody has begun.
+    /// Set-ups of axes that have begun.
     pub(super) axes: BTreeMap<DriveNumber, Axis>,
     /// The virtual device was switched off and on since it was read.
     pub(super) switched: bool,
-    /// What was written and not saved, as far as that is known.
+    /// Values written and not saved, as far as known.
     pub(super) unsaved: Unsaved,
-    /// What the settings remember of it, and what of that was told them; `None` before they were asked.
+    /// The values exchanged with the settings; `None` before the first exchange.
     pub(super) exchanged: Option<Exchanged>,
-    /// Whether another window has marked limits since control was taken is known.
+    /// Whether another window has marked limits since control was taken.
     pub(super) marks: Marks,
-    /// What was read last of each drive while nobody had control.
+    /// The last reading of each drive without control.
     pub(super) readings: BTreeMap<DriveNumber, Reading>,
     /// Limits and scaling may be others than those that were read: control was taken since.
     pub(super) is_stale: bool,
-    /// Which drive is polled.
+    /// The polled drive.
     pub(super) watched: DriveNumber,
     /// Polling has begun by itself since the link was opened.
     pub(super) has_polled: bool,
     /// Errors are to be read again as soon as the line is free.
     pub(super) looks_at_errors: bool,
-    /// Everything is: somebody else has changed what rules a drive.
+    /// Everything is to be read again: another master has changed the limits of a drive.
     pub(super) looks_at_all: bool,
 }
 
@@ -123,12 +122,12 @@ impl Unit {
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
     }
 
-    /// Who it is, as far as that is known.
+    /// Returns the identity, as far as known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Who it was, where this is a profile.
+    /// Returns the identity in the profile, if this is one.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
     }
@@ -176,7 +175,7 @@ impl Unit {
         record
     }
 
-    /// Who a drive is; `None` before it was read.
+    /// Returns the identity of a drive; `None` before it was read.
     pub fn drive_identity(&self, drive: DriveNumber) -> Option<&DriveIdentity> {
         self.identity()?.drive(drive)
     }
@@ -199,7 +198,7 @@ impl Unit {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }
 
-    /// What a drive said last: over the cyclic connection, or where it was asked.
+    /// Returns the last data of a drive: from the cyclic connection, or from polling.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
         // What was read at the beginning says nothing any more once the device is gone.
@@ -252,24 +251,24 @@ impl Unit {
         Ruler { scale, pitch: self.pitch(drive) }
     }
 
-    /// The pitch of the spindle behind a drive, where somebody has said so.
+    /// Returns the pitch of the spindle behind a drive, if entered by the user.
     pub fn pitch(&self, drive: DriveNumber) -> Option<Length> {
         self.pitches.get(&drive).copied()
     }
 
-    /// How a drive's speed is scaled.
+    /// Returns the scale of a drive's speed.
     pub fn speed_scale(&self, drive: DriveNumber) -> SpeedScale {
         let part = |number| self.number(drive, number).and_then(|value| u16::try_from(value).ok());
         let scale = part(162).zip(part(164)).and_then(|(above, below)| SpeedScale::new(above, below).ok());
         scale.unwrap_or(SpeedScale::FACTORY)
     }
 
-    /// What a drive may do, as the worker read it last; `None` for a profile, and before anything was read.
+    /// Returns the limits of a drive as last read by the worker; `None` for a profile, and before anything was read.
     pub fn drive_limits(&self, drive: DriveNumber) -> Option<&DriveLimits> {
         self.moves.limits(drive)
     }
 
-    /// How a drive's position is scaled; `None` where that was not read.
+    /// Returns the scale of a drive's position; `None` if it was not read.
     pub fn scale(&self, drive: DriveNumber) -> Option<PositionScale> {
         let as_read = || self.staged.base()?.scale(drive);
         self.drive_limits(drive).and_then(DriveLimits::scale).or_else(as_read)
@@ -289,7 +288,7 @@ impl Unit {
         self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
     }
 
-    /// What is not right in what is wanted.
+    /// Returns the problems of the edited values.
     pub fn marks(&self) -> Vec<Mark> {
         self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
     }

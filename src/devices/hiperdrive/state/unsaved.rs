@@ -1,5 +1,5 @@
-//! What was written into a device and not saved since: what each parameter was before. A device cannot be asked for what it has
-//! saved, and a run that was broken off may be of yesterday.
+//! Values written to a device and not saved since: the previous value of each parameter. A device does not show what it
+//! has saved, and an interrupted run may be from yesterday.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 /// Of one adapter or hub with its drives.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Unsaved {
-    /// What was saved, by the parameters' own numbers, of those that were written since.
+    /// The saved values of parameters written since, by number.
     before: BTreeMap<u16, i64>,
     /// How often the position of a drive was set from here.
     set: BTreeMap<DriveNumber, u32>,
@@ -62,19 +62,19 @@ impl Unsaved {
         self.before.retain(|number, before| !is_as_saved(*number, *before));
     }
 
-    /// What was saved, by the parameters' own numbers: to be kept.
+    /// Returns the saved values by number, to be remembered.
     pub(super) const fn saved(&self) -> &BTreeMap<u16, i64> {
         &self.before
     }
 
-    /// What was kept from an earlier start.
+    /// Adds values remembered from an earlier start.
     pub(super) fn extend(&mut self, earlier: &BTreeMap<u16, i64>) {
         for (number, before) in earlier {
             self.before.entry(*number).or_insert(*before);
         }
     }
 
-    /// What the parameters of a drive were when they were saved, by the numbers of drive 1.
+    /// Returns the saved values of a drive, by the numbers of drive 1.
     fn of_drive(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         let own = |(number, before): (&u16, &i64)| {
             let number = ParameterNumber::new(*number).filter(|number| number.drive() == Some(drive))?;
@@ -85,12 +85,12 @@ impl Unsaved {
 }
 
 impl Unit {
-    /// What was saved of a drive where something else was written since, by the numbers of drive 1.
+    /// Returns the saved values of a drive that were overwritten since, by the numbers of drive 1.
     pub(super) fn unsaved_of(&self, drive: DriveNumber) -> BTreeMap<u16, i64> {
         self.unsaved.of_drive(drive)
     }
 
-    /// How often the position of a drive was set from here.
+    /// Returns how often the position of a drive was set from here.
     pub(super) fn times_set(&self, drive: DriveNumber) -> u32 {
         self.unsaved.set.get(&drive).copied().unwrap_or_default()
     }

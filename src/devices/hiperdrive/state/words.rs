@@ -33,14 +33,14 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
     }
 }
 
-/// What a text tells as a number with its unit; `None` of other texts.
+/// Returns a text as a number with its unit; `None` for other texts.
 pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
     let value = protocol::nominal(text)?;
     Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals_of(value, 1)).with_text("unit", plain(unit)))
 }
 
-/// What a number means by itself; `None` where it says it.
+/// Returns the meaning of a number; `None` if the number shows it.
 pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     let tenths = |id: &'static str, name: &'static str| TEXTS.text(id).with_number(name, value as f64 / 10.0, 1);
     let word = || u16::try_from(value).ok();
@@ -68,7 +68,7 @@ pub fn meaning(number: ParameterNumber, value: i64) -> Option<Text> {
     })
 }
 
-/// Why an edit was refused.
+/// Returns why an edit was refused.
 pub fn refused(error: &EditError) -> Text {
     match error {
         EditError::NothingRead => TEXTS.text("hd_entry.nothing_read"),
@@ -80,7 +80,7 @@ pub fn refused(error: &EditError) -> Text {
     }
 }
 
-/// What somebody should look at.
+/// Returns the text of a problem.
 pub fn mark(mark: &Mark) -> Text {
     match mark {
         Mark::OutOfRange(error) => words::out_of_range(error),

@@ -1,4 +1,4 @@
-//! What is written into a device: the edits or a profile as a wish, and its jobs.
+//! Writing to a device: the edits or a profile as a request, and its jobs.
 
 use super::record::Record;
 use super::review::{Review, op_words};
@@ -66,7 +66,7 @@ impl WithMemory for Unit {
         }
     }
 
-    /// What is held is let go.
+    /// Lets go of everything that is held.
     fn hands_off(&mut self) {
         self.moves.let_go();
     }

@@ -23,10 +23,10 @@ use crate::ui::controls::{
 use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
 use crate::ui::{Theme, icons};
 
-/// What the page remembers from one picture to the next.
+/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct AxisUiState {
-    /// Which step is drawn, and since when on the window's clock.
+    /// The step that is drawn, and since when, on the window's clock.
     since: Option<(Step, f64)>,
 }
 
@@ -202,7 +202,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     });
 }
 
-/// What comes and goes: a fault, what does not hold any more, what is missing, what was found.
+/// Draws changing messages: a fault, void results, what is missing, findings.
 fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let (axis, seen) = (shown.axis, shown.seen);
     let fallen = axis.fallen().map(words::fallen);
@@ -229,7 +229,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     }
 }
 
-/// Where the axis is, and in which state its drive: always as high.
+/// Draws the position of the axis and the state of its drive, always with the same height.
 fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     theme.sunken().show(ui, |ui| {
         crate::ui::controls::fill(ui);
@@ -293,8 +293,8 @@ fn unbroken(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }
 
-/// Where the eye ends, in a line as high as a button: centred in all the room that is left, it would float in it. Behind
-/// other buttons where there is room, or else below them.
+/// Draws the content at the right end of a line as high as a button: beside other buttons if there is room, or else
+/// below them.
 fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let rest = ui.available_size_before_wrap().x;
     let width = if rest >= PRIMARY { rest } else { ui.available_width() };
@@ -302,7 +302,7 @@ fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
 }
 
-/// How it ended: what can be done now, what was written, and whether that lasts.
+/// Draws the end: possible next steps, what was written, and whether it is saved.
 fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions: &mut Vec<Action>) {
     let axis = shown.axis;
     let title = if end == End::Done { "hd_axis.ended" } else { "hd_axis.cancelled" };
@@ -333,13 +333,13 @@ fn end_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, end: End, actions
     });
 }
 
-/// What was known before is written back.
+/// Draws writing back the previous values.
 fn recall(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let word = say(theme, "hd_axis.recall");
     shown.button(ui, theme, Button::Recall, (icons::ARROW_COUNTER_CLOCKWISE, &word), actions);
 }
 
-/// What else one should know.
+/// Draws further notes.
 fn notes(ui: &mut Ui, theme: &Theme) {
     card(ui, theme, TEXTS.text("hd_axis.notes"), |ui| {
         for id in [

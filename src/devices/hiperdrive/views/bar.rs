@@ -1,4 +1,4 @@
-//! What stands above every page: the drives of a hub, who has the control, STOP and what it is not.
+//! The bar above every page: the drives of a hub, the control, STOP and what it is not.
 
 use egui::{RichText, Stroke, Ui, vec2};
 

@@ -1,4 +1,4 @@
-//! Who the device and its drives are, what a check of them says, how it is wired.
+//! The device page: identity of the device and its drives, check, wiring.
 
 use egui::Ui;
 
@@ -11,7 +11,7 @@ use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
-/// What parameter 47 is written for, with what is to be known of it.
+/// The services of parameter 47, with their notes.
 const SERVICES: [(Service, &str); 5] = [
     (Service::Save, "hd_services.save"),
     (Service::Recall, "hd_services.recall"),
@@ -73,7 +73,7 @@ fn identity(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) 
     });
 }
 
-/// What is plugged in, place by place.
+/// Draws the drives, place by place.
 fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_drives.title"), |ui| {
         let Some(identity) = unit.identity() else {
@@ -114,7 +114,7 @@ fn check(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// What can be done with all that the device keeps.
+/// Draws the services for all stored values of the device.
 fn services(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_services.title"), |ui| {
         for (service, note) in SERVICES {

@@ -1,4 +1,4 @@
-//! What a drive says is wrong: its error buffer with causes and remedies, its words, and the cyclic connection.
+//! The diagnosis page: error buffer with causes and remedies, words of the drive, and the cyclic connection.
 
 use egui::{RichText, Ui};
 
@@ -91,7 +91,7 @@ fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// What one of the words 116 to 118 says (reference 4).
+/// Returns the meaning of one of the words 116 to 118 (reference 4).
 const fn com_word(word: u16) -> &'static str {
     match word {
         0 => "hd_health.well",

@@ -52,7 +52,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     });
 }
 
-/// What the pads do, or why both or one of them are blocked, in the same room: nothing below moves when that changes.
+/// Draws what the pads do, or why they are blocked, in the same room: nothing below moves when that changes.
 fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {

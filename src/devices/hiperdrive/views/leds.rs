@@ -1,4 +1,4 @@
-//! What the lamps say: drawn as they look, clicked until they look like the real ones.
+//! The meaning of the LEDs: drawn as they look, and clicked until they match the real ones.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, pos2, vec2};
 
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, entry, name, options, paragraph, severity};
 
-/// What is picked.
+/// The picked LEDs.
 #[derive(Default)]
 pub(super) struct LedsUiState(Leds);
 
@@ -28,7 +28,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsU
     });
 }
 
-/// Which device it is, and where its switch S3 is.
+/// Draws the choice of the device, and of its switch S3.
 fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     let (mut hub, mut s3) = (leds.hub, leds.s3);
     let word = say(theme, "hd_led.device");
@@ -100,7 +100,7 @@ fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
     }
 }
 
-/// How a lamp is drawn: its left and its right half, and whether it comes and goes.
+/// The appearance of an LED: its left and its right half, and whether it blinks.
 struct LedStyle {
     left: Option<Color32>,
     right: Option<Color32>,

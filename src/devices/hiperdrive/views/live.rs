@@ -1,4 +1,4 @@
-//! Where a drive is, large, with its state, its speed and where it is going.
+//! The large display of a drive: its position, state, speed and target.
 
 use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 
@@ -77,7 +77,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     row(ui, theme, &theme.say("live.raw"), theme.mono(whole));
 }
 
-/// Whether a text has room in the rest of the line.
+/// Returns whether a text fits into the rest of the line.
 fn fits(ui: &Ui, text: &RichText) -> bool {
     let text = WidgetText::from(text.clone());
     let galley = text.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);

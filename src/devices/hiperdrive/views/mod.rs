@@ -41,7 +41,7 @@ pub(crate) enum Page {
     Axis,
     /// Errors, lamps, the cyclic connection.
     Diagnosis,
-    /// Who it is, where it is in the network.
+    /// Identity, and network.
     Device,
     /// Profiles, backups and what was written.
     Backups,
@@ -59,13 +59,13 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// What is edited here is written from here.
+    /// Returns whether edits on the page are written from it.
     fn has_foot(self) -> bool {
         self == Page::Parameters
     }
 }
 
-/// What the tab remembers of one session while the window is open: text buffers and selections.
+/// The state of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct HiperdriveUiState {
     drives: BTreeMap<DriveNumber, DriveEntries>,
@@ -74,7 +74,7 @@ pub(crate) struct HiperdriveUiState {
     network: network::NetworkUiState,
 }
 
-/// What is typed for one drive.
+/// The entered text for one drive.
 #[derive(Default)]
 struct DriveEntries {
     motion: motion::MotionUiState,

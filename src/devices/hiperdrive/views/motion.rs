@@ -20,7 +20,7 @@ use crate::ui::{Theme, icons};
 /// A percentage as it is typed.
 type Draft = Option<String>;
 
-/// What is typed.
+/// The entered text.
 #[derive(Default)]
 pub(super) struct MotionUiState {
     pub(super) jog_effort: [Draft; 2],
@@ -75,7 +75,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
-/// Why nothing moves, and what to do.
+/// Draws why motion is locked, and what to do.
 fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     for lock in unit.moves.locks(drive) {
@@ -138,7 +138,7 @@ fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     actions.append(&mut acts);
 }
 
-/// What has failed and the way out of it; or how the last act goes on or ended.
+/// Draws a failure with the way out of it; or the state of the last act.
 fn news(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
@@ -227,7 +227,7 @@ fn to_position(
     allowed
 }
 
-/// Why nothing can be moved.
+/// Draws why nothing can be moved.
 pub(super) fn why_not(ui: &mut Ui, theme: &Theme, allowed: &Result<(), Text>) {
     if let Err(why) = allowed {
         paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));

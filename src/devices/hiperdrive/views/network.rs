@@ -1,5 +1,5 @@
-//! Where the device has its address from: what its TCP/IP object says beside what is wanted, what that comes to at the next
-//! power-up, and what the address switches mean.
+//! The network page: the TCP/IP object and its edited values, the result at the next power-up, and the meaning of the
+//! address switches.
 
 use egui::{RichText, Ui};
 
@@ -16,7 +16,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// What is typed and is not written.
+/// Entered text that is not written yet.
 #[derive(Default)]
 pub(super) struct NetworkUiState {
     /// As the device had it when typing began.
@@ -132,7 +132,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
     }
 }
 
-/// What will be at the next power-up.
+/// Draws the result at the next power-up.
 fn outlook(ui: &mut Ui, theme: &Theme, unit: &Unit, now: &NetworkSettings, wanted: &Result<NetworkSettings, Text>) {
     ui.label(theme.label(say(theme, "hd_net.at_power_up")));
     match wanted {
@@ -153,7 +153,7 @@ fn line(ui: &mut Ui, theme: &Theme, own: Severity, text: &Text) {
     });
 }
 
-/// What each position means; the present one stands out.
+/// Draws the meaning of each position, with the present one highlighted.
 fn switches(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_net.switches"), |ui| {
         let switch = unit.address_switch();

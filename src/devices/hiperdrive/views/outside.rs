@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, paragraph, problem};
 use crate::ui::{Theme, icons};
 
-/// What is typed.
+/// The entered text.
 #[derive(Default)]
 pub(super) struct Draft {
     /// The position that the place here is to get.
@@ -26,7 +26,8 @@ pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// What is outside, what is blocked, and what can be done. Nothing where the drive is inside, or at the end of its range.
+/// Draws what is outside, what is blocked, and what can be done. Nothing if the drive is inside, or at the end of its
+/// range.
 pub(super) fn block_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {

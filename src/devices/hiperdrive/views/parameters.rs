@@ -18,7 +18,7 @@ use crate::ui::widgets::{
 };
 use crate::ui::{Theme, icons};
 
-/// What is looked for and what is typed.
+/// The filter and the entered text.
 #[derive(Default)]
 pub(super) struct DriveParametersUiState {
     sought: String,
@@ -29,7 +29,7 @@ pub(super) struct DriveParametersUiState {
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
-/// Which parameters; or not them, but what two of them mean.
+/// The filter of the parameters; or the scale, the meaning of two of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ParameterFilter {
     All,
@@ -84,7 +84,7 @@ pub(super) fn page_ui(
     }
 }
 
-/// What is shown, and why what was typed is not taken.
+/// Draws the filter, and why the entered text was refused.
 fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
     ui.horizontal_wrapped(|ui| {
         let sought = say(theme, "hd_params.seek");
@@ -115,7 +115,7 @@ impl DriveParametersUiState {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
 
-    /// What is being typed, or was refused.
+    /// Returns the parameter being edited, or refused.
     fn typed(&self) -> Option<ParameterNumber> {
         let place = self.table.typed()?;
         self.lines.get(place.group)?.get(place.row).copied()

@@ -1,4 +1,4 @@
-//! What a step of a drive is: the pitch of its spindle and the resolution that is wanted become parameters 154 and 156.
+//! The scale page: the pitch of the spindle and the desired resolution become parameters 154 and 156.
 
 use egui::Ui;
 
@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, enabled_button, entry, options, paragraph, problem, row, settled_entry, text_entry};
 use crate::ui::{Theme, icons};
 
-/// What is typed.
+/// The entered text.
 #[derive(Default)]
 pub(super) struct ScaleUiState {
     pitch: Option<(String, Option<Text>)>,
@@ -67,7 +67,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
     });
 }
 
-/// What the scale as it is wanted makes of a turn and of the limits.
+/// Draws the effect of the edited scale on a turn and on the limits.
 fn becomes(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let ruler = unit.wanted_ruler(drive);

@@ -14,16 +14,16 @@ use crate::devices::hiperdrive::protocol::State;
 use crate::ui::Theme;
 use crate::ui::widgets::focus_ring;
 
-/// What is drawn.
+/// A state machine to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
     /// The state in which the drive is; `None`: it is not known.
     pub(crate) present: Option<State>,
-    /// Where it can be led to from here.
+    /// States that can be reached from the present one.
     pub(crate) reachable: &'a [State],
-    /// What the states are called, in the order of [`State::ALL`].
+    /// Names of the states, in the order of [`State::ALL`].
     pub(crate) names: &'a [String; 7],
-    /// What going there does, by state, where something is to be said.
+    /// Effects of going to a state, if any.
     pub(crate) hints: &'a [Option<String>; 7],
 }
 
@@ -103,7 +103,7 @@ pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'
     wanted
 }
 
-/// How a box looks.
+/// The appearance of a box.
 struct BoxStyle {
     fill: Color32,
     edge: Stroke,

@@ -17,7 +17,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Hiperface>;
 
 impl Runs for Hiperface {
-    /// How the line is set: for `identify`.
+    /// Setting of the line, for `identify`.
     type Context = CharacterFormat;
     const HAS_ONE_MASTER: bool = true;
     const COMMANDS: &'static dyn DeviceCommands = &HiperfaceCommands;

@@ -4,7 +4,7 @@
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
 
-/// How positions are written: a shaft in degrees, a scale in millimetres.
+/// The format of positions: degrees for a shaft, millimetres for a scale.
 pub(super) struct Table {
     linear: bool,
 }

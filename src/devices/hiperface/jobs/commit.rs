@@ -21,7 +21,7 @@ pub(super) fn commit(
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| JobStep::Operation(op.clone()))))
 }
 
-/// How backups and the logbook know an encoder.
+/// Returns the key of an encoder for backups and the logbook.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey {
         kind: KIND.to_owned(),

@@ -1,4 +1,4 @@
-//! What can be asked of a HIPERFACE encoder, and what comes of it.
+//! The jobs of a HIPERFACE encoder, and their results.
 
 use std::fmt;
 
@@ -17,12 +17,12 @@ use crate::devices::hiperface::protocol::{
 /// EEPROM, that it can be incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
-/// What a session with a HIPERFACE encoder does.
+/// A job of a session with a HIPERFACE encoder.
 #[derive(Debug)]
 pub enum HiperfaceJob {
     /// Everything there is to see: for a window, after connecting.
     Survey,
-    /// Who is there.
+    /// Reads the identity.
     Identify,
     /// The whole error queue.
     Status,
@@ -47,7 +47,6 @@ pub enum HiperfaceJob {
     ConfigureForNow(LineSettings),
     /// Uses an access code from now on; nothing is sent.
     UseCode {
-        /// Which.
         number: CodeNumber,
         /// Its value; it is shown nowhere.
         code: AccessCode,
@@ -65,7 +64,6 @@ pub enum Change {
     Restore {
         /// The profile.
         profile: Box<HiperfaceProfile>,
-        /// What the restore may do.
         options: RestoreOptions,
     },
     /// Write bytes of data fields: where, and which; a count has to be that of the bytes.
@@ -105,7 +103,6 @@ pub enum Change {
     },
     /// Change an access code; its present value is the session's.
     ChangeCode {
-        /// Which.
         number: CodeNumber,
         /// Its new value.
         new: AccessCode,
@@ -124,7 +121,7 @@ pub enum Change {
     /// Add steps to the position, round the end of the measuring range; at standstill. It undoes a set position wherever
     /// the shaft is by now.
     ShiftPosition {
-        /// How many.
+        /// Number of steps.
         steps: i64,
     },
     /// Give the encoder another address.
@@ -164,7 +161,6 @@ impl Change {
 pub struct Prepared {
     /// The kind of change that it is for.
     pub kind: ChangeKind,
-    /// What would be written.
     pub plan: HiperfacePlan,
     /// The encoder it is for.
     pub identity: Identity,
@@ -176,7 +172,7 @@ pub struct Prepared {
     pub missing: Vec<FieldRange>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
-    /// Values of the mounting of another device that are written: they have to be set up anew.
+    /// Values of another device's mounting that are written: they have to be set up again.
     pub mounting_written: Vec<FieldRange>,
     /// Data fields with bytes of unknown meaning that differ from another encoder's.
     pub unknown_fields: Vec<UnknownField>,
@@ -198,8 +194,8 @@ pub struct OtherType {
 }
 
 impl Prepared {
-    /// What has to be set up anew after it. Any value of another mounting, and any byte of unknown meaning, may be an
-    /// offset between encoder and motor.
+    /// Returns the values that have to be set up again afterwards. Any value of another mounting, and any byte of
+    /// unknown meaning, may be an offset between encoder and motor.
     pub fn redo(&self) -> Vec<Redo> {
         let values = self.mounting_written.iter().copied().map(Redo::Value);
         let copies = self.unknown_fields.iter().any(UnknownField::is_copied);
@@ -211,7 +207,7 @@ impl Prepared {
 /// A plan that a person consented to.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-/// What a commit did.
+/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
 /// A value that was read.
@@ -233,18 +229,19 @@ pub enum Value {
 /// A profile as it was read.
 #[derive(Clone, Debug)]
 pub struct SavedProfile {
-    /// What was read.
+    /// The profile that was read.
     pub profile: HiperfaceProfile,
     /// Fields that could not be read, with the number of the code that guards them.
     pub locked: Vec<(u8, CodeNumber)>,
 }
 
-/// What a HIPERFACE encoder says on the way.
+/// A message of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     /// Status codes that replies announced.
     Codes(Vec<StatusCode>),
-    /// So many status codes may have been lost: 50h takes them out of the encoder, and its reply was lost or damaged.
+    /// Number of status codes that may have been lost: 50h takes them out of the encoder, and its reply was lost or
+    /// damaged.
     CodesUnheard(u32),
     /// An encoder that answered while one searched.
     Found(Found),
@@ -273,7 +270,7 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// What a HIPERFACE job gives.
+/// The result of a HIPERFACE job.
 #[derive(Debug)]
 pub enum HiperfaceOutput {
     Surveyed(Box<Survey>),

@@ -38,10 +38,10 @@ pub struct Hiperface {
     types: Arc<EncoderTypes>,
     /// As the encoder was last identified in this session: samples are seen with it.
     geometry: Option<Geometry>,
-    /// Who answered last, as the logbook knows it.
+    /// The last identified encoder, as the logbook knows it.
     identified: Option<DeviceKey>,
     status: StatusKeeper,
-    /// What was told of the line's troubles.
+    /// The counters of line errors already reported.
     told_troubles: [u64; 4],
 }
 
@@ -109,7 +109,7 @@ impl Session<Hiperface> {
         &mut self.device.station.codes
     }
 
-    /// What is known about the line.
+    /// Returns the state of the line.
     pub fn station(&self) -> &Station {
         &self.device.station
     }
@@ -168,7 +168,7 @@ impl Device for Hiperface {
         self.wire.check()
     }
 
-    /// What went wrong on the line since it was told last.
+    /// Reports new errors of the line.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<DeviceMessage> {
         if let Some(unheard) = self.unheard() {
             return Some(unheard);

@@ -17,7 +17,7 @@ const AGAIN: Duration = Duration::from_secs(60);
 pub(super) struct StatusKeeper(Vec<(StatusCode, Moment)>);
 
 impl StatusKeeper {
-    /// Whether one of these codes was not kept within the last minute; from now on they count as kept.
+    /// Returns whether any of these codes was not recorded within the last minute; they then count as recorded.
     pub(super) fn is_news(&mut self, codes: &[StatusCode], now: Moment) -> bool {
         self.0.retain(|(_, kept)| now.since(*kept) < AGAIN);
         let mut is_news = false;

@@ -12,7 +12,7 @@ use crate::store::{FileError, FileProblem, Store, StoreError, read_text};
 pub struct BrokenTypes {
     /// The file.
     pub path: PathBuf,
-    /// What is wrong, with line and column or with the row's type byte.
+    /// The cause, with line and column or with the row's type byte.
     pub cause: TypeTableError,
 }
 

@@ -27,7 +27,7 @@ pub enum Step {
     Limits,
     /// 4Ch and 4Ah on every data field.
     DataFields,
-    /// What was repeated, damaged or late meanwhile, and before in this session.
+    /// Repetitions, damaged and late replies, in this check and before in this session.
     Line,
 }
 
@@ -71,19 +71,17 @@ pub enum Finding {
     FieldRefused {
         /// Its number.
         number: u8,
-        /// Why.
         codes: Vec<StatusCode>,
     },
     /// A data field that cannot be read.
     FieldUnreadable {
         /// Its number.
         number: u8,
-        /// Why.
         why: Error,
     },
     /// Something else that cannot be read.
     Unreadable(Error),
-    /// How good the line is.
+    /// Quality of the line.
     Line(LineQuality),
 }
 
@@ -182,7 +180,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: Step::DataFields, verdict, findings })
 }
 
-/// A line on which something had to be repeated works, and somebody should look at its wiring.
+/// Checks the line. One on which something had to be repeated works, but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };

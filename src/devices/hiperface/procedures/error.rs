@@ -1,4 +1,4 @@
-//! What can go wrong with an encoder, with the facts a person needs.
+//! Errors of an encoder, with the facts that a user needs.
 
 use crate::devices::hiperface::profile::PlanItem;
 use crate::devices::hiperface::protocol::{CodeNumber, Command, LineSettings, Reply, ReplyError, StatusCode};
@@ -15,11 +15,11 @@ pub enum Error {
     /// Nothing came back.
     #[error("no reply from address {address:02X}h to {} ({tries} tries)", command.row().name)]
     NoReply {
-        /// Who was asked.
+        /// Address of the request.
         address: u8,
-        /// What was asked.
+        /// The request.
         command: Command,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
         /// Our own bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
@@ -27,11 +27,11 @@ pub enum Error {
     /// Something came back and was broken every time.
     #[error("damaged reply to {} ({tries} tries): {cause}", command.row().name)]
     Damaged {
-        /// What was asked.
+        /// The request.
         command: Command,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
-        /// What was wrong with the last one.
+        /// Damage of the last reply.
         cause: Damage,
     },
     /// Bytes keep arriving where there should be silence.
@@ -40,15 +40,15 @@ pub enum Error {
     /// The encoder refused.
     #[error("{} was refused: {}", command.row().name, list(codes))]
     Rejected {
-        /// What was asked.
+        /// The request.
         command: Command,
-        /// Why.
+        /// The status codes.
         codes: Vec<StatusCode>,
     },
-    /// Whether a change was carried out is not known: the encoder can no longer be asked.
+    /// Whether a change was carried out is not known: the encoder can no longer be reached.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
-        /// What was sent.
+        /// The command sent.
         command: Command,
         /// Why it cannot be read back.
         cause: Box<Error>,
@@ -68,7 +68,7 @@ pub enum Error {
         /// Its name.
         encoder: String,
     },
-    /// Somebody answers at the address that an encoder is to get.
+    /// Another encoder answers at the new address.
     #[error("address {address:02X}h belongs to another encoder")]
     AddressTaken {
         /// The address.
@@ -77,7 +77,7 @@ pub enum Error {
     /// The position asked for is beyond the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
     PositionRange {
-        /// What was wished.
+        /// The requested position.
         wanted: u64,
         /// The greatest position.
         last: u64,
@@ -99,19 +99,19 @@ pub enum Error {
     CodeUnknown {
         /// The field.
         field: u8,
-        /// Which code guards it.
+        /// The access code that guards it.
         number: CodeNumber,
     },
-    /// What was read changed between the plan and its execution.
+    /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// What changed.
+        /// The item that changed.
         item: PlanItem,
     },
-    /// What was read back is not what was written.
+    /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
-        /// What was written.
+        /// The item written.
         item: PlanItem,
         /// As it should be.
         expected: String,
@@ -150,7 +150,7 @@ impl Error {
     }
 }
 
-/// What was read back after a write.
+/// The value read back after a write.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadBack {
     /// A number, or bytes.
@@ -161,7 +161,7 @@ pub enum ReadBack {
     AnotherStatus,
 }
 
-/// What was wrong with a reply.
+/// The damage of a reply.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Damage {
     /// The reply itself.

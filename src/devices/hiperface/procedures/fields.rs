@@ -61,7 +61,6 @@ pub struct UnreadableField {
     pub number: u8,
     /// Its status, where that could be read.
     pub status: Option<DataFieldStatus>,
-    /// Why.
     pub why: Error,
 }
 
@@ -79,7 +78,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
     Ok(tolerated(master, field)?.map_err(|why| UnreadableField { number, status: Some(status), why }))
 }
 
-/// What could not be read, as long as the encoder answers to another request.
+/// Converts an error into a reason, as long as the encoder answers another request.
 ///
 /// # Errors
 /// It does not, or the user's wish.

@@ -1,4 +1,4 @@
-//! Finding encoders whose settings nobody remembers.
+//! The search for encoders with unknown settings.
 //!
 //! It listens a second before its first byte: foreign traffic means a running machine, and then it only listens. It
 //! probes with 52h, never with 50h, which would take codes out of an encoder's queue. Broadcast comes last and only when
@@ -15,7 +15,7 @@ use crate::units::{Baud, CharacterFormat, Parity};
 /// How long to listen for a running machine.
 pub const LISTEN: Duration = Duration::from_secs(1);
 
-/// What to try.
+/// The settings to try.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
     /// The user says that exactly one encoder is connected: broadcast may be used where no address answers.
@@ -29,13 +29,13 @@ pub struct FindOptions {
 pub struct Found {
     /// Its address.
     pub address: u8,
-    /// How it was talked to.
+    /// The format that was used.
     pub format: CharacterFormat,
     /// Its type label, with the settings it has stored.
     pub label: TypeLabel,
 }
 
-/// One try, for whoever watches.
+/// One attempt, for progress reports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Attempt {
     /// Listening for foreign traffic.
@@ -46,7 +46,7 @@ pub enum Attempt {
     Probing {
         /// Whom.
         address: u8,
-        /// How.
+        /// The format.
         format: CharacterFormat,
     },
 }
@@ -61,7 +61,7 @@ impl fmt::Display for Attempt {
     }
 }
 
-/// What a search tells while it goes on.
+/// A report of a running search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum News<'a> {
     /// The next try.
@@ -77,10 +77,10 @@ pub enum News<'a> {
     Found(&'a Found),
 }
 
-/// How a search ended.
+/// The end of a search.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Findings {
-    /// Somebody else talks on this line: nothing was sent.
+    /// Another device sends on this line: nothing was sent.
     ForeignTraffic {
         /// Bytes heard in the time of listening.
         bytes: usize,
@@ -125,7 +125,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Gives the number of bytes that somebody else sent, where nothing was searched because of them.
+    /// Returns the number of foreign bytes if they prevented the search.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
         // Through a device server every format would be the same one, and each would be found.
         let formats = if master.sets_format() { formats() } else { vec![master.station().format] };

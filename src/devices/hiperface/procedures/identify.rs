@@ -1,4 +1,4 @@
-//! Who is there, and what does it report.
+//! Identifies the encoder.
 
 use super::{Error, Master, read_range};
 use crate::devices::hiperface::profile::HiperfaceProfile;
@@ -22,7 +22,7 @@ pub struct Identity {
     pub name: String,
     /// Periods and turns: as the user gave them, from the extended label, or from the table of types.
     pub geometry: Option<Geometry>,
-    /// Without bearing: its tracks are synchronised with 63h. `None` where nobody says.
+    /// Without bearing: its tracks are synchronised with 63h. `None` if not known.
     pub kit: Option<bool>,
     /// The content of data field FFh where the encoder has it.
     pub extended_label: Option<Vec<u8>>,

@@ -38,7 +38,7 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// What is known about the line.
+    /// Returns the state of the line.
     pub fn station(&mut self) -> &mut Station {
         self.station
     }
@@ -82,7 +82,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Whether speed and parity of our side can be set; else they are the business of somebody behind the link.
+    /// Returns whether speed and parity can be set on this side; otherwise they are set behind the link.
     pub fn sets_format(&self) -> bool {
         self.line.ctx.wire.sets_format()
     }
@@ -181,7 +181,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// What is right about a broken line before the next try; an error when there is to be none.
+    /// Prepares the line for the next attempt; returns an error when there is to be none.
     pub(super) fn may_try_again(&mut self, request: &Request, tries: u32, trouble: Trouble) -> Result<(), Error> {
         let quality = &mut self.station.line.quality;
         match &trouble {

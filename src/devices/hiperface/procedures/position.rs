@@ -16,7 +16,7 @@ pub struct PositionReading {
     pub at: Moment,
     /// The word as received.
     pub raw: u32,
-    /// What it means; `None` while periods and turns are not known.
+    /// The position; `None` while periods and turns are not known.
     pub position: Option<Position>,
     /// It lies in the measuring range and no code spoils it.
     pub valid: bool,
@@ -41,7 +41,7 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
     Ok(PositionReading { at: timed.at, raw, position, valid, codes })
 }
 
-/// What polling gives.
+/// A polled sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     /// The position.
@@ -50,7 +50,7 @@ pub enum Sample {
     NoPosition {
         /// When it said so.
         at: Moment,
-        /// Why, and what else it reported.
+        /// The status codes, the reason first.
         codes: Vec<StatusCode>,
     },
     /// A value that is watched beside the position.
@@ -79,7 +79,7 @@ pub struct WatchedReading {
     /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. Of a counter
     /// and of a refusal, when it was understood.
     pub at: Moment,
-    /// What it is of.
+    /// The watched value.
     pub what: Watch,
     /// The value, or the encoder's refusal.
     pub value: Result<i64, Error>,
@@ -208,7 +208,7 @@ pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) ->
     }
 }
 
-/// Number of different positions; those of the whole word where nobody knows.
+/// Returns the number of different positions; those of the whole word if the geometry is not known.
 pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::range).unwrap_or(1 << 32)
 }

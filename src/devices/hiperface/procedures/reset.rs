@@ -9,7 +9,7 @@ use crate::units::CharacterFormat;
 
 /// Within 100…900 ms after the restart the encoder listens with factory settings; in its middle, early.
 const INTO_DEFAULT_WINDOW: Duration = Duration::from_millis(200);
-/// What the stored settings need beyond the figure's times: clocks differ.
+/// Reserve over the figure's times for the stored settings, as clocks differ.
 const RESERVE: Duration = Duration::from_millis(100);
 
 /// Restarts the encoder, waits until it listens with its stored settings, and reads its whole status queue: up to four

@@ -5,7 +5,7 @@ use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::Unknown;
 
-/// What saving insists upon.
+/// The options of saving.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
     /// A field whose access code is not known is an error.

@@ -1,4 +1,4 @@
-//! What a session knows about its line and the encoder at its end, from one job to the next.
+//! The state of a line and its encoder that is kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -27,7 +27,7 @@ parameters! {
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
         /// The encoder's time-out is 44 bits, else 11.
         pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
-        /// How much later than the protocol's worst case a reply may come; `None`: as usual for the link.
+        /// How much later than the protocol's worst case a reply may arrive; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
         /// Of a type that is not in the table.
         pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
@@ -80,7 +80,7 @@ impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
     }
 }
 
-/// What a session knows about its line and the encoder at its end.
+/// The state of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
     /// Whom requests go to: 40h…5Fh or broadcast.
@@ -95,13 +95,13 @@ pub struct Station {
     pub codes: Codes,
     /// Periods and turns as the user gives them, for an encoder type that is not in the table.
     pub geometry: Option<Geometry>,
-    /// Status codes that replies announced, in the order in which they were read; taken out by whoever shows them.
+    /// Announced status codes, in the order in which they were read; displaying removes them.
     pub codes_met: Vec<StatusCode>,
     /// The same codes, for the logbook: 50h takes them out of the encoder, so that they are nowhere else.
     codes_read: Vec<StatusCode>,
     /// Replies to 50h that did not come or were damaged: each may have been a status code.
     pub(super) codes_unheard: u32,
-    /// What is read is to be kept: it has to come twice, on a line that seems good as well.
+    /// Read values are kept: each has to be read twice, even on a line that seems good.
     pub(super) thorough: bool,
     /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
     pub(super) chunk: usize,

@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 /// An encoder as it was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
-    /// Who is there.
+    /// The identity.
     pub identity: Identity,
     /// The error queue, in the encoder's order, and what came to it meanwhile.
     pub codes: Vec<StatusCode>,
@@ -20,7 +20,7 @@ pub struct Survey {
     pub fields: Vec<FieldImage>,
     /// Data fields that could not be read, for another reason than their access code.
     pub unreadable: Vec<UnreadableField>,
-    /// How good the line was until then.
+    /// Quality of the line until then.
     pub line: LineQuality,
     /// The counter, where the type has one.
     pub counter: Option<u32>,
@@ -49,10 +49,10 @@ pub fn survey(
     Ok(survey)
 }
 
-/// What becomes of a data field that cannot be read.
+/// How to treat a data field that cannot be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Reading {
-    /// The others are read all the same.
+    /// Reads the others regardless.
     AsFarAsPossible,
     /// It ends the reading: what is kept for years has to be whole.
     Whole,

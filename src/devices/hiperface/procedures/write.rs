@@ -1,5 +1,4 @@
-//! How a plan is written into an encoder: what was read is read again, then each operation is carried out, and at the end
-//! all of them are read back.
+//! Writes a plan into an encoder: reads its base again, carries out each operation, and finally reads all of them back.
 
 pub use crate::profile::Written;
 
@@ -245,7 +244,7 @@ fn has_status(master: &mut Master<'_>, field: u8, wanted: DataFieldStatus) -> Re
     }
 }
 
-/// Whether an access code opens a field that it guards. Without such a field nobody can tell.
+/// Returns whether an access code opens a field that it guards. Without such a field it cannot be tried.
 fn opens(
     master: &mut Master<'_>,
     base: &Base,
@@ -329,7 +328,7 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.item(), expected, got: ReadBack::Value(got) }
 }
 
-/// Checks that nobody answers at an address: two encoders at one address can never be told apart again.
+/// Checks that no encoder answers at an address: two encoders at one address can never be separated again.
 ///
 /// # Errors
 /// [`Error::AddressTaken`], where anything comes back; the wire, or the user's wish.

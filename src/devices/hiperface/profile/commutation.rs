@@ -5,7 +5,7 @@
 use super::HiperfaceProfile;
 use crate::analysis::commutation::ElectricalAngle;
 
-/// What is stored for one motor.
+/// The stored data of one motor.
 ///
 /// | bytes | what |
 /// |---|---|

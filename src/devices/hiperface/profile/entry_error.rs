@@ -1,6 +1,6 @@
 //! Why a HIPERFACE profile is refused.
 
-/// Why an entry of a profile cannot be.
+/// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A data field that stands in the list already.
@@ -9,7 +9,7 @@ pub enum EntryError {
     /// A status byte without a field.
     #[error("{0:02X}h is not the status of an existing field")]
     Status(u8),
-    /// Bytes of a field that nobody could read.
+    /// Bytes of a field that could not be read.
     #[error("a locked field has none")]
     Locked,
     /// No bytes of a field that could be read.
@@ -18,12 +18,12 @@ pub enum EntryError {
     /// Another number of bytes than the field has.
     #[error("{got} bytes where the status says {expected}")]
     Size {
-        /// How many there are.
+        /// Number of bytes in the profile.
         got: usize,
-        /// How many the field has.
+        /// Number of bytes of the field.
         expected: usize,
     },
-    /// What is marked is no part of a field.
+    /// The marked item is not part of a field.
     #[error("{0:?} is not of the form field:N@ADDR+COUNT")]
     Marked(String),
 }

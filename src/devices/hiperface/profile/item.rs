@@ -33,16 +33,16 @@ pub struct FieldRange {
     pub count: Option<usize>,
 }
 
-/// What a write confirms, changes and reads back.
+/// An item that a write confirms, changes and reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanItem {
     /// Something that can be read by its name.
     #[error("{0}")]
     Item(Item),
-    /// Whether it is the encoder that was planned for.
+    /// The identity of the encoder.
     #[error("the encoder itself")]
     Encoder,
-    /// How many data fields there are.
+    /// The number of data fields.
     #[error("number of data fields")]
     FieldCount,
     /// The position.
@@ -53,7 +53,7 @@ pub enum PlanItem {
     Code(CodeNumber),
 }
 
-/// Why a text names nothing.
+/// Why a text does not name an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{0:?} is not an item; items are field:N, field:N@ADDR+COUNT, status:N, analogue:CH, counter, address, settings"

@@ -5,10 +5,10 @@ use super::{FieldImage, FieldRange, Item};
 use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, LineSettings};
 use crate::profile::{Operation, Plan};
 
-/// What a write to a HIPERFACE encoder would do.
+/// A planned write to a HIPERFACE encoder.
 pub type HiperfacePlan = Plan<Base, Op>;
 
-/// What was read before a plan was made.
+/// The values that a plan is based on.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Number of data fields.
@@ -52,14 +52,14 @@ pub enum Op {
         address: u8,
         /// The field's status at that time: it names the access code.
         status: DataFieldStatus,
-        /// What stands there; `None` where it is not known, in a field that is yet to be created.
+        /// The old bytes; `None` if not known, in a field that is yet to be created.
         old: Option<Vec<u8>>,
-        /// What will stand there, 1…128 bytes.
+        /// The new bytes, 1…128.
         new: Vec<u8>,
     },
     /// 4Fh: another access code.
     ChangeCode {
-        /// Which.
+        /// The access code.
         number: CodeNumber,
         /// Its value now.
         old: AccessCode,
@@ -70,7 +70,7 @@ pub enum Op {
     SetPosition {
         /// The position at the shaft's present place.
         from: u32,
-        /// What it will be.
+        /// The new value.
         to: u32,
         /// Align the code tracks as well.
         synchronise: bool,

@@ -1,4 +1,4 @@
-//! What is saved of a HIPERFACE encoder. An access code is never part of it.
+//! The saved content of a HIPERFACE encoder. An access code is never part of it.
 
 use super::{EntryError, FieldRange, Item};
 use crate::devices::hiperface::protocol::{self, DataFieldStatus, LineSettings};
@@ -10,13 +10,13 @@ use crate::profile::{Comparison, Profile, ProfileError};
 /// A HIPERFACE encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperfaceProfile {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
     /// Address and interface settings: recorded, neither compared nor restored.
     pub interface: Interface,
     /// Values that change by themselves: recorded, neither compared nor restored.
     pub recorded: Recorded,
-    /// What belongs to the mounting and never goes onto another encoder by itself.
+    /// Values that belong to the mounting and are never written to another encoder unasked.
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
@@ -26,7 +26,7 @@ pub struct HiperfaceProfile {
     pub unknown_in_fields: Vec<(u8, Unknown)>,
 }
 
-/// Who an encoder is.
+/// The identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
     /// Serial number; empty where the encoder does not tell.

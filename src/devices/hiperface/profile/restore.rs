@@ -1,5 +1,4 @@
-//! What restoring a profile would do: only what differs, in the fewest writes, and nothing that belongs to another
-//! encoder's mounting.
+//! Planning a restore: only differences, in the fewest writes, and nothing that belongs to another encoder's mounting.
 
 mod device;
 mod error;
@@ -22,7 +21,7 @@ use unknown::unknown_fields;
 use super::{FieldImage, FieldRange, HiperfacePlan, HiperfaceProfile};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// What a restore may do.
+/// The options of a restore.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RestoreOptions {
     /// The profile may go onto an encoder with another serial number.
@@ -51,10 +50,10 @@ pub struct DeviceState {
     pub fields: Vec<FieldImage>,
 }
 
-/// What a restore would do.
+/// The outcome of planning a restore.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Restore {
-    /// What every kind of device says of a restore.
+    /// The part that is common to all kinds of device.
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields with bytes of unknown meaning that differ from another encoder's.
     pub unknown_fields: Vec<UnknownField>,
@@ -62,7 +61,7 @@ pub struct Restore {
     pub created_left: Vec<u8>,
 }
 
-/// What has to be set up anew after a restore from another encoder.
+/// A value that has to be set up again after a restore from another encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redo {
     /// The offset between encoder and motor.

@@ -1,4 +1,4 @@
-//! Who a frame is for (manual, "ADDRESS-Format").
+//! The address of a frame (manual, "ADDRESS-Format").
 
 use std::fmt;
 

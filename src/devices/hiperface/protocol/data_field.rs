@@ -8,7 +8,7 @@ pub const EXTENDED_LABEL_FIELD: u8 = 0xFF;
 /// Most data bytes in one 4Ah or 4Bh.
 pub const MAX_TRANSFER: usize = 128;
 
-/// Which of the encoder's four access codes: 0…3.
+/// The number of one of the encoder's four access codes: 0…3.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CodeNumber(u8);
 
@@ -139,7 +139,7 @@ impl DataFieldStatus {
         self.0 & Self::WRITE_ENABLE != 0
     }
 
-    /// Which access code guards the field.
+    /// Returns the access code that guards the field.
     pub const fn code(self) -> CodeNumber {
         CodeNumber(self.0 >> 4 & 3)
     }

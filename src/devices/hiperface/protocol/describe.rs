@@ -1,4 +1,4 @@
-//! What a captured frame says, as facts: for `decode` and the trace. There is never an access code among them.
+//! Describes a captured frame as facts, for `decode` and the trace. Access codes are never included.
 
 use super::{
     AccessCode, Answer, CodeNumber, Command, DataFieldStatus, DeviceAddress, Frame, FrameError, LineSettings, Reply,
@@ -27,7 +27,7 @@ pub enum FrameFact {
     Reply(Reply),
 }
 
-/// What is asked, without its access codes.
+/// The arguments of a request, without its access codes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Arguments {
     /// Nothing but the command.
@@ -71,7 +71,7 @@ pub enum Arguments {
     Settings(LineSettings),
 }
 
-/// What a captured frame says, the heading first. `request` is the request before it, when the frame may be its reply.
+/// Describes a captured frame, the heading first. `request` is the request before it, when the frame may be its reply.
 ///
 /// # Errors
 /// When the bytes are no frame.

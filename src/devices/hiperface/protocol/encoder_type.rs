@@ -34,7 +34,7 @@ pub enum TypeTableError {
         line: usize,
         /// Column, counted from 1.
         column: usize,
-        /// What the parser says.
+        /// Message of the parser.
         what: String,
     },
     /// A number is zero or too large.
@@ -42,9 +42,9 @@ pub enum TypeTableError {
     Range {
         /// The row's type byte.
         code: u8,
-        /// Which number.
+        /// The quantity.
         quantity: &'static str,
-        /// What is possible.
+        /// The possible range.
         range: RangeInclusive<u32>,
     },
 }

@@ -3,7 +3,7 @@
 use super::type_label::text;
 use super::{Geometry, checksum};
 
-/// What an encoder with type FFh says about itself.
+/// The extended label of an encoder with type FFh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtendedLabel {
     /// The stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a difference warns, it
@@ -29,7 +29,7 @@ pub struct LabelParameter {
     pub value: i16,
 }
 
-/// What some bytes of the label are.
+/// A part of the label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LabelPart {
     /// 00h.
@@ -42,7 +42,7 @@ pub enum LabelPart {
     Range(u32),
     /// 0Ah…1Bh.
     Designation,
-    /// Which limits of a set are valid: bits 0 to 14, and bit 15 where another set follows.
+    /// The valid limits of a set: bits 0 to 14, and bit 15 if another set follows.
     Selector(u16),
     /// A limit; one that its selector leaves out is not used.
     Limit {

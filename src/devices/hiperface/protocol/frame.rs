@@ -28,9 +28,9 @@ pub enum FrameError {
     /// The last byte is not the XOR of the others.
     #[error("checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
-        /// What the other bytes give.
+        /// The checksum calculated from the other bytes.
         expected: u8,
-        /// What stood there.
+        /// The checksum received.
         got: u8,
     },
 }

@@ -5,7 +5,7 @@ use std::fmt;
 /// Steps in one signal period: the position always resolves 5 bits of it.
 pub const STEPS_PER_PERIOD: u32 = 32;
 
-/// What the steps of an encoder mean.
+/// The meaning of the steps of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Geometry {
     /// A shaft.

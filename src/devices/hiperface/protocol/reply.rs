@@ -1,4 +1,4 @@
-//! What an encoder answers. Replies repeat address and command, then the data asked for (manual, "Fehlerbehandlung").
+//! The replies of an encoder. Replies repeat address and command, then the requested data (manual, "Fehlerbehandlung").
 //!
 //! The layouts of the replies to 55h, 57h and 67h are not printed (`U`): with and without the repeated argument is taken.
 
@@ -46,7 +46,7 @@ pub enum Answer {
     Rejected {
         /// More codes wait in the queue.
         pending: bool,
-        /// Why.
+        /// The status codes.
         codes: Vec<StatusCode>,
     },
 }
@@ -57,20 +57,20 @@ pub enum ReplyError {
     /// Not a frame at all.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// From somebody else.
+    /// From another address.
     #[error("reply from address {got:02X}h where {expected:02X}h was asked")]
     Address {
-        /// Who was asked.
+        /// The address of the request.
         expected: u8,
-        /// Who answered.
+        /// The address of the reply.
         got: u8,
     },
     /// To another command.
     #[error("reply to command {got:02X}h where {expected:02X}h was sent")]
     Command {
-        /// What was sent.
+        /// The command sent.
         expected: u8,
-        /// What came back.
+        /// The command of the reply.
         got: u8,
     },
     /// Too many or too few data bytes.
@@ -86,7 +86,7 @@ pub enum ReplyError {
     Argument,
 }
 
-/// How many bytes a reply may have, checksum and all.
+/// The possible lengths of a reply in bytes, checksum included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReplyLength {
     /// Shortest.

@@ -1,5 +1,5 @@
-//! What a host asks: typed arguments ↔ bytes (manual, "Die Befehle"; argument order of 43h, 46h and 56h from public
-//! implementations, `P`).
+//! The requests of a host: typed arguments ↔ bytes (manual, "Die Befehle"; argument order of 43h, 46h and 56h from
+//! public implementations, `P`).
 
 use std::fmt;
 
@@ -74,7 +74,7 @@ pub enum Request {
     FreeMemory,
     /// 4Fh: change an access code.
     ChangeCode {
-        /// Which one.
+        /// The access code.
         number: CodeNumber,
         /// Its present value.
         old: AccessCode,
@@ -148,7 +148,7 @@ impl RequestError {
 }
 
 impl Request {
-    /// Which command it is.
+    /// Returns the command.
     pub fn command(&self) -> Command {
         match self {
             Request::ReadPosition => Command::ReadPosition,
@@ -315,7 +315,7 @@ pub struct SecretFrame {
 }
 
 impl SecretFrame {
-    /// What is sent.
+    /// Returns the bytes to send.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
@@ -325,7 +325,7 @@ impl SecretFrame {
         !self.secret.is_empty()
     }
 
-    /// What may be shown: access codes and the checksum over them masked.
+    /// Returns the bytes with access codes and the checksum over them masked.
     pub fn masked(&self) -> MaskedBytes {
         MaskedBytes::masked(&self.bytes, &self.secret)
     }

@@ -7,7 +7,7 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct StatusCode(u8);
 
-/// What a status code is about.
+/// The class of a status code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StatusClass {
     /// Found while the encoder started.
@@ -97,12 +97,12 @@ impl StatusCode {
         self.0
     }
 
-    /// What the code is about.
+    /// Returns the class of the code.
     pub fn class(self) -> StatusClass {
         self.entry().map_or(StatusClass::Unknown, |(class, _)| class)
     }
 
-    /// What the code says, in words.
+    /// Returns the text of the code.
     pub fn text(self) -> &'static str {
         self.entry().map_or("unknown status code", |(_, text)| text)
     }

@@ -1,4 +1,4 @@
-//! How long things take (manual, "Dialog Timing" and the table of commands).
+//! The times of the protocol (manual, "Dialog Timing" and the table of commands).
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ pub struct Timing {
 impl Timing {
     /// After power-on or reset the encoder hears nothing for up to this long.
     pub const INITIALISATION: Duration = Duration::from_millis(100);
-    /// So long after power-on the encoder listens with factory settings; then it takes up the stored ones.
+    /// Time after power-on during which the encoder uses factory settings; then it takes up the stored ones.
     pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
     /// Taking up the stored settings: the encoder hears nothing for up to this long.
     pub const SWITCH: Duration = Duration::from_millis(200);

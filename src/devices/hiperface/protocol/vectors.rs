@@ -13,7 +13,7 @@ mod table;
 
 const FILE: &str = include_str!("../../../../tests/vectors/hiperface.txt");
 
-/// What the first character of a line says.
+/// The kind of a line, from its first character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Request,

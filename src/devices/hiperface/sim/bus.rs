@@ -26,7 +26,7 @@ pub struct Bus {
     talks: Vec<Talk>,
 }
 
-/// Who drives the line.
+/// The device that drives the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Talker {
     Host,
@@ -40,7 +40,7 @@ struct Travelling {
     format: CharacterFormat,
 }
 
-/// Somebody drives the line from `start` to `end`.
+/// A device drives the line from `start` to `end`.
 #[derive(Clone, Copy, Debug)]
 struct Talk {
     talker: Talker,
@@ -48,7 +48,7 @@ struct Talk {
     end: Moment,
 }
 
-/// What happens next; of events at the same moment the first of these.
+/// The next event; of events at the same moment the first of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -163,14 +163,15 @@ impl Bus {
         sent.end
     }
 
-    /// Somebody else drives the line while this character is on it.
+    /// Returns whether another device drives the line while this character is on it.
     fn collides(&self, Travelling { talker, character, .. }: &Travelling) -> bool {
         let other = |talk: &&Talk| talk.talker != *talker;
         self.talks.iter().filter(other).any(|talk| talk.start < character.end && character.start < talk.end)
     }
 }
 
-/// What a receiver makes of a character that it cannot read. Never an address byte, so that no frame begins with it.
+/// Returns the byte that a receiver makes of an unreadable character. Never an address byte, so that no frame begins
+/// with it.
 fn garbage(rng: &mut Rng) -> u8 {
     rng.u8(0x80..0xFF)
 }

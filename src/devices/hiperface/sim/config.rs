@@ -10,7 +10,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// What a virtual line with encoders shall be like. The default is one SKM36 as delivered, at rest, without faults.
+    /// The settings of a virtual line with encoders. The default is one SKM36 with factory settings, at rest, without
+    /// faults.
     pub struct Config: ConfigError {
         pub(super) seed: u64 = 0, "seed" => SEED;
         pub(super) faults: Faults = Faults::default(), "fault" => FAULTS, "connect.fault" like "drop:0.01";
@@ -72,7 +73,7 @@ impl Config {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }
 
-    /// What can only be judged when all keys are read.
+    /// Checks combinations of keys.
     fn check_together(&self) -> Result<(), ConfigError> {
         let range = self.geometry(&EncoderTypes::built_in()).range();
         if let (Some(position), Some(range)) = (self.position, range)

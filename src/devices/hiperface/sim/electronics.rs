@@ -1,5 +1,5 @@
-//! What an encoder knows and what its twenty commands do to it (manual, "Die Befehle"), without any notion of how long
-//! it takes or how a frame travels: that is the business of [`encoder`](super::encoder).
+//! The electronics of an encoder: its data and the effect of its twenty commands (manual, "Die Befehle"), without times
+//! and frames, which are in [`encoder`](super::encoder).
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -13,7 +13,7 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::units::Moment;
 
-/// How often the EEPROM was written, by command.
+/// The number of EEPROM writes, by command.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Wear(BTreeMap<u8, u32>);
 
@@ -104,7 +104,7 @@ impl Electronics {
         electronics
     }
 
-    /// Power-on or reset: what was only in RAM is gone, and monitoring begins anew.
+    /// Restarts after power-on or reset: the content of the RAM is lost, and monitoring starts again.
     pub(super) fn restart(&mut self) {
         self.queue = StatusQueue::default();
         self.watch_temperature(i16::MIN);

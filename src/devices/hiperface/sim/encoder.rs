@@ -21,7 +21,7 @@ use crate::devices::hiperface::protocol::{
 use crate::sim::Faults;
 use crate::units::Moment;
 
-/// How long the encoder works on a command.
+/// The processing time of commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
     /// As observed: 3.7 ms for the position, 20 ms and 1.5 ms a byte for a store, half of the longest time for the rest.
@@ -154,7 +154,7 @@ impl Encoder {
         &self.electronics.memory
     }
 
-    /// How often its EEPROM was written.
+    /// Returns the number of EEPROM writes.
     pub fn wear(&self) -> &Wear {
         &self.electronics.wear
     }
@@ -325,7 +325,7 @@ impl Encoder {
         self.activity = Activity::Executing { until, settings, verdict };
     }
 
-    /// Whether the encoder has the command comes before its length and arguments.
+    /// Parses a request. Whether the encoder has the command is checked before its length and arguments.
     fn understand(&self, frame: &Frame<'_>) -> Result<Request, StatusCode> {
         if Command::from_byte(frame.command).is_some_and(|command| !self.electronics.has(command)) {
             return Err(StatusCode::UNKNOWN_COMMAND);

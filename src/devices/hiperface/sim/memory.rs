@@ -96,7 +96,7 @@ impl Memory {
         Ok(wanted)
     }
 
-    /// Whether 4Bh with `count` bytes would be carried out.
+    /// Checks whether 4Bh with `count` bytes would be carried out.
     ///
     /// # Errors
     /// 12h, 11h, 0Fh where the field asks for its code, 0Eh where it is write protected (FFh always is).

@@ -3,7 +3,7 @@
 
 use crate::devices::hiperface::protocol::Geometry;
 
-/// What an encoder is when it leaves the factory (and the motor's, for data field 0).
+/// An encoder with factory settings (and the motor's, for data field 0).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Model {
     /// The name used in `sim:?model=`.

@@ -1,4 +1,4 @@
-//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+//! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
 
 use std::time::Duration;
 
@@ -14,7 +14,7 @@ use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::devices::hiperface::state::explain as words;
 
-/// How often a watched value is read: what is watched changes slowly, and the position has to wait for it.
+/// Interval of reading a watched value: watched values change slowly, and the position has to wait for them.
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {

@@ -1,4 +1,4 @@
-//! What can be asked of the encoder that is shown.
+//! The actions of the encoder that is shown.
 
 use std::path::PathBuf;
 
@@ -33,7 +33,6 @@ pub enum Action {
     ConfigureForNow(LineSettings),
     /// The user knows an access code.
     UseCode {
-        /// Which.
         number: CodeNumber,
         /// Its value.
         code: AccessCode,

@@ -22,7 +22,7 @@ pub use offset_location::OffsetLocation;
 pub use outcome::{Offset, Setting, Stored, may_read, stored};
 pub use report::kind_words;
 
-/// What can be done in the assistant.
+/// An action of the assistant.
 pub enum Action {
     /// The form was edited.
     Edit(Box<Form>),
@@ -41,12 +41,11 @@ pub enum Action {
 /// The assistant for one encoder.
 #[derive(Debug, Default)]
 pub struct Commutation {
-    /// What is ticked, chosen and typed.
     pub form: Form,
-    /// Why the last thing that was asked for was not done.
+    /// Why the last action was not carried out.
     pub problem: Option<Text>,
     readings: [Option<Reading>; 3],
-    /// What was read last: there the shaft still is, as far as anybody knows.
+    /// The last position read: the shaft is still there, as far as is known.
     last: Option<Slot>,
     /// The reading that is under way.
     asked: Option<Asked>,
@@ -66,20 +65,20 @@ struct Asked {
 pub struct Reading {
     /// The position in periods, in the whole range of the encoder.
     pub fine_periods: f64,
-    /// How it came.
+    /// How it was obtained.
     pub kind: Kind,
     /// The position word, where the encoder was read.
     pub raw: Option<u32>,
 }
 
-/// How a position came, and how good it is.
+/// How a position was obtained, and its quality.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// Absolute position and phase brought together.
     Fine {
         /// Absolute minus fine position in periods.
         residual_periods: f64,
-        /// Whether that is little enough.
+        /// The verdict on it.
         verdict: Verdict,
         /// The smallest step that can be told apart, in periods; `None` where the phase was typed.
         resolution_periods: Option<f64>,
@@ -102,7 +101,7 @@ impl Commutation {
         .as_ref()
     }
 
-    /// What is being read.
+    /// Returns the position that is being read.
     pub fn asked(&self) -> Option<Slot> {
         self.asked.as_ref().map(|asked| asked.slot)
     }
@@ -124,7 +123,7 @@ impl Commutation {
         self.problem = None;
     }
 
-    /// What was read belongs to another zero, or is not wanted any more.
+    /// Forgets the readings: they belong to another zero, or are no longer needed.
     pub(super) fn forget_readings(&mut self) {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
@@ -147,7 +146,7 @@ impl Commutation {
         own
     }
 
-    /// What was asked for does not come any more.
+    /// Gives up the pending reading.
     pub(super) fn give_up(&mut self) {
         self.asked = None;
     }

@@ -1,5 +1,5 @@
-//! What a person fills in to connect, and the link it stands for. Nothing is opened here, and what a value may be is
-//! asked of those who use it: the station and the virtual encoder.
+//! The connection form and its link. Nothing is opened here; allowed values come from the station and the virtual
+//! encoder.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 
-/// What is to be connected.
+/// The kind of connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinkKind {
     /// The virtual encoder in this program.
@@ -36,7 +36,6 @@ pub enum LinkKind {
 /// stands for what is usual.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
-    /// What is to be connected.
     pub kind: LinkKind,
     /// Serial port.
     pub port: String,
@@ -52,7 +51,7 @@ pub struct LinkForm {
     pub parity: Parity,
     /// `40`, `0x40` or `40h`, always hexadecimal; or `broadcast`.
     pub address: String,
-    /// Whether the adapter gives our own bytes back; unknown: find out.
+    /// Whether the adapter echoes; unknown: detect it.
     pub echo: Echo,
     /// The encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
@@ -62,11 +61,11 @@ pub struct LinkForm {
     pub periods: String,
     /// Turns, for a type that is not in the table.
     pub turns: String,
-    /// Which virtual encoder.
+    /// Model of the virtual encoder.
     pub model: String,
     /// Its speed in revolutions a minute.
     pub rpm: String,
-    /// What goes wrong with it on purpose.
+    /// Injected faults.
     pub fault: String,
     /// Parameters of the link that have no entry, or a value that their entry cannot show.
     pub rest: Vec<(String, String)>,

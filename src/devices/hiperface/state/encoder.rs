@@ -19,9 +19,7 @@ use crate::devices::hiperface::state::explain as words;
 
 /// An encoder, or a profile of one.
 pub struct Encoder {
-    /// What every session has.
     pub session: Session<Hiperface>,
-    /// Who it is.
     pub identity: Option<Identity>,
     /// Its memory and the edits beside it.
     pub staged: Staged,
@@ -29,7 +27,6 @@ pub struct Encoder {
     pub codes: Option<Vec<StatusCode>>,
     /// Data fields that could not be read, for another reason than their access code: why.
     pub unreadable: BTreeMap<u8, Text>,
-    /// How good the line is.
     pub line_quality: LineQuality,
     /// The last device check.
     pub check: Option<Vec<check::HiperfaceStepResult>>,
@@ -39,7 +36,7 @@ pub struct Encoder {
     pub position_set: Option<(u32, u32)>,
     /// Analogue values as last read, with their limits; or why the encoder does not give them.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
-    /// What was recorded while it was polled.
+    /// The recording from polling.
     pub record: Record,
     /// The commutation assistant.
     pub commutation: Commutation,
@@ -47,7 +44,7 @@ pub struct Encoder {
     pub(super) meaning: Meaning,
     /// Access codes that the user gave or changed: the next session with this encoder begins with them.
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
-    /// What was asked for by the job that reads a single value.
+    /// The item that the pending job reads.
     pub(super) asked: Option<Item>,
     /// Access codes that are given to the session again, once it is known who is connected.
     pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
@@ -82,7 +79,7 @@ impl Encoder {
         }
     }
 
-    /// Who it is, from now on.
+    /// Sets the identity.
     pub(super) fn identify(&mut self, identity: Identity) {
         let serial = &identity.serial.serial_number;
         self.session.title =
@@ -167,7 +164,7 @@ impl Encoder {
         }
     }
 
-    /// Why the bytes of a field cannot be edited; `None`: they can.
+    /// Returns why the bytes of a field cannot be edited; `None` if they can.
     pub fn why_not_edited(&self, field: &FieldImage) -> Option<Text> {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
@@ -178,7 +175,7 @@ impl Encoder {
         self.record.add(samples, dropped, geometry);
     }
 
-    /// Whether the access code that the user gave opens the fields that it guards; never the code itself.
+    /// Reports whether the user's access code opens the fields that it guards; never the code itself.
     fn tell_of_code(&mut self, services: &mut Services) {
         let Some(number) = self.tried_code.take() else { return };
         let own = |field: &&FieldImage| field.status.code() == number && field.status.code_required();

@@ -1,4 +1,4 @@
-//! What the line to an encoder tells: results of jobs, what the encoder says on the way, live samples, and its loss.
+//! Events of the line: results of jobs, messages of the encoder, live samples, and loss.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -276,7 +276,7 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// What an encoder lacks is an answer; what makes no sense is none.
+    /// Handles a failed job. A missing feature is an answer; an invalid reply is none.
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::why(error);
         let why = first(&texts);

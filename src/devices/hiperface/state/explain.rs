@@ -161,7 +161,7 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-/// What has to be set up anew.
+/// Returns the text of a value that has to be set up again.
 pub fn redo(redo: &Redo) -> Text {
     match redo {
         Redo::Commutation => TEXTS.text("redo.commutation"),
@@ -181,7 +181,7 @@ pub fn created_left(fields: &[u8]) -> Option<Text> {
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
 }
 
-/// So many status codes may have been lost on the way.
+/// Returns the message about status codes that may have been lost.
 pub fn codes_unheard(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }

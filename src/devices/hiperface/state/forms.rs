@@ -1,4 +1,5 @@
-//! What a person types, read: codes, addresses, positions, channels. An entry that cannot be used says what could be.
+//! Parses entries: codes, addresses, positions, channels. An entry that cannot be used is answered with the possible
+//! values.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
@@ -15,7 +16,7 @@ pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
 
-/// A new access code, typed twice, because nobody can read it back.
+/// Parses a new access code, entered twice because it cannot be read back.
 ///
 /// # Errors
 /// In words; the entries are not repeated.

@@ -1,4 +1,4 @@
-//! What the studio knows of HIPERFACE before there is a device.
+//! The kind HIPERFACE for the studio, before there is a device.
 
 use super::{Encoder, LinkForm};
 use crate::app::services::Services;

@@ -1,4 +1,4 @@
-//! What the frames of the trace say: a reply is read with the request before it.
+//! The meaning of the frames in the trace: a reply is decoded with the request before it.
 
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::hiperface::procedures::Damage;
@@ -14,7 +14,7 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    /// What a frame says. It says nothing of access codes.
+    /// Returns the meaning of a frame, without access codes.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         match (entry.bytes.to_bytes(), entry.direction) {
             (Some(bytes), Direction::Sent) => self.sent(&bytes),

@@ -1,4 +1,4 @@
-//! What in the memory belongs to the mounting: values that are right for one encoder on one motor and no other.
+//! The parts of the memory that belong to the mounting: values that are right for one encoder on one motor only.
 
 use super::encoder::Encoder;
 use crate::app::session::Source;
@@ -6,7 +6,7 @@ use crate::devices::hiperface::procedures::profile_of;
 use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded};
 
 impl Encoder {
-    /// What in a field belongs to the mounting, with its meaning.
+    /// Returns the parts of a field that belong to the mounting, with their meaning.
     pub fn mounting(&self, field: u8) -> Vec<(std::ops::Range<usize>, String)> {
         let own = |profile: &HiperfaceProfile| {
             let marks = profile.mounting.iter().filter(|mark| mark.item.field == field);

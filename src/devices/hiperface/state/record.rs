@@ -1,5 +1,5 @@
-//! What is recorded of a HIPERFACE encoder while it is polled: its positions in the units of its geometry, analogue values
-//! and its counter.
+//! The recording of a HIPERFACE encoder from polling: positions in the units of its geometry, analogue values and its
+//! counter.
 
 use crate::devices::hiperface::state::TEXTS;
 
@@ -56,7 +56,7 @@ impl Record {
         self.track.watch(wished);
     }
 
-    /// What is recorded beside the position.
+    /// Returns the values recorded with the position.
     pub fn watched(&self) -> Vec<Watch> {
         self.track.watched()
     }
@@ -83,7 +83,7 @@ impl Record {
     }
 }
 
-/// What position words mean.
+/// Returns the meaning of position words.
 fn meaning(geometry: Option<Geometry>) -> Meaning {
     match geometry {
         Some(Geometry::Linear { period_nm, .. }) => {
@@ -122,7 +122,7 @@ impl Watchable for Watch {
     }
 }
 
-/// What a watched value is called.
+/// Returns the name of a watched value.
 pub fn watch_name(what: Watch) -> Text {
     match what {
         Watch::TEMPERATURE => TEXTS.text("recorder.temperature"),

@@ -1,5 +1,4 @@
-//! Reading the shaft at rest, and for whom it was: a place of the commutation assistant, or whoever asked for the reading
-//! itself.
+//! Reading the shaft at rest, for the commutation assistant or on request.
 
 use super::{Action, Encoder};
 use crate::app::services::Services;
@@ -45,7 +44,7 @@ impl Encoder {
         self.commutation.failed(why)
     }
 
-    /// What was asked for does not come any more.
+    /// Gives up the pending reading.
     pub(super) fn give_up_rest(&mut self) {
         self.rest.is_under_way = false;
         self.commutation.give_up();

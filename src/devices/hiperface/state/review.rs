@@ -11,7 +11,7 @@ use crate::devices::hiperface::state::explain as words;
 
 /// A write on its way.
 pub type Review = review::Review<Hiperface>;
-/// How far it is.
+/// The state of a review.
 pub type ReviewState = review::ReviewState<Hiperface>;
 
 impl Review {

@@ -1,5 +1,5 @@
-//! What the encoder's own rules allow with its data fields, asked before anything is offered: the same plans that a write
-//! would make, on the memory as it was read.
+//! The encoder's rules for its data fields, checked before an action is offered: the same plans that a write would
+//! make, on the memory as read.
 
 use super::Staged;
 use crate::app::Text;
@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// Whether something may be done; if not, why.
+/// Permission for an action, or why not.
 pub type Allowed = Result<(), Text>;
 
 /// A new field of this size may be created, and which number it would get.
@@ -46,7 +46,7 @@ pub fn status(field: &FieldImage) -> Allowed {
     }
 }
 
-/// What is known of a change before the encoder is asked.
+/// Checks a change before the encoder is asked.
 pub(super) fn change(staged: &Staged, change: &Change) -> Allowed {
     let field = |number: &u8| staged.device().iter().find(|field| field.number == *number);
     match change {

@@ -1,5 +1,5 @@
-//! The search for an encoder whose settings nobody remembers: on the line of the connection form, at every speed, parity
-//! and address.
+//! The search for an encoder with unknown settings, on the line of the connection form, at every speed, parity and
+//! address.
 
 use crossbeam_channel::Receiver;
 
@@ -33,12 +33,12 @@ pub struct Search {
     pub(crate) over: crossbeam_channel::Receiver<()>,
     /// All that answered so far.
     pub found: Vec<Found>,
-    /// How it ended; `None` while it goes on.
+    /// The end of the search; `None` while it runs.
     pub end: Option<Text>,
 }
 
 impl Search {
-    /// How far it is.
+    /// Returns the progress.
     pub fn progress(&self) -> Option<&Progress<JobStep>> {
         self.line.as_ref()?.running()?.progress.as_ref()
     }
@@ -125,11 +125,11 @@ impl Search {
 pub struct SearchFinder {
     /// The search.
     pub search: Option<Search>,
-    /// What is searched for, once the user has said that no drive is on the line.
+    /// The search that starts once the user has confirmed that no drive is on the line.
     asked: Option<FindOptions>,
 }
 
-/// What can be done with the search.
+/// An action of the search.
 pub enum SearchAction {
     /// Look for encoders.
     Search(FindOptions),

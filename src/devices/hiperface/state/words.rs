@@ -6,7 +6,7 @@ use crate::devices::hiperface::jobs::HiperfaceJob;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// What it is called in the list of jobs.
+/// Returns its name in the list of jobs.
 pub(super) fn job(job: &HiperfaceJob) -> Text {
     match job {
         HiperfaceJob::Identify | HiperfaceJob::Survey => Text::new("job.survey"),

@@ -1,4 +1,4 @@
-//! What is written into an encoder: the edits or a profile as a wish, its jobs, and what the session follows after it.
+//! Writing to an encoder: the edits or a profile as a request, its jobs, and what follows in the session.
 
 use super::commutation::Commutation;
 use super::encoder::Encoder;
@@ -20,7 +20,7 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Makes the plan of the review anew; an encoder that did not answer is asked again.
+    /// Makes the plan of the review again; an encoder that did not answer is asked again.
     pub(super) fn plan_again(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;

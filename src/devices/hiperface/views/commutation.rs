@@ -93,7 +93,7 @@ fn before(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     });
 }
 
-/// What is wrong with the entry above.
+/// Draws what is wrong with the entry above.
 fn problem_ui(ui: &mut Ui, theme: &Theme, problem: Option<&Text>) {
     if let Some(why) = problem {
         paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.bad));

@@ -1,4 +1,4 @@
-//! The connection form of a HIPERFACE encoder, and the search for one whose settings nobody remembers.
+//! The connection form of a HIPERFACE encoder, and the search for one with unknown settings.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use crate::ui::dialogs::connect::TypedConnectForm;
 use crate::ui::dialogs::connect::entries::{echo, margin, network, parity, recording, serial, unfolded};
 use crate::ui::{Theme, icons};
 
-/// What the form remembers of the search's options.
+/// The state of the search options between frames.
 #[derive(Default)]
 pub(crate) struct SearchView {
     one_encoder: bool,
@@ -109,7 +109,7 @@ fn line(ui: &mut Ui, theme: &Theme, form: &mut LinkForm) {
     });
 }
 
-/// What is rarely needed.
+/// Draws the rarely used settings.
 fn more(ui: &mut Ui, theme: &Theme, form: &mut LinkForm, open: &mut bool) {
     if !unfolded(ui, theme, open) {
         return;

@@ -1,4 +1,4 @@
-//! Who the encoder is, what its error queue says, the device check, the extended label, the wiring.
+//! The encoder page: identity, error queue, device check, extended label, wiring.
 
 use egui::{RichText, Ui};
 
@@ -62,7 +62,7 @@ fn identity(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Act
     });
 }
 
-/// What had to be repeated on the line, while it is connected.
+/// Draws the repetitions on the line while it is connected.
 fn line_quality(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     if encoder.session.line().is_none() {
         return;

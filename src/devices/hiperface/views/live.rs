@@ -50,7 +50,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     row(ui, theme, &theme.say("live.raw"), theme.mono(format!("{:08X}h  {}", reading.raw, reading.raw)));
 }
 
-/// What is read beside the position.
+/// Draws the menu of the values read with the position.
 pub(crate) fn watch_menu(
     ui: &mut Ui,
     theme: &Theme,

@@ -214,7 +214,7 @@ fn field_ui(
     }));
 }
 
-/// What the selected field is, and what can be done with it; what cannot says why.
+/// Draws the selected field and its actions; disabled ones show why.
 fn field_head(
     ui: &mut Ui,
     theme: &Theme,

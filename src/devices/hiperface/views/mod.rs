@@ -19,7 +19,7 @@ use crate::ui::{Theme, backups, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Who it is, how it is, and how it is wired.
+    /// Identity, state and wiring.
     #[default]
     Encoder,
     /// Its memory.
@@ -45,7 +45,7 @@ impl TabPage for Page {
     ];
 }
 
-/// What the tab remembers of one session while the window is open: text buffers and selections.
+/// The state of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct HiperfaceUiState {
     memory: memory::MemoryUiState,

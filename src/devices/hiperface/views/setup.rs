@@ -1,5 +1,5 @@
-//! What is set up once: position, synchronisation, address, line settings, access codes, restart. Everything that is kept
-//! goes through the review.
+//! The setup page: position, synchronisation, address, line settings, access codes, restart. Everything persistent goes
+//! through the review.
 
 use egui::Ui;
 
@@ -25,7 +25,7 @@ pub(super) struct SetupUiState {
     position_problem: Option<Text>,
     address: String,
     address_problem: Option<Text>,
-    /// What is chosen in place of what is stored.
+    /// The choice that replaces the stored settings.
     settings: Option<Chosen>,
     settings_problem: Option<Text>,
     code_number: CodeNumber,

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::args::DirectionOption;
 use crate::devices::interbus::protocol::Mode;
 
-/// What tells the meaning of a word, which may have several.
+/// What selects the meaning of a word that has several
 #[derive(Args)]
 pub(super) struct WordOptions {
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! What a word of an INTERBUS encoder says, in words.
+//! The meaning of a word of an INTERBUS encoder in words.
 
 use serde_json::{Value as Json, json};
 
@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{
     CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
 };
 
-/// What is known of a word beside its digits.
+/// Known facts about a word besides its digits.
 pub(super) struct Known {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
@@ -48,7 +48,7 @@ pub(super) fn of_k1(word: Single) -> WordMeaning {
     WordMeaning { direction: "IN", modes: Vec::new(), words, value: Some(position), legal: true }
 }
 
-/// What an OUT word asks for, or why it must not be sent.
+/// Returns the request of an OUT word, or why it must not be sent.
 pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
@@ -91,13 +91,13 @@ pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
         .collect()
 }
 
-/// Where a command is legal.
+/// Returns the modes in which a command is legal.
 fn elsewhere(command: Command) -> String {
     let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
     format!("\"{}\" is for {} mode", asked(command).0, modes.join(" or "))
 }
 
-/// What an IN word says, in the mode that is known or in each in which it may come.
+/// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
 pub(super) fn of_in(word: u32, known: &Known) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let said = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {

@@ -29,10 +29,10 @@ use crate::devices::interbus::state::TEXTS;
 use crate::link::Scheme;
 use crate::profile::Body;
 
-/// What can be done with INTERBUS encoders.
+/// The commands for INTERBUS encoders.
 pub(crate) struct InterbusCommands;
 
-/// What reading cam programs does to a machine.
+/// Warning about the effect of reading cam programs on a machine.
 const SWITCHES: &str = "cam programs are selected one after the other to be read, which switches its live outputs. On a \
                         terminal it asks first whether the machine stands still; without one it says so and goes on.";
 
@@ -121,14 +121,14 @@ fn item(text: &str) -> Result<Item> {
     })
 }
 
-/// What becomes of the process data, for whoever has a machine at them.
+/// How a command disturbs the process data that a machine uses.
 #[derive(Clone, Copy)]
 enum Disturbs {
     /// Values are read out.
     Reading,
     /// So are cam programs, each of which is selected for that.
     Programs,
-    /// What somebody has left is ended, and stored.
+    /// A state left by another program is ended, and stored.
     LeadingBack,
 }
 

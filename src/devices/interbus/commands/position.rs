@@ -14,7 +14,7 @@ use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 
-/// Who is there is asked once, since a position is nothing without its gear; from then on the IN word alone is read.
+/// Reads positions. The encoder is identified once, since a position needs its gear; then only the IN word is read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     Disturbs::Reading.say(output);

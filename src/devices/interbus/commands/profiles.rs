@@ -1,4 +1,4 @@
-//! What the commands about profiles do with an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
+//! The commands about profiles of an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
 
 use serde_json::json;
 
@@ -62,7 +62,7 @@ fn as_far_as(common: &Common, output: &Output, profile: &InterbusProfile) -> Res
     Ok(InterbusProfile::of(survey.identity.profile(), image, Recorded::default()))
 }
 
-/// That two profiles are not of the same encoder. One without a serial number is of none.
+/// Returns a message if two profiles are not of the same encoder. One without a serial number matches none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let error =
         profile::check_device(profile.get::<InterbusProfile>()?, &device.get::<InterbusProfile>()?.identity).err()?;

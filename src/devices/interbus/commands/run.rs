@@ -28,7 +28,7 @@ impl Runs for Interbus {
     }
 }
 
-/// Who is there; one who cannot be is refused.
+/// Identifies the encoder; refuses implausible data.
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     let identity = match runner.run(InterbusJob::Identify)? {
         InterbusOutput::Identity(identity) => identity,

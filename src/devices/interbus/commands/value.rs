@@ -1,4 +1,4 @@
-//! What a user types as the value of an item.
+//! Parses the value of an item.
 
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::{Failure, Result};

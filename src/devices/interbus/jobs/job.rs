@@ -1,4 +1,4 @@
-//! What can be asked of an INTERBUS encoder, and what comes of it.
+//! The jobs of an INTERBUS encoder, and their results.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ use crate::store::DeviceKey;
 
 /// Stores from which a person should know that they are numbered (reference 3: some 200, at most 500).
 pub const WEAR_WARNING: u64 = 150;
-/// Stores beyond which somebody has to say once more that a write is wanted.
+/// Number of stores beyond which the user has to confirm once more.
 pub const WEAR_ASK: u64 = 200;
 /// Stores that the maker guarantees at the very most.
 pub const WEAR_LAST: u64 = 500;
@@ -26,9 +26,9 @@ pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
 
-/// What a session with an INTERBUS encoder does. All but the first and [`Position`](Self::Position) replaces the position
-/// for a moment and makes cam outputs invalid; what is read of a cam program selects it. The encoder does afterwards what it
-/// did before, unless it is sent into another mode.
+/// A job of a session with an INTERBUS encoder. All but the first and [`Position`](Self::Position) replace the position
+/// for a moment and make cam outputs invalid; reading a cam program selects it. Afterwards the encoder does what it did
+/// before, unless it is sent into another mode.
 #[derive(Debug)]
 pub enum InterbusJob {
     /// The IN word, and nothing is sent to the encoder: for a window, after connecting.
@@ -37,11 +37,11 @@ pub enum InterbusJob {
     Survey,
     /// These cam programs, and the shift of the window.
     Programs(Vec<ProgramNumber>),
-    /// Who is there.
+    /// Identifies the encoder.
     Identify,
-    /// What it does, its error, its temperature.
+    /// Reads its mode, its error and its temperature.
     Status,
-    /// What gateway and encoder say, with a verdict a line.
+    /// Checks gateway and encoder, with a verdict a line.
     Check,
     /// The IN word, once; nothing is sent to the encoder.
     Position,
@@ -60,8 +60,8 @@ pub enum InterbusJob {
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
-    /// Ends a parameterisation, an error or a read-out that somebody has left. What was set and not stored is stored by
-    /// that, and counted.
+    /// Ends a parameterisation, an error or a read-out that was left. Values set and not stored are stored by that, and
+    /// counted.
     LeadBack,
 }
 
@@ -72,7 +72,6 @@ pub enum Change {
     Restore {
         /// The profile.
         profile: Box<InterbusProfile>,
-        /// What the restore may do.
         options: RestoreOptions,
     },
     /// Make it like this; what the image says nothing about stays as it is, and is not read.
@@ -118,11 +117,10 @@ impl Change {
 pub struct Prepared {
     /// The kind of change that it is for.
     pub kind: ChangeKind,
-    /// What would be written.
     pub plan: InterbusPlan,
     /// The encoder it is for.
     pub identity: Identity,
-    /// How it makes its position, as it was read for the plan.
+    /// Parameters of the position, as read for the plan.
     pub parameters: Parameters,
     /// Stores that this computer has seen the encoder take; `None` where the logbook does not tell.
     pub cycles_seen: Option<u64>,
@@ -134,25 +132,25 @@ pub struct Prepared {
     pub mounting_left: Vec<Item>,
     /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
-    /// Values of the mounting of another device that are written: they have to be set up anew.
+    /// Values of another device's mounting that are written: they have to be set up again.
     pub mounting_written: Vec<Item>,
 }
 
-/// How much of an EEPROM's life is gone.
+/// The used life of an EEPROM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wear {
-    /// So many stores after this: a person should know that they are numbered.
+    /// Number of stores after this: the user should know that they are limited.
     Known(u64),
-    /// So many stores after this: more than the maker names.
+    /// Number of stores after this: more than the manufacturer specifies.
     Ask(u64),
-    /// So many stores after this: refused, unless it is forced.
+    /// Number of stores after this: refused unless forced.
     Worn(u64),
-    /// How many there were is not known: refused, unless it is forced.
+    /// The number of earlier stores is not known: refused unless forced.
     Unknown,
 }
 
 impl Wear {
-    /// After so many stores; `None` where nobody needs to know.
+    /// Returns the wear after this many stores; `None` if it needs no mention.
     pub const fn of(stores: u64) -> Option<Self> {
         match stores {
             WEAR_LIMIT.. => Some(Wear::Worn(stores)),
@@ -164,7 +162,7 @@ impl Wear {
 }
 
 impl Prepared {
-    /// How much of the EEPROM's life the plan leaves; `None` where nobody needs to know.
+    /// Returns the wear after the plan; `None` if it needs no mention.
     pub fn wear(&self) -> Option<Wear> {
         let cost = self.plan.write_cycles();
         let Some(seen) = self.cycles_seen else { return (cost > 0).then_some(Wear::Unknown) };
@@ -175,10 +173,10 @@ impl Prepared {
 /// A plan that a person consented to.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
-/// What a commit did.
+/// The result of a commit.
 pub type Committed = crate::worker::Committed<Written>;
 
-/// What is said on the way.
+/// A message during a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeviceMessage {
     /// A step of the handshake.
@@ -209,7 +207,7 @@ impl fmt::Display for JobStep {
     }
 }
 
-/// What a job gives.
+/// The result of a job.
 #[derive(Debug)]
 pub enum InterbusOutput {
     Hello(Reading),
@@ -239,7 +237,7 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// How backups and the logbook know an encoder: there is one maker, and one type.
+/// Returns the key of an encoder for backups and the logbook: there is one manufacturer, and one type.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     key_of(&identity.serial_number, is_virtual)
 }

@@ -1,4 +1,4 @@
-//! What outlasts a job with an INTERBUS encoder: a note of the mode in which it was found, and stores that reading may have
+//! Notes that outlast a job with an INTERBUS encoder: the mode in which it was found, and stores that reading may have
 //! cost, in the logbook.
 
 use std::collections::BTreeMap;

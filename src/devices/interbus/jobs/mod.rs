@@ -33,7 +33,7 @@ use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
 pub struct Interbus {
     wire: Box<dyn ByteLink>,
     station: Station,
-    /// What turns a virtual encoder.
+    /// Motor of a virtual encoder.
     motor: Option<Motor>,
 }
 
@@ -43,7 +43,7 @@ impl fmt::Debug for Interbus {
     }
 }
 
-/// What a job tells on its way.
+/// Receives the reports of a job.
 type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
 
 impl Interbus {
@@ -67,12 +67,12 @@ impl Session<Interbus> {
         Session::with(Interbus { wire, station, motor }, clock, store, is_virtual)
     }
 
-    /// What is known about the gateway.
+    /// Returns the state of the gateway.
     pub fn station(&self) -> &Station {
         &self.device.station
     }
 
-    /// What turns the shaft, where the encoder lives in this process.
+    /// Returns the motor of the shaft, if the encoder is in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -84,7 +84,7 @@ impl Device for Interbus {
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
     type Sample = Reading;
-    /// Whatever else there is replaces the position.
+    /// Nothing can be watched: every other value replaces the position.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -152,11 +152,12 @@ impl Device for Interbus {
     }
 }
 
-/// What is at the moment, of so much.
+/// Receives progress: the present step, of how many, and its name.
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
-    /// What only asks, or leads back. All of it replaces the position for a moment, but for the IN word alone.
+    /// Runs jobs that only read, or lead back. All of them replace the position for a moment, except reading the IN
+    /// word.
     fn ask(
         &mut self,
         desk: &mut SessionContext,

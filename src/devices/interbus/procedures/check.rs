@@ -21,13 +21,13 @@ pub enum Step {
     Gateway,
     /// The order of the two halves of a word.
     WordOrder,
-    /// What the IN word says before anything is asked: a position, cam outputs, or an error.
+    /// The IN word before any request: a position, cam outputs, or an error.
     InputWord,
-    /// Who is there, and whether its steps and turns can be.
+    /// Identity, and whether steps and turns are plausible.
     Identity,
     /// Read-outs: OUT gets to the encoder, and IN comes back.
     Handshake,
-    /// How warm it is.
+    /// Temperature.
     Temperature,
     /// Stores in the EEPROM.
     Wear,
@@ -38,7 +38,7 @@ pub enum Step {
 pub enum Finding {
     /// The IN word was read so often, within so long a reply each.
     Replies {
-        /// How often.
+        /// Number of requests.
         asked: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
@@ -58,7 +58,7 @@ pub enum Finding {
     Stray(u32),
     /// An error word.
     Error(ErrorWord),
-    /// The encoder is being parameterised, or somebody reads it out.
+    /// The encoder is being parameterised or read out by another master.
     Occupied(u32),
     /// Its serial number.
     SerialNumber(String),
@@ -71,7 +71,7 @@ pub enum Finding {
         /// Turns.
         turns: u32,
     },
-    /// What cannot be.
+    /// Implausible data.
     Implausible(Implausible),
     /// The preset lies beyond the measuring range.
     PresetBeyond {
@@ -82,16 +82,16 @@ pub enum Finding {
     },
     /// It counts its steps less one.
     StepsMinusOne,
-    /// What it does.
+    /// The mode.
     Mode(StartupMode),
-    /// So many values were read out.
+    /// Values read out.
     ReadOuts {
-        /// How many.
+        /// Number of values.
         asked: u64,
-        /// How long one took, in milliseconds.
+        /// Milliseconds for each.
         each_ms: u64,
     },
-    /// What ended the read-outs.
+    /// The error that ended the read-outs.
     Failed(Error),
     /// Tenths of a degree Celsius.
     Temperature(i32),
@@ -104,7 +104,7 @@ pub enum Finding {
     },
 }
 
-/// So often the IN word is read, to see how the gateway answers.
+/// How often the IN word is read to measure the gateway.
 const LOOKS: u32 = 20;
 /// Tenths of a degree that electronics in a housing stand (`U`: the manual gives no limits).
 const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;

@@ -1,4 +1,4 @@
-//! What can go wrong with an encoder behind a gateway, with the facts a person needs.
+//! Errors of an encoder behind a gateway, with the facts that a user needs.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use crate::link::LinkError;
 use crate::link::line::LineError;
 use crate::profile::DeviceError;
 
-/// What was asked of a gateway.
+/// A request to a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
     /// The IN word: two input registers, function 4.
@@ -89,7 +89,7 @@ impl Exception {
         }
     }
 
-    /// What is the matter, most likely, and what to do.
+    /// Returns the most likely cause, and what to do.
     pub const fn cause(self) -> &'static str {
         match self.0 {
             0x01 => "the gateway has no such function: look whether its outputs are holding registers",
@@ -110,29 +110,29 @@ impl Exception {
     }
 }
 
-/// What was wrong with the reply of a gateway.
+/// The damage of a gateway's reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// Bytes that are no frame of Modbus/TCP.
     #[error("{bytes} bytes that are not a Modbus/TCP frame")]
     NoFrame {
-        /// How many.
+        /// Number of bytes.
         bytes: usize,
     },
     /// A reply of another unit.
     #[error("a reply of unit {got} instead of {asked}")]
     Unit {
-        /// Which was asked.
+        /// Requested unit.
         asked: u8,
-        /// Which answered.
+        /// Unit of the reply.
         got: u8,
     },
     /// A reply to another function.
     #[error("a reply to function {got} instead of {asked}")]
     Function {
-        /// Which was asked.
+        /// Requested function.
         asked: u8,
-        /// Which was answered.
+        /// Function of the reply.
         got: u8,
     },
     /// Not as many registers as were asked for, or others.
@@ -140,16 +140,16 @@ pub enum Damage {
     Registers,
 }
 
-/// What did not come about within the time of the handshake.
+/// The event that did not occur within the time of the handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Awaited {
     /// The echo of a word, exactly.
     Echo,
     /// A value that was asked for.
     Value,
-    /// That the encoder runs: a position, a speed, or cam outputs.
+    /// The encoder runs: a position, a speed, or cam outputs.
     Run,
-    /// That it shows the preset as its position.
+    /// The preset is shown as position.
     Preset,
 }
 
@@ -164,7 +164,7 @@ impl fmt::Display for Awaited {
     }
 }
 
-/// Why what an encoder says of itself cannot be.
+/// Why the data of an encoder are implausible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Implausible {
     /// Steps and turns.
@@ -178,7 +178,7 @@ pub enum Implausible {
     Value {
         /// The OUT word that asked.
         read: u32,
-        /// What came.
+        /// The value.
         value: u32,
     },
 }
@@ -192,19 +192,19 @@ pub enum Error {
     /// The gateway does not answer.
     #[error("the gateway does not answer while {asked} ({tries} tries)")]
     NoReply {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
     },
-    /// What it answers is broken every time.
+    /// Every reply is damaged.
     #[error("damaged reply while {asked} ({tries} tries): {cause}")]
     Damaged {
-        /// What was asked.
+        /// The request.
         asked: Asked,
-        /// How often.
+        /// Number of attempts.
         tries: u32,
-        /// What was wrong with the last one.
+        /// Damage of the last reply.
         cause: Damage,
     },
     /// Bytes keep arriving where there should be silence.
@@ -213,7 +213,7 @@ pub enum Error {
     /// It refuses.
     #[error("the gateway refuses {asked}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception {
-        /// What was asked.
+        /// The request.
         asked: Asked,
         /// Its code.
         exception: Exception,
@@ -227,30 +227,30 @@ pub enum Error {
     /// The encoder answers with an error word.
     #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), word(*error), error.meaning(), error.remedy())]
     Refused {
-        /// What was sent.
+        /// The command sent.
         sent: Command,
-        /// What it says.
+        /// The error word.
         error: ErrorWord,
     },
     /// It has nothing to read out there.
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut {
-        /// What was asked.
+        /// The command.
         command: Command,
     },
     /// Nothing came of a word within the time of the handshake.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
-        /// What was waited for.
+        /// The awaited event.
         awaited: Awaited,
         /// The OUT word.
         sent: u32,
         /// The IN word that came last.
         input: u32,
-        /// So long it was waited for.
+        /// Time waited, in milliseconds.
         milliseconds: u64,
     },
-    /// Somebody else writes to the encoder.
+    /// Another master writes to the encoder.
     #[error("another master writes to the encoder: OUT is {output:08X} where {sent:08X} was written")]
     OtherMaster {
         /// The OUT word written last.
@@ -272,7 +272,7 @@ pub enum Error {
         /// With its halves exchanged.
         swapped: u32,
     },
-    /// What the encoder says of itself cannot be.
+    /// The data of the encoder are implausible.
     #[error("what the encoder says of itself cannot be: {0}")]
     Implausible(#[from] Implausible),
     /// It does not go into a mode.
@@ -283,16 +283,14 @@ pub enum Error {
         /// The one that it says to be in.
         is: StartupMode,
     },
-    /// A mode that nobody can choose.
+    /// A mode that cannot be selected.
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable {
-        /// Which.
         mode: StartupMode,
     },
     /// It is in a mode that the manual does not have: what any word but a read-out does there is not known.
     #[error("the encoder is in mode {}, which is unknown: nothing was sent but read-outs", mode.emit())]
     UnknownMode {
-        /// Which.
         mode: StartupMode,
     },
     /// The shaft turns where it must stand still.
@@ -303,26 +301,26 @@ pub enum Error {
         /// The one farthest from it.
         to: u32,
     },
-    /// What was written does not read back.
+    /// A written value does not read back.
     #[error("{item} reads {reads} after {wanted} was written")]
     NotTaken {
-        /// What was written.
+        /// The item written.
         item: String,
-        /// What it should be.
+        /// The value written.
         wanted: u32,
-        /// What it is.
+        /// The value read.
         reads: u32,
     },
-    /// What was read changed between the plan and its execution.
+    /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
-        /// What changed.
+        /// The item that changed.
         item: String,
     },
     /// Something ended early, and the encoder could not be led back.
     #[error("{cause}; the encoder could not be led back: {standing}")]
     NotLedBack {
-        /// Why it ended; where nothing failed before, why it could not be led back.
+        /// Why it ended; if nothing failed before, why it could not be led back.
         cause: Box<Error>,
         /// In which state it may be.
         standing: LeftState,

@@ -46,7 +46,7 @@ pub struct Gateway<'a> {
     written: Option<u32>,
 }
 
-/// What stays from one job to the next.
+/// State that is kept between jobs.
 struct State<'a> {
     line: &'a mut LineState,
     next: &'a mut u16,
@@ -205,7 +205,7 @@ fn request(asked: Asked, unit: u8, number: u16, order: WordOrder) -> Option<(Mod
     made.ok().map(|()| (request, bytes))
 }
 
-/// What is wrong with a frame that was received.
+/// The fault of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// It is no reply to what was asked.
@@ -214,8 +214,8 @@ pub enum Fault {
     Refused(Exception),
 }
 
-/// What is wrong with a frame of the trace that was received behind this request; `None` where it answers it, also under the
-/// number of an earlier one.
+/// Returns the fault of a frame in the trace that was received after this request; `None` if it answers it, also under
+/// the number of an earlier one.
 pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     let broken = |damage| Some(Fault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
@@ -231,7 +231,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     }
 }
 
-/// What a frame of the trace asked, with its number and its unit.
+/// Parses the request of a frame in the trace, with its number and its unit.
 fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Asked)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
@@ -244,7 +244,7 @@ fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Asked)> {
     Some((u16::from_be_bytes([number_high, number_low]), unit, asked))
 }
 
-/// What a reply with the right number says.
+/// Parses a reply with the right number.
 fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
     let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
     // A recording has the number of its own request.

@@ -12,15 +12,15 @@ pub struct Handshake {
     pub at: Moment,
     /// OUT.
     pub out: u32,
-    /// What OUT means in the encoder's mode.
+    /// Meaning of OUT in the encoder's mode.
     pub command: Command,
     /// IN.
     pub input: u32,
-    /// What IN says to that.
+    /// Meaning of IN as the answer.
     pub says: Says,
 }
 
-/// What an IN word says to an OUT word.
+/// The answer of an IN word to an OUT word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Says {
     /// It runs: a position, a speed or cam outputs.
@@ -47,7 +47,7 @@ pub(super) fn is_echo(command: Command, input: u32) -> bool {
 }
 
 impl Says {
-    /// What `input` says to `command`.
+    /// Returns the meaning of `input` as an answer to `command`.
     pub fn of(command: Command, input: u32) -> Self {
         if is_echo(command, input) && !matches!(command, Command::Normal | Command::Run) {
             return Says::Echoed;
@@ -70,9 +70,9 @@ pub struct LeftState {
     pub out: u32,
     /// Parameters or cams were being set: the encoder sends no position until it gets `80000000`.
     pub parameterising: bool,
-    /// What the encoder did when it was found; `None` where it never said so.
+    /// The mode in which the encoder was found; `None` if it was never read.
     pub found: Option<StartupMode>,
-    /// What it does now, as far as that is known.
+    /// The present mode, as far as known.
     pub is: Option<StartupMode>,
 }
 

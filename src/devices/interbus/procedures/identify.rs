@@ -1,4 +1,4 @@
-//! Who is there and how it is set, and everything that can be read out of it (reference 3 and 5).
+//! Reads the identity and settings of an encoder, and everything else that it provides (reference 3 and 5).
 
 use super::error::Implausible;
 use super::{Error, Master, Reading};
@@ -15,15 +15,15 @@ pub struct Identity {
     pub serial_number: String,
     /// Steps over all programmed turns, as they are read out.
     pub steps: u32,
-    /// Turns until the position begins anew.
+    /// Turns until the position starts again.
     pub revolutions: u32,
-    /// Which way it counts.
+    /// Direction of counting.
     pub direction: Direction,
     /// Version of its software.
     pub software_version: u32,
-    /// What it does, and starts with.
+    /// Its mode, now and at power-up.
     pub mode: StartupMode,
-    /// What it is.
+    /// Its flags.
     pub flags: Flags,
 }
 
@@ -41,15 +41,15 @@ impl Identity {
 /// An encoder as it was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
-    /// Who is there.
+    /// Its identity.
     pub identity: Identity,
-    /// How it makes its position.
+    /// Its parameters.
     pub parameters: Parameters,
     /// The preset's flag, as it is read out.
     pub preset_flag: u32,
-    /// How long it has been on.
+    /// Operating time in minutes.
     pub operating_minutes: u32,
-    /// How warm it is, in tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius.
     pub temperature_tenths: i32,
     values: Vec<(ReadOut, Value)>,
 }
@@ -61,20 +61,20 @@ impl Survey {
     }
 }
 
-/// How an encoder is.
+/// The status of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
-    /// What it sends.
+    /// The IN word.
     pub reading: Reading,
     /// The error that it sends instead of a position.
     pub error: Option<ErrorWord>,
-    /// What it does, and starts with.
+    /// Its mode, now and at power-up.
     pub mode: StartupMode,
-    /// What it is.
+    /// Its flags.
     pub flags: Flags,
-    /// How long it has been on.
+    /// Operating time in minutes.
     pub operating_minutes: u32,
-    /// How warm it is, in tenths of a degree Celsius.
+    /// Temperature in tenths of a degree Celsius.
     pub temperature_tenths: i32,
 }
 
@@ -204,7 +204,7 @@ pub(super) fn read_survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64
     })
 }
 
-/// What it does, as it said in this job.
+/// Reads the mode in this job.
 fn read_mode(master: &mut Master<'_>) -> Result<StartupMode, Error> {
     match master.said_mode() {
         Some(mode) => Ok(mode),
@@ -310,7 +310,7 @@ pub(super) fn read_shift(master: &mut Master<'_>) -> Result<WindowShift, Error> 
     Ok(shift)
 }
 
-/// What is measured.
+/// Measured values.
 pub(super) struct Measured {
     pub(super) minutes: u32,
     pub(super) tenths: i32,

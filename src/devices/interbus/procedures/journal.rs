@@ -1,22 +1,23 @@
-//! What of a job outlasts it: where an encoder was sent, until it is led back, and what that may have stored.
+//! Facts of a job that outlast it: the mode into which an encoder was sent, until it is led back, and stores that this
+//! may have cost.
 
 use crate::devices::interbus::protocol::StartupMode;
 
 /// An encoder that was sent into other modes than the one in which it was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Excursion {
-    /// What it did before.
+    /// The mode before.
     pub found: StartupMode,
     /// Every mode it was sent into since.
     pub sent: Vec<StartupMode>,
 }
 
-/// Where a job notes what outlasts it, by serial number. What cannot be noted stops no reading.
+/// Records facts that outlast a job, by serial number. A failure to record does not stop a read.
 pub trait Journal {
     /// Some encoder was not led back.
     fn has_excursions(&self) -> bool;
 
-    /// Where this one is that was not led back; `None` where nothing is noted of it.
+    /// Returns the recorded excursion of an encoder that was not led back; `None` if there is none.
     fn excursion(&self, serial_number: &str) -> Option<Excursion>;
 
     /// It is about to be sent into the last of these modes.
@@ -25,9 +26,9 @@ pub trait Journal {
     /// It does again what it did before.
     fn is_back(&mut self, serial_number: &str);
 
-    /// So many cam programs are about to be selected, each of which it may store when it leaves it.
+    /// Records that this many cam programs are about to be selected, each of which may be stored when it is left.
     fn intends(&mut self, serial_number: &str, stores: u64);
 
-    /// So many it may have stored; nothing where none was intended and none can have been.
+    /// Records how many may have been stored; nothing if none was intended and none can have been.
     fn may_have_stored(&mut self, serial_number: &str, stores: u64);
 }

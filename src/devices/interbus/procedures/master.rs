@@ -20,7 +20,7 @@ use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, St
 use crate::link::Ctx;
 use crate::units::Moment;
 
-/// Who hears each step.
+/// Receives each step.
 type Teller<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
 /// The host's side of the process data of one encoder, for one job.
@@ -31,28 +31,28 @@ pub struct Master<'a> {
     /// It is a recording that answers.
     recorded: bool,
     tell: Option<Teller<'a>>,
-    /// What it does, as it said in this job.
+    /// The mode, as read in this job.
     is: Option<StartupMode>,
     /// It was sent into another mode and has not said yet that it is there.
     unsure: bool,
     /// It was sent into other modes in this job.
     switched: bool,
-    /// What it did before this job.
+    /// The mode before this job.
     found: Option<StartupMode>,
     /// The error that it had already: it sends no position anyway.
     found_error: Option<u32>,
     /// Parameters or cams are being set.
     parameterising: bool,
-    /// What was sent last in this job.
+    /// The last command of this job.
     out: Option<Command>,
-    /// Whether it got there is not known.
+    /// Whether it was received is not known.
     lost: bool,
-    /// What came last.
+    /// The last IN word.
     input: u32,
     /// When it was seen last to do what it did before this job, with nothing asked of it.
     rested: Option<Moment>,
     told: Option<(u32, Says)>,
-    /// What outlasts this job.
+    /// The notes that outlast this job.
     notes: Notes<'a>,
 }
 
@@ -104,12 +104,12 @@ impl<'a> Master<'a> {
         self.data.now()
     }
 
-    /// What the encoder does, as it said last.
+    /// Returns the mode that was read last.
     pub fn mode(&self) -> Option<StartupMode> {
         self.is.or(self.known.mode)
     }
 
-    /// What the encoder does, as it said in this job.
+    /// Returns the mode as read in this job.
     pub(super) const fn said_mode(&self) -> Option<StartupMode> {
         if self.unsure { None } else { self.is }
     }
@@ -289,7 +289,7 @@ impl<'a> Master<'a> {
         Ok(input)
     }
 
-    /// What an IN word would be with its halves exchanged, where nothing else explains it: OUT asks for nothing.
+    /// Returns the IN word with swapped halves, if nothing else explains it: OUT requests nothing.
     ///
     /// # Errors
     /// The way to the encoder.
@@ -300,7 +300,7 @@ impl<'a> Master<'a> {
         Ok(swapped_unexplained(input))
     }
 
-    /// Why nothing came, as far as that can be seen.
+    /// Returns why no answer came, as far as that can be seen.
     fn too_late(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {

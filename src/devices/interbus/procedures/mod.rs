@@ -1,6 +1,6 @@
-//! What one does with an INTERBUS encoder (POSITAL OCD-IB, K3): its process data come over a Modbus/TCP gateway, and
-//! everything but the position over the handshake in them. Reading or setting anything replaces the position and makes cam
-//! outputs invalid for so long; another program switches them. The reference is the project's "interbus".
+//! The procedures of an INTERBUS encoder (POSITAL OCD-IB, K3): its process data come over a Modbus/TCP gateway, and
+//! everything but the position over the handshake in them. Reading or setting anything replaces the position and makes
+//! cam outputs invalid meanwhile; another program switches them. The reference is the project's "interbus".
 //!
 //! ```text
 //! identify, survey, write ── master: the handshake, modes, back to the mode found ──▶ data: OUT ⇄ IN ◀── gateway

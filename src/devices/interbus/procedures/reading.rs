@@ -10,11 +10,11 @@ pub struct Reading {
     pub at: Moment,
     /// As it came.
     pub word: u32,
-    /// What the encoder sends; `None` where it was not asked yet: then a word that runs is taken for a position.
+    /// The mode; `None` if not read yet: a running word is then taken for a position.
     pub mode: Option<StartupMode>,
     /// Its steps and turns, where they were read.
     pub gear: Option<Gear>,
-    /// How its position is shifted in cam mode, where that was read.
+    /// Shift of the position in cam mode, if read.
     pub shift: Option<WindowShift>,
 }
 
@@ -30,7 +30,7 @@ pub struct TurnPosition {
 }
 
 impl Reading {
-    /// What the word says.
+    /// Returns the meaning of the word.
     pub fn reply(&self) -> Reply {
         Reply::parse(self.word)
     }

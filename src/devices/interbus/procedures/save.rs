@@ -1,4 +1,4 @@
-//! What is read to be kept, to be planned upon, or to be shown as an item.
+//! Reads values to be saved, to plan with, or to show as an item.
 
 use super::identify::{direction_of, programs, read_cam, read_image, read_other_parameters, read_survey};
 use super::write::read_parameter;
@@ -15,7 +15,7 @@ impl Identity {
 }
 
 impl Survey {
-    /// What a profile keeps of it beside what can be restored.
+    /// Returns the recorded part of a profile, besides what can be restored.
     pub fn recorded(&self) -> Recorded {
         Recorded {
             software_version: Some(self.identity.software_version),
@@ -46,7 +46,7 @@ pub fn save(
     })
 }
 
-/// What is read at the moment.
+/// The part being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SaveStep {
     /// Something that is read out.
@@ -55,7 +55,7 @@ pub enum SaveStep {
     Program(ProgramNumber),
 }
 
-/// What a plan needs to know of an encoder that was identified in this job: its parameters, and these programs of it.
+/// Reads what a plan needs of an encoder that was identified in this job: its parameters, and these programs.
 ///
 /// # Errors
 /// [`Error::Implausible`] where steps and turns are no gear; the handshake and the way.

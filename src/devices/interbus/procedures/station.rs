@@ -1,4 +1,4 @@
-//! What a session knows about its gateway and the encoder behind it, from one job to the next.
+//! The state of a gateway and the encoder behind it that is kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -21,33 +21,33 @@ parameters! {
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
         /// Which half of a word comes first.
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
-        /// So long an echo, a value or a position may take (reference 4, `U`).
+        /// Time limit for an echo, a value or a position (reference 4, `U`).
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
-        /// So long from one look at the IN word to the next: a gateway's own cycle is about that long.
+        /// Interval of reading the IN word: about a gateway's own cycle.
         pub cycle: Duration = Duration::from_millis(5), "cycle" => Milliseconds(1..=1000);
-        /// So long a gateway may take for a reply, beside the margin of the line.
+        /// Time limit for a gateway's reply, besides the margin of the line.
         pub timeout: Duration = Duration::from_secs(1), "timeout" => Milliseconds(10..=2000);
     }
 }
 
-/// What a session knows about its gateway and the encoder behind it.
+/// The state of a gateway and the encoder behind it.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// What the link says.
+    /// Parameters of the link.
     pub link: LinkParameters,
     /// It is a recording that answers: its replies have the numbers of the requests of that time.
     pub recorded: bool,
     pub(super) line: LineState,
     /// The number of the next request.
     pub(super) next: u16,
-    /// What has come and was not taken.
+    /// Bytes received and not used yet.
     pub(super) waiting: Vec<u8>,
     /// The gateway was silent when it was asked last.
     pub(super) silent: bool,
     pub(super) known: Known,
 }
 
-/// What is known of the encoder.
+/// The known state of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Known {
     /// Its mode, as it said last.
@@ -65,7 +65,7 @@ pub(super) struct Known {
 }
 
 impl Station {
-    /// A gateway that nobody has asked, with an encoder at its first registers.
+    /// Creates the state of an unused gateway, with an encoder at its first registers.
     pub fn new(margin: Duration) -> Self {
         Station {
             link: LinkParameters::default(),

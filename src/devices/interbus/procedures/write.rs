@@ -1,5 +1,5 @@
-//! How a plan is written into an encoder: what was read is read again, then each operation is carried out and read back, and
-//! the encoder is led back to the mode in which it was found.
+//! Writes a plan into an encoder: reads its base again, carries out each operation and reads it back, and leads the
+//! encoder back to its earlier mode.
 
 use std::time::Duration;
 
@@ -29,7 +29,7 @@ pub enum Left {
     Unknown(LeftState),
 }
 
-/// So long a shaft is watched before a preset.
+/// How long a shaft is watched before a preset.
 const WATCHED: Duration = Duration::from_millis(300);
 /// Between two looks at it.
 const LOOK: Duration = Duration::from_millis(20);
@@ -155,7 +155,7 @@ fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut
     if changes.iter().any(of_gear) { refresh_gear(master) } else { Ok(()) }
 }
 
-/// What the encoder says that a parameter is; of the direction its code as it is set.
+/// Reads a parameter back; a direction as the code with which it is set.
 fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let value = read_parameter(master, parameter)?;
     match parameter {
@@ -164,7 +164,7 @@ fn read_back(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error
     }
 }
 
-/// What the encoder says that a parameter is; 0 for the default, which cannot be read.
+/// Reads a parameter; 0 for the default, which cannot be read.
 pub(super) fn read_parameter(master: &mut Master<'_>, parameter: Parameter) -> Result<u32, Error> {
     let number = match parameter {
         Parameter::Steps => 1,

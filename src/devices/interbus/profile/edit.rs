@@ -67,12 +67,12 @@ pub fn plan_preset(device: &Parameters, value: u32) -> Result<InterbusPlan, Plan
     Ok(InterbusPlan { base, ops: vec![Op::Parameterise(vec![change]), Op::FirePreset { value }] })
 }
 
-/// Sets the encoder back to what was delivered: experimental (reference 6.10). What it then is nobody knows before.
+/// Plans restoring the factory settings: experimental (reference 6.10). The resulting values are not known before.
 pub fn plan_default(device: &Parameters) -> InterbusPlan {
     InterbusPlan { base: Base { parameters: Some(*device), ..Base::default() }, ops: vec![Op::Default] }
 }
 
-/// What differs, in an order in which each number is within its limits when it is sent.
+/// Returns the differences, in an order in which each number is within its limits when it is sent.
 fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<ParameterChange>, PlanError> {
     if device == wanted {
         return Ok(Vec::new());
@@ -148,7 +148,7 @@ impl Edge {
     /// Both, in the order in which they are set.
     pub const BOTH: [Edge; 2] = [Edge::Start, Edge::Stop];
 
-    /// Where it is.
+    /// Returns the edge of a cam.
     pub const fn of(self, cam: Cam) -> Value {
         match self {
             Edge::Start => cam.start,

@@ -3,7 +3,7 @@
 use super::item::{Item, ItemError};
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 
-/// Why an entry of a profile cannot be.
+/// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A program that stands in the list already.
@@ -15,7 +15,7 @@ pub enum EntryError {
     /// No program, no cam, or what is marked is nothing.
     #[error(transparent)]
     Item(#[from] ItemError),
-    /// What is marked is no setting.
+    /// The marked item is not a setting.
     #[error("{0} is measured and does not belong to the mounting")]
     Measured(Item),
 }

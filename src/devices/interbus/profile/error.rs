@@ -37,9 +37,9 @@ pub enum PlanError {
     /// A value of the mounting, which is left as it is in the encoder, does not fit what else is to be written.
     #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
     MountingLeft {
-        /// Which one.
+        /// The item.
         item: Item,
-        /// What the encoder has.
+        /// The value of the encoder.
         value: u32,
         /// The least.
         low: u32,
@@ -49,9 +49,9 @@ pub enum PlanError {
     /// An edge of a cam lies beyond the measuring range.
     #[error("{item}, {edge}: {position} is not within 0 to {last}")]
     CamBeyondRange {
-        /// Which cam.
+        /// The cam.
         item: Item,
-        /// Which of its edges.
+        /// The edge.
         edge: Edge,
         /// As it is to be.
         position: u32,
@@ -61,7 +61,7 @@ pub enum PlanError {
     /// Something is to be changed of which it is not known what it is now.
     #[error("{item} was not read before it is to be changed")]
     NotRead {
-        /// Which one.
+        /// The item.
         item: Item,
     },
 }

@@ -1,4 +1,4 @@
-//! What a K3 encoder keeps in its EEPROM and gives back when it is read.
+//! The content of a K3 encoder's EEPROM that can be read back.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,22 +8,22 @@ use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, Pr
 /// All that can be written and read back. What was not read, or what a profile does not say, is `None`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
-    /// How the position is made.
+    /// Parameters of the position.
     pub parameters: Parameters,
-    /// How far the position is shifted under its window in cam mode: one for all programs.
+    /// Shift of the position under its window in cam mode: one for all programs.
     pub shift: Option<WindowShift>,
     /// The cam programs, the first at 0. In one that was read every cam is there, whether it works or not.
     pub programs: [Option<Program>; ProgramNumber::COUNT],
 }
 
-/// How an encoder makes its position.
+/// The parameters of an encoder's position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Parameters {
     /// Steps over all programmed turns: the measuring range. See [`Gear`].
     pub steps: u32,
-    /// Turns until the position begins anew.
+    /// Turns until the position starts again.
     pub revolutions: u32,
-    /// Which way it counts.
+    /// Direction of counting.
     pub direction: Direction,
     /// The position that the shaft's place is to have when the preset is fired; it belongs to the mounting.
     pub preset: u32,
@@ -31,7 +31,7 @@ pub struct Parameters {
     pub zero_shift: u32,
 }
 
-/// Which way the position counts, seen at the shaft.
+/// The direction of counting, seen at the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// 3: up when the shaft turns clockwise.

@@ -11,32 +11,32 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Parameter, Program, Pro
 pub enum Item {
     /// Steps over all programmed turns.
     Steps,
-    /// Turns until the position begins anew.
+    /// Turns until the position starts again.
     Revolutions,
-    /// Which way it counts.
+    /// Direction of counting.
     Direction,
-    /// What the preset makes of the shaft's place.
+    /// Preset value of the position.
     Preset,
     /// Zero point shifting.
     ZeroShift,
-    /// How far the position is shifted under its window: one for all programs.
+    /// Shift of the position under its window: one for all programs.
     Shift,
-    /// Which cams of a program work.
+    /// The active cams of a program.
     CamMask(ProgramNumber),
     /// Both edges of a cam.
     Cam(ProgramNumber, CamNumber),
-    /// How warm the encoder is.
+    /// Temperature of the encoder.
     Temperature,
-    /// How long it has been on.
+    /// Operating time.
     OperatingTime,
 }
 
-/// What a thing in an encoder holds.
+/// The value of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ItemValue {
     /// Steps, turns, or the shift of the window.
     Number(u32),
-    /// Which way it counts.
+    /// Direction of counting.
     Direction(Direction),
     /// Bit i for cam i.
     Mask(u8),
@@ -48,7 +48,7 @@ pub enum ItemValue {
     Minutes(u32),
 }
 
-/// Why a text names nothing in an encoder.
+/// Why a text does not name an item.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
     /// Not of the form of any item.
@@ -97,7 +97,7 @@ impl Item {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
 
-    /// It is set by somebody; what is measured is not.
+    /// Returns whether the item can be written; measured values cannot.
     pub const fn is_writable(self) -> bool {
         !matches!(self, Item::Temperature | Item::OperatingTime)
     }
@@ -205,7 +205,7 @@ impl fmt::Display for ItemValue {
 }
 
 impl Image {
-    /// What it holds of an item; `None` where nothing is known of it, and for what is measured.
+    /// Returns the value of an item; `None` if it is not known, and for measured values.
     pub fn item(&self, item: Item) -> Option<ItemValue> {
         let number = ItemValue::Number;
         let Parameters { steps, revolutions, direction, preset, zero_shift } = self.parameters;

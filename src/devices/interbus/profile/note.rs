@@ -1,5 +1,5 @@
-//! What an operation changes, in one line for the logbook: items, old and new. Its words are the manual's, whatever the
-//! language of the window.
+//! The changes of an operation in one line for the logbook: items, old and new. The words are the manual's, whatever
+//! the language of the window.
 
 use super::{CamChange, Direction, Op, ParameterChange};
 use crate::devices::interbus::protocol::Parameter;
@@ -7,16 +7,16 @@ use crate::devices::interbus::protocol::Parameter;
 /// A line of an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// What changes: an item, or an edge of one.
+    /// Name of the changed item, or of an edge of one.
     pub name: String,
-    /// What it is.
+    /// Old value.
     pub from: String,
-    /// What it will be.
+    /// New value.
     pub to: String,
 }
 
 impl Op {
-    /// What it changes, old and new.
+    /// Returns the changes, old and new.
     pub fn note(&self) -> String {
         match self {
             Op::FirePreset { value } => format!("position: → {value}"),
@@ -28,7 +28,7 @@ impl Op {
         }
     }
 
-    /// What it changes, one by one: a parameter, a mask, an edge of a cam. Empty where nothing can be read.
+    /// Returns the changes one by one: a parameter, a mask, an edge of a cam. Empty if nothing can be read.
     pub fn steps(&self) -> Vec<Step> {
         let step = |name: String, from: &dyn ToString, to: &dyn ToString| Step {
             name,

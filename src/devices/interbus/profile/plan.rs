@@ -6,11 +6,11 @@ use super::{Item, Parameters};
 use crate::devices::interbus::protocol::{CamNumber, Parameter, Program, ProgramNumber, Value, WindowShift};
 use crate::profile::{Operation, Plan};
 
-/// What a write to an INTERBUS encoder would do.
+/// A planned write to an INTERBUS encoder.
 pub type InterbusPlan = Plan<Base, Op>;
 
-/// What was read before a plan was made: all that its operations change, and the range that its cams have to be within.
-/// Programs that it does not touch are not in it, since reading one switches the encoder's outputs.
+/// The values that a plan is based on: everything that its operations change, and the range of its cams. Programs that
+/// it does not touch are not included, since reading one switches the encoder's outputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// The parameters; `None` where there is nothing to do.
@@ -40,7 +40,7 @@ pub enum Op {
 /// A parameter with another number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ParameterChange {
-    /// Which one.
+    /// The parameter.
     pub parameter: Parameter,
     /// Its number now.
     pub from: u32,
@@ -48,10 +48,10 @@ pub struct ParameterChange {
     pub to: u32,
 }
 
-/// What changes in a program.
+/// The changes in a program.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct ProgramChange {
-    /// Which one.
+    /// The program.
     pub program: ProgramNumber,
     /// Edges of cams, by cam and the start first.
     pub cams: Vec<CamChange>,
@@ -64,13 +64,13 @@ pub struct ProgramChange {
 /// An edge of a cam with another position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CamChange {
-    /// Which cam.
+    /// The cam.
     pub cam: CamNumber,
-    /// Which of its edges.
+    /// The edge.
     pub edge: Edge,
-    /// Where it is now.
+    /// Old place.
     pub from: Value,
-    /// Where it will be.
+    /// New place.
     pub to: Value,
 }
 
@@ -93,8 +93,8 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// What it changes, as `read` names it; a cam once, whether one of its edges changes or both. Of the default nobody
-    /// knows.
+    /// Returns the changed items, named as in `read`; a cam once, whether one of its edges changes or both. Those of
+    /// the default are not known.
     pub fn items(&self) -> Vec<Item> {
         match self {
             Op::Parameterise(changes) => {

@@ -1,5 +1,5 @@
-//! What is saved of an INTERBUS encoder: who it is, what it keeps in its EEPROM, what its cams are called, and beside them
-//! what is only recorded. Its text is in [`text`](super::text).
+//! The saved content of an INTERBUS encoder: identity, EEPROM, names of its cams, and recorded values. Its text is in
+//! [`text`](super::text).
 
 use std::collections::BTreeMap;
 
@@ -10,13 +10,13 @@ use crate::profile::ron_text::Unknown;
 /// An INTERBUS encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterbusProfile {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
-    /// What it keeps. A program or a cam that is `None`, and a shift that is: the profile says nothing about it.
+    /// The content of its EEPROM. A program, a cam or a shift that is `None` is not in the profile.
     pub image: Image,
-    /// What a person calls the programs and their cams; the encoder does not keep it.
+    /// Names of the programs and their cams; the encoder does not keep them.
     pub names: Names,
-    /// What belongs to the mounting and never goes onto another encoder by itself.
+    /// Values that belong to the mounting and are never written to another encoder unasked.
     pub mounting: Vec<MountingMark>,
     /// Values that change by themselves or cannot be written: recorded, neither compared nor restored.
     pub recorded: Recorded,
@@ -24,7 +24,7 @@ pub struct InterbusProfile {
     pub unknown: UnknownEntries,
 }
 
-/// Who an encoder is.
+/// The identity of an encoder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
     /// Read-out 0, decimal; empty where the profile is of no encoder.
@@ -55,7 +55,7 @@ pub struct Recorded {
 /// Something that is right for one encoder on one machine and no other.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// What a person calls programs and cams. What has no name has an empty one.
+/// The user's names of programs and cams; empty without a name.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Names {
     programs: BTreeMap<ProgramNumber, String>,

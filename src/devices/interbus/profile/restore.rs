@@ -1,5 +1,5 @@
-//! What restoring a profile would do: only what differs, in the fewest stores, and nothing that belongs to another
-//! encoder's mounting. A preset is stored and never fired.
+//! Planning a restore: only differences, in the fewest stores, and nothing that belongs to another encoder's mounting.
+//! A preset is stored and never fired.
 
 pub use crate::profile::RestoreOptions;
 
@@ -9,13 +9,14 @@ use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 /// An encoder as it is, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
-    /// Who it is.
+    /// The identity.
     pub identity: ProfileIdentity,
-    /// What it keeps: the programs that were read are at least [`programs_needed`], with the shift where there are any.
+    /// The content of its EEPROM: the programs that were read are at least [`programs_needed`], with the shift if there
+    /// are any.
     pub image: Image,
 }
 
-/// What a restore would do.
+/// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
 /// The programs that have to be read before a restore of this profile can be planned. The shift of the window is read with
@@ -77,7 +78,7 @@ pub fn check_device(profile: &InterbusProfile, device: &ProfileIdentity) -> Resu
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// What differs between the types of a profile and of an encoder; `None` where they are the same, or one of them is not known.
+/// Returns the types of a profile and of an encoder if they differ; `None` if they are equal, or one is not known.
 pub fn other_type(profile: &ProfileIdentity, device: &ProfileIdentity) -> Option<OtherType> {
     let (profile, device) = profile.flags.zip(device.flags)?;
     let what = |flags: Flags| (flags.multiturn(), flags.steps_minus_one());

@@ -1,6 +1,6 @@
 //! Positions in the units of a machine: degrees of its turn, or millimetres of its travel, beside the steps of the encoder.
 
-/// What a machine counts in.
+/// The unit of a machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Unit {
     /// Steps of the encoder's position.
@@ -12,7 +12,7 @@ pub enum Unit {
     Millimetres,
 }
 
-/// How a machine's positions and the encoder's belong together.
+/// The relation between a machine's positions and the encoder's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
     unit: Unit,
@@ -27,11 +27,11 @@ pub struct Scale {
 pub struct Placed {
     /// The nearest step.
     pub step: u32,
-    /// How far that is beyond what was asked for, in units.
+    /// Rounding error, in units.
     pub off: f64,
 }
 
-/// Why a position is none.
+/// Why a position is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{value} is not within {least} to {most}")]
 pub struct Outside {
@@ -48,7 +48,7 @@ pub struct Outside {
 #[error("steps in a unit are a number above 0")]
 pub struct ScaleError;
 
-/// Decimals beyond which nobody reads.
+/// Most decimals that are useful.
 const MOST_DECIMALS: usize = 6;
 /// Two numbers that were reckoned are the same.
 const SAME: f64 = 1e-9;
@@ -107,7 +107,7 @@ impl Scale {
         if is_scale { Ok(Scale { unit, steps, zero }) } else { Err(ScaleError) }
     }
 
-    /// What it counts in.
+    /// Returns its unit.
     pub const fn unit(&self) -> Unit {
         self.unit
     }

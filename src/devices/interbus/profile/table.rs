@@ -16,10 +16,10 @@ use super::{Names, Outside, Scale, Unit};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
-/// How a table is to be read.
+/// How a table is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableOptions {
-    /// What its edges are in.
+    /// Scale of its edges.
     pub scale: Scale,
     /// Steps of the measuring range.
     pub range: u32,
@@ -30,15 +30,15 @@ pub struct TableOptions {
 /// A table that was read.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CamTable {
-    /// What stands between its columns.
+    /// Delimiter of its columns.
     pub delimiter: Option<Delimiter>,
     /// Its first line names the columns.
     pub header: bool,
-    /// What could be taken, in the order of the table.
+    /// The valid rows, in the order of the table.
     pub rows: Vec<TableRow>,
-    /// What could not, in the order of the table.
+    /// The problems, in the order of the table.
     pub problems: Vec<TableProblem>,
-    /// What a person should know of what was taken.
+    /// Remarks on the valid rows.
     pub notes: Vec<TableNote>,
 }
 
@@ -51,7 +51,7 @@ pub struct TableRow {
     pub program: ProgramNumber,
     /// The cam that it takes.
     pub cam: CamNumber,
-    /// What it is called; empty without a name.
+    /// Its name; may be empty.
     pub name: String,
     /// Its first position.
     pub start: TableEdge,
@@ -66,7 +66,7 @@ pub struct TableEdge {
     pub asked: f64,
     /// On the encoder.
     pub step: u32,
-    /// How far that is beyond what was asked for, in units.
+    /// Rounding error, in units.
     pub off: f64,
 }
 
@@ -78,11 +78,11 @@ pub struct TableProblem {
     pub line: u64,
     /// The column, counted from 1.
     pub column: u64,
-    /// What is wrong.
+    /// The problem.
     pub what: Wrong,
 }
 
-/// What is wrong in a line.
+/// A problem in a line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Wrong {
     /// There is nothing in the table.
@@ -115,7 +115,7 @@ pub enum Wrong {
     /// Beyond the measuring range.
     #[error("the {column} {0} within the measuring range", .outside)]
     Outside {
-        /// Which edge.
+        /// The edge.
         column: Column,
         /// With the limits, in units.
         outside: Outside,
@@ -128,7 +128,7 @@ pub enum Wrong {
     Twice {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
+        /// The cam.
         cam: CamNumber,
         /// The line that counts.
         first: u64,
@@ -136,7 +136,7 @@ pub enum Wrong {
     /// A name that is too long.
     #[error("a name has at most {most} characters")]
     Name {
-        /// So many.
+        /// The limit.
         most: usize,
     },
 }
@@ -182,11 +182,11 @@ pub enum Column {
 /// A program as a table has it: its cams work, and no others. The edges of those others stay as they are.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Filled {
-    /// Which one.
+    /// The program.
     pub program: ProgramNumber,
     /// Its cams.
     pub cams: [Option<Cam>; Program::CAMS],
-    /// What they are called; empty where they have no name.
+    /// Their names; empty without a name.
     pub names: [String; Program::CAMS],
 }
 

@@ -2,11 +2,11 @@
 
 use super::value::Value;
 
-/// Which of a program's cams: 0 to 7. Words have room for 16 and the manual names 8 (reference 6.9).
+/// The number of a program's cam: 0 to 7. Words have room for 16 and the manual names 8 (reference 6.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CamNumber(u8);
 
-/// Which program: 1 to 8.
+/// The number of a program: 1 to 8.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
@@ -59,7 +59,7 @@ impl CamNumber {
 }
 
 impl ProgramNumber {
-    /// How many there are.
+    /// Number of programs.
     pub const COUNT: usize = 8;
     /// 1.
     pub const FIRST: ProgramNumber = ProgramNumber(1);
@@ -86,7 +86,7 @@ impl Cam {
         self.start > self.stop
     }
 
-    /// Whether it is on.
+    /// Returns whether it is on at a position.
     pub fn is_on(self, position: Value) -> bool {
         if self.wraps() {
             position >= self.start || position <= self.stop
@@ -100,7 +100,7 @@ impl Program {
     /// Cams of a program.
     pub const CAMS: usize = 8;
 
-    /// Whether a cam works.
+    /// Returns whether a cam is active.
     pub const fn is_on(&self, cam: CamNumber) -> bool {
         self.mask >> cam.0 & 1 == 1
     }

@@ -2,7 +2,7 @@
 
 use super::value::Value;
 
-/// What an encoder sends in cam mode.
+/// The word of an encoder in cam mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CamOutput {
     /// Bits 7..0: cam i is on in bit i.
@@ -25,7 +25,7 @@ pub struct CamOutputError {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WindowShift(u8);
 
-/// What a bit of the word is.
+/// The meaning of a bit of the word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CamBit {
     /// Bit 31: nothing else counts.
@@ -61,7 +61,7 @@ impl WindowShift {
 }
 
 impl CamOutput {
-    /// What an encoder sends at a position with these outputs.
+    /// Returns the word of an encoder at a position with these outputs.
     pub const fn at(position: Value, outputs: u8, shift: WindowShift) -> Self {
         let window = (position.get() & shift.mask()) >> shift.0;
         CamOutput { outputs, window, stray: 0 }
@@ -93,7 +93,7 @@ impl CamOutput {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }
 
-    /// What a bit of the word is, counted from 0. `None` beyond 31.
+    /// Returns the meaning of a bit of the word, counted from 0. `None` beyond 31.
     pub const fn bit(bit: u8, shift: WindowShift) -> Option<CamBit> {
         Some(match bit {
             0..=7 => CamBit::Cam(bit),

@@ -2,7 +2,7 @@
 
 use super::value::Value;
 
-/// What an encoder exchanges with its master.
+/// The class of process data that an encoder exchanges with its master.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Class {
     /// 16 bits IN: a position.
@@ -13,7 +13,7 @@ pub enum Class {
     K3,
 }
 
-/// What carries the bus.
+/// The carrier of the bus.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Interface {
     /// Copper.
@@ -54,7 +54,7 @@ pub const fn id_code(class: Class, interface: Interface) -> u8 {
     }
 }
 
-/// What may have an identification code: several where their codes are the same, none for another device's.
+/// Returns the devices with an identification code: several if their codes are equal, none for other devices.
 pub fn class_of_id(code: u8) -> impl Iterator<Item = (Class, Interface)> {
     Class::ALL
         .into_iter()
@@ -98,7 +98,7 @@ impl Single {
         }
     }
 
-    /// What stands in the bits that should be 0, where it stands.
+    /// Returns the bits that should be 0 and are not.
     pub const fn stray(self) -> u32 {
         self.emit() & !self.position().get()
     }

@@ -7,7 +7,7 @@ use super::parameter::Parameter;
 use super::read_out::ReadOut;
 use super::value::{Code, Value};
 
-/// What an OUT word asks for.
+/// The request of an OUT word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Command {
     /// 00000000h: normal running.
@@ -50,7 +50,7 @@ pub enum Command {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{:08X} ({}) is not legal in {mode}", command.emit(), command.name())]
 pub struct Refused {
-    /// What was meant.
+    /// The intended command.
     pub command: Command,
     /// The mode that the encoder is in.
     pub mode: Mode,
@@ -108,7 +108,7 @@ impl Command {
         }
     }
 
-    /// What an encoder in a mode takes a word for.
+    /// Parses a word as an encoder in a mode understands it.
     ///
     /// # Errors
     /// [`Refused`] with what it means in another mode, or nowhere.
@@ -120,7 +120,7 @@ impl Command {
         }
     }
 
-    /// That this command may be sent to an encoder in a mode, which then takes it for what it is.
+    /// Checks that an encoder in a mode understands this command as intended.
     ///
     /// # Errors
     /// [`Refused`]: nothing may be sent.
@@ -128,8 +128,8 @@ impl Command {
         if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
     }
 
-    /// Whether it may be sent in a mode. Words stay on the process data, so that one that enters a mode is legal in it.
-    /// Read-outs are allowed wherever the outputs count, since one of them tells the mode (`U`).
+    /// Returns whether it may be sent in a mode. Words stay on the process data, so one that enters a mode is legal in
+    /// it. Read-outs are allowed wherever the outputs are valid, since one of them shows the mode (`U`).
     pub const fn is_legal_in(self, mode: Mode) -> bool {
         use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {
@@ -151,7 +151,7 @@ impl Command {
         }
     }
 
-    /// What it is called.
+    /// Returns its name.
     pub fn name(self) -> &'static str {
         match self {
             Command::Normal => "normal running",
@@ -176,7 +176,7 @@ impl Command {
         }
     }
 
-    /// What a word means while no cam program is selected.
+    /// Parses a word while no cam program is selected.
     fn outside_cams(word: u32) -> Option<Command> {
         let low = word as u16;
         match word {
@@ -194,7 +194,7 @@ impl Command {
         }
     }
 
-    /// What a word means while one is.
+    /// Parses a word while a cam program is selected.
     fn of_cams(word: u32) -> Option<Command> {
         let low = word as u16;
         let cam = || CamNumber::new(Code::of_word(word).get());

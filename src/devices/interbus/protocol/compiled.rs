@@ -6,9 +6,9 @@ use super::value::Value;
 /// Programs as a list of stretches without a change. A preview asks it for millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Compiled {
-    /// Where a stretch begins, rising. What is on before the first of them is `before`.
+    /// Starts of the sections, rising. The outputs before the first of them are in `before`.
     starts: Vec<u32>,
-    /// What is on in it: a byte a program, the first lowest.
+    /// Outputs of each section: a byte a program, the first lowest.
     outputs: Vec<u64>,
     before: u64,
 }

@@ -14,7 +14,7 @@ pub struct Gear {
     turns: u32,
 }
 
-/// Why two numbers are no gear.
+/// Why two numbers are not a gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GearError {
     /// Beyond what the encoder counts.
@@ -60,18 +60,18 @@ impl Gear {
         self.steps
     }
 
-    /// Turns of the shaft until the position begins anew.
+    /// Returns the turns of the shaft until the position starts again.
     pub const fn turns(self) -> u32 {
         self.turns
     }
 
-    /// Steps of the disc until the position begins anew.
+    /// Returns the steps of the disc until the position starts again.
     pub const fn range(self) -> u32 {
         STEPS_PER_TURN * self.turns
     }
 
-    /// Steps of the disc in steps of the position: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual only
-    /// says that the two are one gear). Nothing begins anew here: a whole range gives all steps.
+    /// Converts steps of the disc to steps of the position: `raw · steps / (8192 · turns)`, rounded down (`U`: the
+    /// manual only says that the two are one gear). Nothing wraps here: a whole range gives all steps.
     pub const fn scaled(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.range() as u64
     }

@@ -1,4 +1,4 @@
-//! What the four lamps of an encoder say (reference 1).
+//! The meaning of the four LEDs of an encoder (reference 1).
 
 /// A lamp.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -24,14 +24,14 @@ pub struct Leds {
     pub rbda: Lamp,
 }
 
-/// What lamps say, and what to do.
+/// The meaning of a combination of LEDs, and what to do.
 #[derive(Clone, Copy, Debug)]
 pub struct LedRow {
-    /// What is lit.
+    /// The combination.
     pub leds: Leds,
-    /// What it says, as the manual has it.
+    /// Its meaning in the manual's words.
     pub meaning: &'static str,
-    /// What to do; the manual says nothing of it (`U`).
+    /// What to do; not in the manual (`U`).
     pub remedy: &'static str,
 }
 
@@ -41,7 +41,7 @@ const fn leds(ul: Lamp, ba: Lamp, rc: Lamp, rbda: Lamp) -> Leds {
     Leds { ul, ba, rc, rbda }
 }
 
-/// What the manual has, in its order.
+/// The combinations of the manual, in its order.
 pub const LEDS: [LedRow; 4] = [
     LedRow {
         leds: leds(On, Off, On, Off),

@@ -1,4 +1,4 @@
-//! What an encoder is doing: it decides what an OUT word means (reference 6.3).
+//! The mode of an encoder: it determines the meaning of an OUT word (reference 6.3).
 
 use std::fmt;
 

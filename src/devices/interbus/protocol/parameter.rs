@@ -25,7 +25,7 @@ pub enum Parameter {
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
-    /// Which one.
+    /// The parameter.
     pub parameter: Parameter,
     /// Bits 28..25 of its word.
     pub code: u8,
@@ -36,7 +36,7 @@ pub struct ParameterRow {
     limit: Limit,
 }
 
-/// What its number may be.
+/// The limits of a number.
 #[derive(Clone, Copy, Debug)]
 enum Limit {
     /// Always the same.
@@ -51,7 +51,7 @@ enum Limit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {value} is not within {low} to {high}", parameter.name())]
 pub struct OutOfRange {
-    /// Which one.
+    /// The parameter.
     pub parameter: Parameter,
     /// As given.
     pub value: u32,
@@ -101,7 +101,7 @@ impl Parameter {
         PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
     }
 
-    /// What its number may be in an encoder with this gear.
+    /// Returns the allowed numbers in an encoder with this gear.
     pub const fn range(self, gear: Gear) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,
@@ -110,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// What its number may be in an encoder with any gear.
+    /// Returns the allowed numbers in an encoder with any gear.
     pub const fn widest_range(self) -> RangeInclusive<u32> {
         match self.row().limit {
             Limit::Fixed(low, high) => low..=high,

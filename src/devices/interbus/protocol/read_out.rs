@@ -1,16 +1,16 @@
-//! What can be read out of an encoder, and what its values say (reference 3).
+//! The values that can be read from an encoder, and their meaning (reference 3).
 
 use super::cam::ProgramNumber;
 use super::value::Value;
 
-/// What is asked for: bits 15..0 of a word 2021xxxxh. Numbers that the manual does not have are kept.
+/// The number of a value: bits 15..0 of a word 2021xxxxh. Numbers that the manual does not have are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOut(u16);
 
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadOutRow {
-    /// Which one.
+    /// The value's number.
     pub read_out: ReadOut,
     /// As the manual calls it.
     pub name: &'static str,
@@ -52,7 +52,7 @@ pub enum ReadOutValue {
     TenthsOfDegree(i32),
     /// In which mode the encoder is.
     StartupMode(StartupMode),
-    /// What it is.
+    /// Flags of the encoder.
     Flags(Flags),
 }
 
@@ -102,7 +102,7 @@ impl ReadOut {
         self.0
     }
 
-    /// Which register of the chip it is, where it is one.
+    /// Returns the number of the chip register, if it is one.
     pub const fn register(self) -> Option<u8> {
         if self.0 & 0xF == CHIP && self.0 <= 0xFF { Some((self.0 >> 4) as u8) } else { None }
     }
@@ -112,7 +112,7 @@ impl ReadOut {
         READ_OUTS.iter().find(|row| row.read_out == self)
     }
 
-    /// What a value says that came for it.
+    /// Parses the value received for it.
     pub fn value(self, value: Value) -> ReadOutValue {
         match self {
             ReadOut::OPERATING_TIME => ReadOutValue::Minutes(value.get() * 10),

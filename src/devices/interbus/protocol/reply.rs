@@ -5,7 +5,7 @@ use super::command::Command;
 use super::mode::Mode;
 use super::value::{Code, Value};
 
-/// What an IN word says.
+/// The meaning of an IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Reply {
     /// Bit 31 is clear: the encoder runs. A position; in velocity mode a speed, in cam mode the cam output word.
@@ -19,7 +19,7 @@ pub enum Reply {
     Busy {
         /// Bit 29.
         manufacturer: bool,
-        /// What stands beside it.
+        /// Data of the word.
         data: Value,
     },
     /// 110 or 111 in front: this has been received. Not yet that it was taken.
@@ -96,7 +96,7 @@ impl Reply {
         Reply::parse(command.emit() | ECHO)
     }
 
-    /// What it echoes, if a parameter or a cam was set in this mode.
+    /// Returns the echoed command, if a parameter or a cam was set in this mode.
     pub fn echoed(self, mode: Mode) -> Option<Command> {
         let sets = |command: &Command| {
             use Command::{Activate, CamStart, CamStop, Cams, Set, Shift};
@@ -116,7 +116,7 @@ impl ErrorWord {
     /// The manufacturer's error of a cam's edge beyond the measuring range, in `data` of code Ch.
     pub const CAM_BEYOND_RANGE: u32 = 4;
 
-    /// What it says, in the manual's words.
+    /// Returns its meaning in the manual's words.
     pub const fn meaning(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "wrong parameter data",
@@ -128,7 +128,7 @@ impl ErrorWord {
         }
     }
 
-    /// What to do; the manual says little of it (`U`).
+    /// Returns what to do; hardly in the manual (`U`).
     pub const fn remedy(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "send a number within its limits, then run",

@@ -13,8 +13,8 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED, VirtualDevice, setting};
 
 parameters! {
-    /// What a virtual gateway and the encoders behind it shall be like. The default is one K3 encoder as delivered, at rest,
-    /// without faults; a gateway with unit 1, registers from 0 and the high word first.
+    /// The settings of a virtual gateway and the encoders behind it. The default is one K3 encoder with factory
+    /// settings, at rest, without faults; a gateway with unit 1, registers from 0 and the high word first.
     pub struct Config: ConfigError {
         // The gear, with what has to fit into it: checked together, and put into the memory.
         steps: Option<String> = None, "steps" => Maybe(ANY);
@@ -25,7 +25,7 @@ parameters! {
         preset: Option<String> = None, "preset" => Maybe(ANY);
         zero_shift: u32 = 0, "zero-shift" => VALUE;
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
-        /// Where the shaft stands at the start, in steps of the disc.
+        /// Position of the shaft at the start, in steps of the disc.
         pub(super) position: u32 = 0x12_3456, "position" => Whole(Quantity::PlaceOfDisc, 0..=PLACES - 1);
         pub(super) serial_number: u32 = 7_101_234, "serial" => VALUE;
         /// Tens of minutes.
@@ -42,9 +42,9 @@ parameters! {
         pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
         /// Steps are given less one, as in older encoders.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
-        /// So long the word says that it is busy.
+        /// How long the word reports busy.
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
-        /// So many cycles the IN word is still the old one after a new OUT word.
+        /// Number of cycles for which the old IN word stays after a new OUT word.
         pub(super) stale: u32 = 1, "stale" => Whole(Quantity::Cycles, 0..=1000);
         /// A selected program is acknowledged before its output (`U`).
         pub(super) acknowledges_selection: bool = true, "selection" => Words(&[("echo", true), ("output", false)]);
@@ -83,7 +83,7 @@ impl Config {
         (self.celsius * 10.0).round() as i32
     }
 
-    /// Where only one half of the gear is given, the other is as much as fits.
+    /// Completes a gear of which only one half is given with the largest possible other half.
     fn fill_memory(&mut self) -> Result<(), ConfigError> {
         let memory = &mut self.memory;
         if let Some(turns) = self.revolutions.take() {

@@ -36,13 +36,13 @@ pub struct Encoder {
     offset: i64,
     mode: StartupMode,
     doing: Activity,
-    /// What is set; a store keeps it.
+    /// The present settings; a store makes them permanent.
     memory: Memory,
     eeprom: Eeprom,
-    /// What a store has to keep.
+    /// The settings that a store has to save.
     unstored: Option<Stored>,
     power: bool,
-    /// What its master says; it stands there until it says another word.
+    /// The OUT word of its master; it stays until the master changes it.
     out: u32,
     says: Says,
     /// The IN word that is still read after a new OUT word.
@@ -53,7 +53,7 @@ pub struct Encoder {
     acknowledges_selection: bool,
 }
 
-/// What it tells of itself.
+/// The identity that it reports.
 #[derive(Clone, Copy, Debug)]
 struct Identity {
     serial_number: u32,
@@ -72,7 +72,7 @@ enum Activity {
     ReadingOut,
 }
 
-/// What stands in the IN word.
+/// The content of the IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Says {
     /// Position, speed or cam output, as they are at the moment.
@@ -80,7 +80,7 @@ enum Says {
     Word(u32),
 }
 
-/// What was there before the OUT word changed. A cycle is every reading of the IN word; without one they go on by
+/// The IN word before the OUT word changed. Every reading of the IN word is a cycle; without readings cycles go on by
 /// themselves.
 #[derive(Clone, Copy, Debug, Default)]
 struct Old {
@@ -116,7 +116,7 @@ impl Fault {
 }
 
 impl Encoder {
-    /// Chosen: how long a cycle takes in which nobody reads.
+    /// Chosen: duration of a cycle without readings.
     const CYCLE: Duration = Duration::from_millis(5);
     /// Chosen; read-out 7.
     const SOFTWARE_VERSION: u32 = 204;
@@ -153,7 +153,7 @@ impl Encoder {
         }
     }
 
-    /// What turns its shaft.
+    /// Returns the motor of its shaft.
     pub fn motor(&self) -> Motor {
         self.motor.clone()
     }
@@ -164,17 +164,17 @@ impl Encoder {
         self.shaft.put(now, place);
     }
 
-    /// What is set, stored or not.
+    /// Returns the settings, stored or not.
     pub const fn memory(&self) -> &Memory {
         &self.memory
     }
 
-    /// What survives a loss of power.
+    /// Returns the settings that survive a loss of power.
     pub const fn kept(&self) -> &Memory {
         &self.eeprom.kept
     }
 
-    /// How often its EEPROM was stored into.
+    /// Returns the number of stores to its EEPROM.
     pub const fn stores(&self) -> u32 {
         self.eeprom.stores()
     }
@@ -184,7 +184,7 @@ impl Encoder {
         self.mode
     }
 
-    /// What it takes a word for.
+    /// Returns the mode in which it interprets a word.
     pub const fn mode(&self) -> Mode {
         match (self.mode, self.doing) {
             (StartupMode::Cams(_), _) => Mode::Cam,
@@ -352,7 +352,7 @@ impl Encoder {
         }
     }
 
-    /// What stands in the IN word at `now`.
+    /// Returns the IN word at `now`.
     fn shown(&self, now: Moment) -> u32 {
         let old = &self.old;
         match self.says {

@@ -79,7 +79,7 @@ fn carry_out(request: &[u8], unit: u8, registers: &mut impl Registers) -> Result
     Ok(reply)
 }
 
-/// That what stands behind the function is as long as it says, and the values that it writes.
+/// Checks the length of the data after the function, and parses the values that it writes.
 fn check(function: ModbusFunction, rest: &[u8]) -> Result<Vec<u16>, Exception> {
     let words = |bytes: &[u8]| bytes.as_chunks().0.iter().copied().map(u16::from_be_bytes).collect();
     match (function, rest) {

@@ -1,5 +1,5 @@
-//! The gateway: Modbus/TCP bytes of its clients, and the encoders behind it. Several clients may be connected at once, as
-//! with a real one, and every encoder then does what was said last, whoever said it. Chosen here: a reply takes two
+//! The gateway: Modbus/TCP bytes of its clients, and the encoders behind it. Several clients may be connected at once,
+//! as with a real one, and every encoder obeys the last command, whoever sent it. Chosen here: a reply takes two
 //! milliseconds; another unit, and an encoder without power, is exception 0Bh.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -25,7 +25,7 @@ pub struct Gateway {
     to_host: Queue<Vec<u8>>,
 }
 
-/// What all clients have in common.
+/// State shared by all clients.
 struct Shared {
     unit: u8,
     map: Map,
@@ -60,7 +60,7 @@ impl Gateway {
         Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: Queue::default() }
     }
 
-    /// What turns the shaft of the first encoder.
+    /// Returns the motor of the first encoder.
     pub fn shaft(&self) -> Motor {
         self.with_encoder(|encoder| encoder.motor())
     }
@@ -159,7 +159,7 @@ impl ByteDevice for Gateway {
     /// There is no serial line.
     fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
-    /// What another connection asked for has no reader; encoders that lost their power get it back.
+    /// Connects a client: replies to another connection are dropped; encoders that lost their power get it back.
     fn connect(&mut self, now: Moment) {
         self.received.clear();
         self.to_host = Queue::default();

@@ -1,10 +1,10 @@
-//! What is set in an encoder, and the EEPROM that keeps it: about 200 stores, guaranteed up to 500 (reference 3).
+//! The settings of an encoder, and the EEPROM that keeps them: about 200 stores, guaranteed up to 500 (reference 3).
 
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
 };
 
-/// What is set, all of which a store keeps.
+/// The settings, all of which a store saves.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Memory {
     pub(super) gear: Gear,
@@ -56,7 +56,7 @@ impl Memory {
         self.zero_shift
     }
 
-    /// How far the position is shifted under its window.
+    /// Returns the shift of the position under its window.
     pub const fn shift(&self) -> WindowShift {
         self.shift
     }
@@ -109,11 +109,11 @@ const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
     Err(_) => unreachable!(),
 };
 
-/// What keeps a [`Memory`] without power.
+/// Keeps a [`Memory`] without power.
 #[derive(Clone, Debug)]
 pub(super) struct Eeprom {
     pub(super) kept: Memory,
-    /// What it held was lost: 86000000 until all of it is stored anew.
+    /// Its content was lost: 86000000 until all of it is stored again.
     pub(super) lost: bool,
     stores: u32,
     /// Of those since the encoder was made: what a fault counts.
@@ -121,14 +121,14 @@ pub(super) struct Eeprom {
     die_in_store: Option<u32>,
 }
 
-/// What a store keeps.
+/// The part that a store saves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stored {
     Parameters,
     Program(ProgramNumber),
 }
 
-/// How a store ended.
+/// The end of a store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     Kept,
@@ -154,7 +154,7 @@ impl Eeprom {
         self.die_in_store = number;
     }
 
-    /// Whatever is set is stored. A store that fails loses all that it was about to write (`U`).
+    /// Stores the settings. A store that fails loses everything that it was about to write (`U`).
     pub(super) fn store(&mut self, memory: &Memory, what: Stored) -> Ended {
         self.stores = self.stores.saturating_add(1);
         self.begun = self.begun.saturating_add(1);

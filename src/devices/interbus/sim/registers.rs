@@ -8,7 +8,7 @@ use super::frame::Exception;
 use crate::devices::interbus::protocol::WordOrder;
 use crate::units::Moment;
 
-/// Which registers the encoders have.
+/// The registers of the encoders.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Map {
     input: u16,
@@ -100,7 +100,7 @@ impl Map {
         Ok(registers)
     }
 
-    /// Where registers begin, counted from the first encoder's; all of them have to be there.
+    /// Returns the range of registers, counted from the first encoder's; all of them have to exist.
     fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }

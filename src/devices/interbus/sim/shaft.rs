@@ -3,7 +3,7 @@
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
 
-/// A shaft turning at constant speed. Its place knows no end: where a position begins anew is the gear's matter.
+/// A shaft turning at constant speed. Its position does not wrap: that is done by the gear.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
@@ -32,7 +32,7 @@ impl Shaft {
         (self.place, self.since) = (f64::from(place), now);
     }
 
-    /// Where it is: whole steps, also below 0.
+    /// Returns its position: whole steps, also below 0.
     pub(super) fn place(&self, at: Moment) -> i64 {
         self.exact(at).floor() as i64
     }

@@ -1,4 +1,4 @@
-//! What the user asks of an encoder, carried out: edits at once, everything else as a job on its line or a task.
+//! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
 
 use super::action::Action;
 use super::encoder::Encoder;

@@ -1,4 +1,4 @@
-//! What can be asked of an INTERBUS encoder that is shown.
+//! The actions of an INTERBUS encoder that is shown.
 
 use std::path::PathBuf;
 
@@ -24,7 +24,7 @@ pub enum Action {
     Edit(Box<Edit>),
     /// Show what a change would do.
     Plan(Box<Change>),
-    /// Back to the mode that was found, whoever left the encoder otherwise.
+    /// Leads the encoder back to its earlier mode, whoever changed it.
     LeadBack,
     /// Ask for a table of cams; rows that name no program are for this one.
     AskTable(ProgramNumber),
@@ -41,7 +41,6 @@ pub enum Action {
     },
     /// Write the cams as a table.
     SaveTable {
-        /// Where.
         path: PathBuf,
         /// With a decimal comma.
         decimal_comma: bool,

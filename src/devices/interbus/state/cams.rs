@@ -22,7 +22,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 /// A program as a chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chart {
-    /// Which program.
+    /// The program.
     pub program: ProgramNumber,
     /// Steps of the measuring range.
     pub range: u32,
@@ -33,13 +33,13 @@ pub struct Chart {
 /// A cam in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lane {
-    /// Which one.
+    /// The cam.
     pub cam: CamNumber,
-    /// What it is called.
+    /// Its name.
     pub name: Option<String>,
     /// It works.
     pub on: bool,
-    /// Where it is; `None`: the profile does not say.
+    /// Its edges; `None` if the profile does not contain them.
     pub edges: Option<Cam>,
     /// The encoder, or the profile, has it otherwise.
     pub edited: bool,
@@ -118,7 +118,7 @@ impl Chart {
         chart
     }
 
-    /// A cam that does not work, for one that is to be drawn anew; `None`: all work.
+    /// Returns an inactive cam to draw a new one with; `None` if all are active.
     pub fn free(&self) -> Option<CamNumber> {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
@@ -148,7 +148,7 @@ impl Chart {
 }
 
 impl Lane {
-    /// Where it is on within the measuring range: two stretches where it goes over the end.
+    /// Returns its active sections within the measuring range: two if it runs over the end.
     pub fn stretches(&self, range: u32) -> Vec<Stretch> {
         self.edges.map(|cam| stretches(cam, range)).unwrap_or_default()
     }
@@ -160,7 +160,7 @@ impl Lamp {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }
 
-    /// What is lit: the encoder's own where it says it.
+    /// Returns the state of the output: the encoder's own if known.
     pub const fn lit(self) -> Option<bool> {
         match self.own {
             Some(own) => Some(own),
@@ -180,7 +180,7 @@ impl VisibleRange {
         self.first
     }
 
-    /// How many positions are to be seen.
+    /// Returns the number of visible positions.
     pub const fn span(&self) -> f64 {
         self.span
     }
@@ -190,7 +190,7 @@ impl VisibleRange {
         self.span >= f64::from(range)
     }
 
-    /// Where a position is in it: 0 at its left end, 1 at its right end.
+    /// Returns the place of a position in the view: 0 at its left end, 1 at its right end.
     pub fn part(&self, position: f64) -> f64 {
         (position - self.first) / self.span
     }
@@ -200,7 +200,7 @@ impl VisibleRange {
         self.first + part * self.span
     }
 
-    /// So many times nearer, around a position that stays where it is.
+    /// Returns the view zoomed by this factor, around a position that stays in place.
     #[must_use]
     pub fn zoomed(&self, times: f64, around: f64, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -225,7 +225,7 @@ impl VisibleRange {
     }
 }
 
-/// Where a cam is on within the measuring range.
+/// Returns the active sections of a cam within the measuring range.
 pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let Some(last) = range.checked_sub(1) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! What a person fills in to connect an INTERBUS encoder, and the link it stands for. Nothing is opened here.
+//! The connection form of an INTERBUS encoder, and its link. Nothing is opened here.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -10,7 +10,7 @@ use crate::devices::interbus::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// How the encoder is reached.
+/// The way to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusWay {
     /// The virtual encoder in this program, behind a virtual gateway.
@@ -26,7 +26,6 @@ pub enum InterbusWay {
 /// for what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
-    /// How the encoder is reached.
     pub way: InterbusWay,
     /// Name or address of the gateway.
     pub host: String,
@@ -34,7 +33,7 @@ pub struct InterbusForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// What is typed for other parameters.
+    /// Text of other parameters.
     pub typed: Typed,
     /// The low word of the two comes first.
     pub low_first: bool,

@@ -8,7 +8,7 @@ use crate::devices::interbus::jobs::Interbus;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::profile::Document;
 
-/// What is edited, each with its place.
+/// The edits, each with its place.
 pub(crate) type Edits = Vec<SavedEdit>;
 
 impl HasSession for Encoder {

@@ -27,29 +27,28 @@ const STEPS: usize = 200;
 
 /// An INTERBUS encoder, or a profile of one.
 pub struct Encoder {
-    /// What every session has.
     pub session: Session<Interbus>,
-    /// Who it is and how it is set, as it was read.
+    /// The identity and the parameters, as read.
     pub survey: Option<Survey>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
     /// Parameters and cams beside the edits of them.
     pub staged: Staged,
-    /// What was read out, by its number.
+    /// The values read out, by number.
     pub read_outs: BTreeMap<u16, Value>,
-    /// What was recorded while it was polled.
+    /// The recording from polling.
     pub record: Record,
-    /// Whether its cam outputs are those of the programs that it holds.
+    /// Comparison of its cam outputs with those of its programs.
     pub preview: Preview,
     /// Words of the last handshakes, the newest last.
     pub handshake: VecDeque<Handshake>,
-    /// What turns the virtual encoder's shaft.
+    /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
     /// A table of cams that was read and is not taken yet.
     pub import: Option<Import>,
-    /// What its machine counts in.
+    /// Units of its machine.
     pub scale: Scale,
-    /// Why the last edit was not taken.
+    /// Why the last edit was refused.
     pub refusal: Option<Text>,
     /// A person has said that the machine stands.
     stopped: bool,
@@ -57,7 +56,7 @@ pub struct Encoder {
     pub(super) table_program: ProgramNumber,
     /// Programs that were written, to be read again.
     pub(super) read_after: Vec<ProgramNumber>,
-    /// What the frames of the trace say.
+    /// The meaning of the frames in the trace.
     pub(super) trace: Meaning,
 }
 
@@ -83,7 +82,7 @@ impl Encoder {
         }
     }
 
-    /// What is not right in what is wanted.
+    /// Returns the problems of the edited values.
     pub fn marks(&self) -> Vec<Mark> {
         self.staged.wanted().map(Wanted::marks).unwrap_or_default()
     }
@@ -107,12 +106,12 @@ impl Encoder {
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
     }
 
-    /// Who it is, as far as that is known.
+    /// Returns the identity, as far as known.
     pub fn identity(&self) -> Option<&Identity> {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Who it was, where this is a profile.
+    /// Returns the identity in the profile, if this is one.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
     }
@@ -123,7 +122,7 @@ impl Encoder {
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// What it does when it is left alone, as it was last heard of.
+    /// Returns the mode as last read.
     pub fn mode(&self) -> Option<StartupMode> {
         let read = || self.identity().map(|own| own.mode);
         self.record.last().and_then(|reading| reading.mode).or_else(read)
@@ -149,7 +148,7 @@ impl Encoder {
         self.record.last().and_then(Reading::position)
     }
 
-    /// Which of the two words of a register pair comes first.
+    /// Returns which of the two words of a register pair comes first.
     pub(super) fn order(&self) -> WordOrder {
         let Source::Link(url) = &self.session.source else { return WordOrder::default() };
         url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
@@ -160,7 +159,7 @@ impl Encoder {
         self.stopped || self.session.is_virtual()
     }
 
-    /// Somebody has to say first that the machine stands.
+    /// Returns whether the user first has to confirm that the machine stands still.
     pub fn asks_for_standstill(&self) -> bool {
         self.session.phase != Phase::Offline && !self.session.is_virtual()
     }
@@ -174,7 +173,7 @@ impl Encoder {
         self.staged.wanted().map_or(0, Wanted::range)
     }
 
-    /// What was read out.
+    /// Returns a value read out.
     pub fn read_out(&self, what: ReadOut) -> Option<Value> {
         self.read_outs.get(&what.number()).copied()
     }

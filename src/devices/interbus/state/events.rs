@@ -1,4 +1,4 @@
-//! What the line to an encoder tells: results of jobs, live words, and its loss.
+//! Events of the line to an encoder: results of jobs, live words, and loss.
 
 use super::drafts::Edits;
 use super::encoder::Encoder;
@@ -64,7 +64,7 @@ impl Kind for Interbus {
 }
 
 impl Encoder {
-    /// What comes is to be seen with what is known by now, unless it comes anyway.
+    /// Reads a word to show with the present knowledge, unless words arrive anyway.
     fn see_a_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(InterbusJob::Position, services);
@@ -139,7 +139,7 @@ impl SessionEvents for Encoder {
         words::is_silence(error)
     }
 
-    /// Nobody knows any more whether the machine still stands, either.
+    /// Forgets also whether the machine stands still.
     fn forget_asked(&mut self) {
         self.say_stopped(false);
         self.forget_plan();
@@ -149,7 +149,7 @@ impl SessionEvents for Encoder {
         self.cut_write(how, texts)
     }
 
-    /// What takes the position away or switches outputs is done only where the machine stands.
+    /// Submits a job; one that replaces the position or switches outputs only if the machine stands still.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
         if job::disturbs(&job) && !self.is_stopped() {
             services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));

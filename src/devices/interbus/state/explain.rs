@@ -39,7 +39,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
 
-/// The link is open, and nobody answers over it.
+/// Returns whether the error means that the link is open but nothing answers.
 pub fn is_silence(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
@@ -52,7 +52,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
     }
 }
 
-/// What an encoder behind its gateway did not do.
+/// Returns the text of an error of an encoder behind its gateway.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -121,7 +121,7 @@ fn time_out(awaited: Awaited) -> Text {
     })
 }
 
-/// Why an encoder sends an error word, and what to do.
+/// Returns why an encoder sends an error word, and what to do.
 pub fn refusal(error: ErrorWord) -> Text {
     TEXTS.text(match (error.code.get(), error.data.get()) {
         (1, _) => "ib_refused.data",
@@ -133,7 +133,7 @@ pub fn refusal(error: ErrorWord) -> Text {
     })
 }
 
-/// What an encoder says of itself and cannot be.
+/// Returns the text of implausible data.
 pub fn implausible(why: Implausible) -> Text {
     match why {
         Implausible::Gear(GearError::Turns { turns }) => TEXTS.text("interbus.implausible_turns").with("turns", turns),
@@ -164,7 +164,7 @@ fn standing(standing: &LeftState) -> Text {
     }
 }
 
-/// What a job does at the moment.
+/// Returns the text of the present step of a job.
 pub fn doing(doing: &JobStep) -> Text {
     match doing {
         JobStep::ReadOut(read_out) => item::read_out(*read_out),

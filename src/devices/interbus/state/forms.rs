@@ -46,7 +46,7 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     within(Parameter::Preset, number(text)?, now)
 }
 
-/// How far a program is shifted, later or earlier.
+/// Parses how far a program is shifted, later or earlier.
 ///
 /// # Errors
 /// No number, in words.
@@ -81,7 +81,7 @@ pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     Ok(placed.step)
 }
 
-/// What a unit has for its steps until somebody says otherwise: a turn of the machine is the measuring range.
+/// Returns the default scale of a unit: a turn of the machine is the measuring range.
 pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     let steps = match unit {
         Unit::Degrees => f64::from(range.max(1)),

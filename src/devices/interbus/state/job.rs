@@ -5,7 +5,7 @@ use crate::devices::interbus::jobs::InterbusJob;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
-/// What it is called in the list of jobs.
+/// Returns its name in the list of jobs.
 pub(super) fn words(job: &InterbusJob) -> Text {
     match job {
         InterbusJob::Hello | InterbusJob::Position => TEXTS.text("ib_job.word"),

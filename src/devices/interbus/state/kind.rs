@@ -1,4 +1,4 @@
-//! What the studio knows of INTERBUS before there is a device.
+//! The kind INTERBUS for the studio, before there is a device.
 
 use super::staged::Staged;
 use super::{Encoder, InterbusForm};

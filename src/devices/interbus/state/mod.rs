@@ -42,7 +42,7 @@ use crate::store::FileError;
 pub use staged::{Edit, EditError, Mark, Staged, ValueId, Wanted};
 pub use table::Import;
 
-/// What tasks come back with.
+/// The results of tasks.
 pub enum Done {
     /// A table of cams was read, or not.
     Read(PathBuf, Result<String, FileError>),

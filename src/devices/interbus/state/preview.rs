@@ -19,7 +19,6 @@ pub struct Preview {
 /// Outputs that are not what a program gives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differing {
-    /// Where.
     pub position: u32,
     /// As the encoder says: bit i for cam i.
     pub own: u8,

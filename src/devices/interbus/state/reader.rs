@@ -1,11 +1,11 @@
-//! Words that somebody types, from a controller's monitor or a note: what each says, without a device.
+//! The reader of typed words, from a controller's monitor or a note: the meaning of each, without a device.
 
 use super::said::{self, Known};
 use crate::app::Text;
 use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
-/// Which way a word goes, and of which class of encoders.
+/// The direction of a word, and the class of encoders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Way {
     /// From a K3 encoder.
@@ -33,7 +33,7 @@ impl Way {
         }
     }
 
-    /// What it says depends on the mode.
+    /// Returns whether its meaning depends on the mode.
     pub const fn has_mode(self) -> bool {
         matches!(self, Way::In | Way::Out)
     }
@@ -46,16 +46,16 @@ impl Way {
     }
 }
 
-/// What typed words are read with.
+/// The context in which typed words are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
-    /// Which way they go.
+    /// Direction of the words.
     pub way: Way,
     /// In which mode the encoder is.
     pub mode: Mode,
-    /// What is read out, where that is asked for.
+    /// The value being read out, if any.
     pub read_out: Option<ReadOut>,
-    /// How far the position is shifted under its window.
+    /// Shift of the position under its window.
     pub shift: WindowShift,
 }
 
@@ -70,9 +70,9 @@ impl Default for Reading {
 pub struct DecodedWord {
     /// As it was typed.
     pub word: String,
-    /// What it says, or why it is no word.
+    /// The meaning, or why it is not a word.
     pub says: Result<Text, Text>,
-    /// What is not as it should be.
+    /// A problem.
     pub warning: Option<Text>,
 }
 

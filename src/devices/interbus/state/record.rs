@@ -1,4 +1,4 @@
-//! What is recorded of an INTERBUS encoder while its IN word is read: positions by its gear, its own speed, and its cam
+//! The recording of an INTERBUS encoder while its IN word is read: positions by its gear, its own speed, and its cam
 //! outputs.
 
 use crate::devices::interbus::state::TEXTS;
@@ -12,7 +12,7 @@ use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
 
-/// What an encoder sends instead of its position, or with it.
+/// Data that an encoder sends instead of its position, or with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Beside {
     /// Its own speed, in velocity mode.
@@ -44,7 +44,7 @@ impl Record {
         }
     }
 
-    /// The word that came first: nobody knows yet whether it is a position, so that it is in no line.
+    /// Records the first word: it is not known yet whether it is a position, so it is in no line.
     pub(super) fn glimpse(&mut self, reading: Reading) {
         self.last = Some(reading);
     }
@@ -99,7 +99,7 @@ impl Record {
     }
 }
 
-/// What positions mean.
+/// Returns the meaning of positions.
 fn meaning(gear: Option<Gear>) -> Meaning {
     match gear {
         Some(gear) => Meaning::of_turns(Some(gear.steps().into()), f64::from(gear.steps()) / f64::from(gear.turns())),

@@ -1,5 +1,4 @@
-//! What the words on the process data say, as somebody reads them: OUT words as commands, IN words in the mode that they
-//! come in.
+//! The meaning of the words on the process data: OUT words as commands, IN words in their mode.
 
 use super::words;
 use crate::app::Text;
@@ -10,26 +9,26 @@ use crate::devices::interbus::protocol::{
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 
-/// What has to be known of an encoder to read its IN words.
+/// The facts about an encoder that its IN words depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Known {
     /// In which mode it is.
     pub mode: Mode,
-    /// What is read out.
+    /// The value being read out.
     pub read_out: Option<ReadOut>,
-    /// How far the position is shifted under its window.
+    /// Shift of the position under its window.
     pub shift: Option<WindowShift>,
 }
 
 impl Known {
-    /// What an encoder is that a command is meant for.
+    /// Returns the facts about the encoder that a command is meant for.
     pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
         Known { mode: mode_of(command), read_out, shift }
     }
 }
 
-/// What an OUT word asks for in a mode, or that it must not be sent.
+/// Returns the request of an OUT word in a mode, or that it must not be sent.
 pub fn out(word: u32, mode: Mode) -> Text {
     match Command::in_mode(word, mode) {
         Ok(command) => asked(command),
@@ -76,7 +75,7 @@ pub fn mode_of(command: Command) -> Mode {
     if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
 }
 
-/// What an IN word says.
+/// Returns the meaning of an IN word.
 pub fn told(word: u32, known: &Known) -> Text {
     let reply = Reply::parse(word);
     match reply {
@@ -113,7 +112,7 @@ pub fn stray(word: u32) -> Option<Text> {
     }
 }
 
-/// What an error word says.
+/// Returns the meaning of an error word.
 fn error(error: ErrorWord) -> Text {
     let id = match (error.code.get(), error.data.get()) {
         (1, _) => "ib_error.data",
@@ -135,7 +134,7 @@ fn echo(reply: Reply, mode: Mode) -> Text {
     }
 }
 
-/// Which cams are in a mask.
+/// Returns the cams of a mask.
 fn cams(mask: u16) -> Text {
     let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
     if numbers.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(numbers.join(", ")) }

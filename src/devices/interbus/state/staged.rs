@@ -1,5 +1,5 @@
-//! What a K3 encoder (or a profile) says, and beside it what the user wants. Nothing here is written to an encoder; a plan
-//! is made of the difference.
+//! The values of a K3 encoder or a profile, and the edited ones beside them. Nothing is written to an encoder here; a
+//! plan is made of the difference.
 //!
 //! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
 //! changed stays as he wants it, whatever the encoder has now, and all else follows the encoder, in the steps before too.
@@ -29,14 +29,14 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 /// All that can be edited, as it is wanted.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Wanted {
-    /// What is written into an encoder.
+    /// The values written to an encoder.
     pub image: Image,
-    /// What programs and cams are called, which no encoder keeps. Two cams of a program with the same name are pulses on
-    /// one track.
+    /// Names of programs and cams, which no encoder keeps. Two cams of a program with the same name are pulses on one
+    /// track.
     pub names: Names,
 }
 
-/// What the edits stand beside.
+/// The values that the edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Ground {
     /// An encoder: what was not read is not known.
@@ -46,11 +46,11 @@ enum Ground {
     Profile,
 }
 
-/// What is, what is wanted, and the way there and back.
+/// The base, the edited values, and the steps of undo and redo.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
     ground: Ground,
-    /// What the encoder or the profile says; both or none.
+    /// The values of the encoder or the profile; both or none.
     base: Option<Wanted>,
     wanted: Option<Wanted>,
     history: History<Wanted>,
@@ -74,12 +74,12 @@ impl Wanted {
         self.image.program(program)?.cams.get(usize::from(cam.get())).copied().flatten()
     }
 
-    /// Whether a cam works.
+    /// Returns whether a cam is active.
     pub fn is_on(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         self.image.program(program).is_some_and(|own| own.is_on(cam))
     }
 
-    /// What a cam is called.
+    /// Returns the name of a cam.
     pub fn name(&self, program: ProgramNumber, cam: CamNumber) -> Option<&str> {
         Some(self.names.cam(program, cam)).filter(|name| !name.is_empty())
     }
@@ -140,7 +140,7 @@ impl Staged {
         matches!(self.ground, Ground::Encoder)
     }
 
-    /// What the encoder or the profile says now.
+    /// Takes new values of the encoder or the profile.
     fn rebase(&mut self, now: Wanted) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
@@ -161,12 +161,12 @@ impl Staged {
         self.base.as_ref()
     }
 
-    /// What the encoder or the profile holds; `None`: nothing was read.
+    /// Returns the values of the encoder or the profile; `None` if nothing was read.
     pub fn device(&self) -> Option<&Image> {
         self.base.as_ref().map(|base| &base.image)
     }
 
-    /// What is wanted; `None`: nothing was read.
+    /// Returns the edited values; `None` if nothing was read.
     pub fn wanted(&self) -> Option<&Wanted> {
         self.wanted.as_ref()
     }
@@ -185,7 +185,7 @@ impl Staged {
         Ok(self.step(after))
     }
 
-    /// What would be wanted after a change, which is not made: for a picture while something is dragged.
+    /// Returns the values after an edit without making it: for the picture while something is dragged.
     ///
     /// # Errors
     /// Why it cannot be.

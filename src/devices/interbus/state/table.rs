@@ -15,9 +15,9 @@ use crate::store::{read_file, write_atomically};
 /// A table that was read and is not taken yet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Import {
-    /// Where it comes from.
+    /// Origin of the table.
     pub origin: Text,
-    /// What it says, in the units of the machine as they are.
+    /// Its content, in the present units of the machine.
     pub table: CamTable,
     text: String,
     /// The program of rows that name none.
@@ -33,7 +33,7 @@ impl Encoder {
         });
     }
 
-    /// What a text says as a table.
+    /// Reads a text as a table.
     pub(super) fn read_table(&mut self, origin: Text, text: String, program: ProgramNumber) {
         self.refusal = None;
         let table = self.options(program).read(&text);
@@ -44,7 +44,7 @@ impl Encoder {
         TableOptions { scale: self.scale, range: self.range(), program }
     }
 
-    /// The machine counts otherwise, or the measuring range is another: the table is read anew.
+    /// Reads the table again after a change of the units or of the measuring range.
     pub(super) fn read_table_anew(&mut self) {
         let Some(program) = self.import.as_ref().map(|import| import.program) else { return };
         let options = self.options(program);

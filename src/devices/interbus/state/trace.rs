@@ -1,5 +1,5 @@
-//! What the frames of the trace say: the words in them. A word means what the encoder's mode makes of it, which the OUT
-//! words before it have chosen.
+//! The meaning of the frames in the trace: the words in them. It depends on the mode of the encoder, which the OUT
+//! words before have selected.
 
 use super::said::{self, Known};
 use crate::app::{Explained, Text, TraceFault};
@@ -23,7 +23,7 @@ pub(super) struct Meaning {
 }
 
 impl Meaning {
-    /// What a link leads to begins with a position.
+    /// Creates it for a new link, which starts with a position.
     pub(super) fn new(order: WordOrder) -> Self {
         Meaning { order, shift: None, mode: Mode::Position, read_out: None, asked: Vec::new() }
     }
@@ -33,7 +33,7 @@ impl Meaning {
         self.mode = mode;
     }
 
-    /// What a frame says, and nothing for one that carries no word and is whole.
+    /// Returns the meaning of a frame; nothing for an intact one without a word.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
@@ -74,8 +74,8 @@ impl Meaning {
         }
     }
 
-    /// What is sent is legal in the mode that the encoder is in: where that is another one than is known here, the word
-    /// tells so.
+    /// Parses a sent word, which is legal in the encoder's mode: if that differs from the mode known here, the word
+    /// shows it.
     fn command(&self, word: u32) -> Command {
         let readings = || Command::readings(word).into_iter().next();
         Command::in_mode(word, self.mode).ok().or_else(readings).unwrap_or(Command::Unknown(word))

@@ -1,4 +1,4 @@
-//! What parameters, read-outs, modes, lamps and jobs of an INTERBUS encoder are called.
+//! The names of parameters, values, modes, LEDs and jobs of an INTERBUS encoder.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -38,7 +38,7 @@ pub fn mode(mode: Mode) -> Text {
     })
 }
 
-/// What was read out.
+/// Returns the text of a value read out.
 pub fn read_out_value(value: ReadOutValue) -> Text {
     match value {
         ReadOutValue::Plain(number) => plain(format!("{number} (0x{number:X})")),
@@ -58,7 +58,7 @@ pub fn celsius(tenths: i32) -> Text {
     TEXTS.text("ib_read_out.celsius").with_number("celsius", f64::from(tenths) / 10.0, 1)
 }
 
-/// What an encoder is.
+/// Returns the text of the flags of an encoder.
 pub fn flags(flags: Flags) -> Text {
     let turns = TEXTS.text(if flags.multiturn() { "ib_flags.multiturn" } else { "ib_flags.single_turn" });
     let mut all = vec![turns];
@@ -71,7 +71,7 @@ pub fn flags(flags: Flags) -> Text {
     TEXTS.text("ib_flags.all").with_list("flags", all)
 }
 
-/// What lamps say, and what to do.
+/// Returns the meaning of a combination of LEDs, and what to do.
 pub fn lamps(row: &LedRow) -> (Text, Text) {
     use crate::devices::interbus::protocol::Lamp::{Blinking, On};
     let (says, remedy) = match (row.leds.ba, row.leds.rbda) {
@@ -83,7 +83,7 @@ pub fn lamps(row: &LedRow) -> (Text, Text) {
     (TEXTS.text(says), TEXTS.text(remedy))
 }
 
-/// What carries the bus.
+/// Returns the name of an interface.
 pub fn interface(interface: Interface) -> Text {
     TEXTS.text(match interface {
         Interface::Standard => "ib_id.standard",
@@ -98,7 +98,7 @@ pub fn range(steps: u32, turns: u32) -> Text {
     TEXTS.text(id).with("steps", steps).with("turns", turns)
 }
 
-/// What was read out, as it is written beside its name.
+/// Returns the text of a value beside its name.
 pub fn read_value(what: ReadOut, value: Value) -> Text {
     match (what.number(), Direction::of_code(value.get())) {
         (0x3, Some(own)) => direction(own),

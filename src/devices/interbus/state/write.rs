@@ -1,4 +1,4 @@
-//! What is written into an encoder: the edits or a profile as a wish, its jobs, and what is read again after it.
+//! Writing to an encoder: the edits or a profile as a request, its jobs, and what is read again afterwards.
 
 use super::cams::words;
 use super::encoder::Encoder;
@@ -16,8 +16,8 @@ use crate::profile::{Body, ProfileError};
 use crate::store::DeviceKey;
 
 impl Encoder {
-    /// What is wanted otherwise than it was read: of programs only those, since each that a plan speaks of is selected to
-    /// be read. Where the measuring range shrinks, all that are known, since their cams have to stay within it.
+    /// Returns the edited values. Of programs only edited ones, since each program of a plan is selected to be read. If
+    /// the measuring range shrinks, all known ones, since their cams have to stay within it.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
         let mut edited = Image::of(wanted.parameters);

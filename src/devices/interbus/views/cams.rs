@@ -18,7 +18,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, empty, enabled_button, paragraph, two_columns};
 use crate::ui::{Theme, icons};
 
-/// What is chosen and typed.
+/// Selection and entered text.
 #[derive(Default)]
 pub(super) struct CamsUiState {
     program: Option<ProgramNumber>,

@@ -1,4 +1,4 @@
-//! Who the encoder is, what it sends, and how it is wired.
+//! The encoder page: identity, present word, wiring.
 
 use egui::{RichText, Ui};
 

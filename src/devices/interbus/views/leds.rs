@@ -1,4 +1,4 @@
-//! What the lamps at the encoder say, and the identification codes of its interfaces.
+//! The meaning of the LEDs at the encoder, and the identification codes of its interfaces.
 
 use egui::{RichText, Ui};
 
@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, name, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};
 
-/// What is lit, as somebody sees it.
+/// The LEDs as entered by the user.
 pub(super) struct LedsUiState {
     leds: Leds,
 }

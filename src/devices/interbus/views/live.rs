@@ -1,4 +1,4 @@
-//! What an INTERBUS encoder sends, large: its position, its speed, or the outputs of a program.
+//! The large display of an INTERBUS encoder: its position, its speed, or the outputs of a program.
 
 use egui::{RichText, Ui};
 

@@ -1,5 +1,5 @@
-//! What is not right in what is wanted, above every page: a measuring range that is made smaller leaves cams beyond it, which
-//! are edited on another page.
+//! The problems of the edited values, above every page: a smaller measuring range leaves cams beyond it, which are
+//! edited on another page.
 
 use egui::{RichText, Ui};
 

@@ -22,14 +22,14 @@ use crate::ui::{Theme, backups, edit_bar, icons, page};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// Who it is and what it sends.
+    /// Identity and present word.
     #[default]
     Encoder,
-    /// How it makes its position, and the words with which that is set.
+    /// Parameters of the position, and the words that set them.
     Parameters,
     /// Eight programs of eight cams.
     Cams,
-    /// What can be read out, what lamps and words say.
+    /// Values, LEDs and words.
     Diagnosis,
     /// Profiles, backups and what was written.
     Backups,
@@ -46,13 +46,13 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// What is edited here is written from here.
+    /// Returns whether edits on the page are written from it.
     fn has_foot(self) -> bool {
         matches!(self, Page::Parameters | Page::Cams)
     }
 }
 
-/// What the tab remembers of one session while the window is open: text buffers and selections.
+/// The state of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct InterbusUiState {
     parameters: parameters::EncoderParametersUiState,

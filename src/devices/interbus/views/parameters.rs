@@ -18,7 +18,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// What is typed and does not count yet.
+/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct EncoderParametersUiState {
     drafts: BTreeMap<&'static str, Option<(String, Option<Text>)>>,
@@ -173,7 +173,7 @@ fn preset(
     });
 }
 
-/// How often the memory has stored, as far as this computer has seen it.
+/// Draws the number of stores counted by this computer.
 fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_wear.title"), |ui| {
         let Some(stores) = encoder.stores() else {

@@ -1,4 +1,4 @@
-//! What can be read out of an encoder, and the registers of its chip.
+//! The values that can be read from an encoder, and the registers of its chip.
 
 use egui::Ui;
 

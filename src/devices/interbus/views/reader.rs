@@ -1,4 +1,4 @@
-//! Words that somebody types, and what they say.
+//! The reader of typed words.
 
 use egui::{RichText, Ui};
 
@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, choice, entry, mono_entry, name, paragraph};
 use crate::ui::{Theme, icons};
 
-/// What is typed, and with what it is read.
+/// Entered text, and its context.
 #[derive(Default)]
 pub(super) struct WordReaderUiState {
     text: String,

@@ -1,4 +1,4 @@
-//! What a running machine would notice is done only once somebody has said that it stands.
+//! The confirmation that the machine stands still, before anything that a running machine would notice.
 
 use egui::{RichText, Ui};
 

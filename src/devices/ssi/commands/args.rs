@@ -1,4 +1,4 @@
-//! What can be written behind `ssi`, and the option of the shared commands that only SSI encoders have.
+//! The arguments of `ssi`, and the option of the shared commands that only SSI encoders have.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use clap::{Args, Subcommand, ValueEnum};
 
 #[derive(Subcommand)]
 pub(crate) enum Ssi {
-    /// What frames say.
+    /// Decodes frames
     Decode(SsiDecode),
     /// The frame of a position.
     Encode(SsiEncode),
@@ -19,7 +19,7 @@ pub(crate) enum Ssi {
     Export(SsiExport),
 }
 
-/// What can stand in a profile; those who write one by hand have no other place to look.
+/// The entries of a profile, documented for those who write one by hand.
 const PROFILE: &str = "\
 What a profile's frame can have (as usual where it is left out):
   clocks: 27                       bits of a burst, 1 to 64
@@ -86,7 +86,7 @@ pub(crate) struct SsiEncode {
 pub(crate) struct SsiExport {
     #[command(flatten)]
     pub(crate) layout: SsiLayout,
-    /// What to write.
+    /// Format to write
     #[arg(long, value_enum)]
     pub(crate) format: SsiFormat,
     /// timing: the clock in hertz; as in the profile, else 400000.
@@ -129,7 +129,7 @@ pub(crate) struct SsiLayout {
     pub(crate) spec: String,
 }
 
-/// What a layout can be exported as.
+/// Format of an exported layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SsiFormat {
     /// A function in C99.
@@ -140,7 +140,7 @@ pub(crate) enum SsiFormat {
     Linuxcnc,
     /// A row for each clock.
     Csv,
-    /// What to set in common SSI modules of controls.
+    /// Settings for common SSI modules of controls
     Sheet,
     /// A profile: a text that a person can read and change, for --layout and the window.
     Profile,

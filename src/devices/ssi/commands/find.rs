@@ -88,14 +88,14 @@ fn spec(class: &Class, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec(families))
 }
 
-/// What speaks for a class.
+/// Returns the evidence for a class.
 fn why(class: &Class) -> String {
     let frame = class.members.first().map(|member| words::frame(&member.layout).terminal());
     let evidence = words::evidence(&class.evidence).terminal();
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 
-/// Which motion would decide; none where nothing is open.
+/// Returns which motion would decide; `None` if nothing is open.
 fn next(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::Doubt::Open);
     let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal());

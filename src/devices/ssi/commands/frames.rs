@@ -125,7 +125,7 @@ fn fields(layout: &Layout, frame: u64) -> String {
     words.join("  ")
 }
 
-/// What a script calls a finding.
+/// Returns the name of a finding in JSON.
 pub(super) fn name(finding: &Finding) -> String {
     match finding {
         Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
@@ -165,7 +165,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
     Ok(Done::Well)
 }
 
-/// What `--position`, or `--turns` and `--steps`, name; where both do, they have to be the same.
+/// Returns the position of `--position`, or of `--turns` and `--steps`; if both are given, they have to agree.
 fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
     let last = layout.coding().last();
     let range = layout.descriptor().range;

@@ -25,11 +25,11 @@ pub(crate) struct Chosen {
     pub(crate) layout: Layout,
     /// The times of its family; `None` where it has none, or one that is not known here.
     pub(crate) times: Option<Times>,
-    /// What to call it.
+    /// Title of the layout.
     pub(crate) title: String,
 }
 
-/// What `--layout` names. What the manual does not speak of is a remark.
+/// Returns the layout of `--layout`. Points that the manual leaves open are remarks.
 pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<Chosen> {
     if let Some(format) = spec.strip_prefix("linuxcnc:") {
         let layout = from_linuxcnc(format).map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
@@ -90,7 +90,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     Ok(Chosen { title: name.to_owned(), profile, layout, times })
 }
 
-/// What a frame that was written down has beyond its family.
+/// Returns how a frame written by hand differs from its family.
 fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_of(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {

@@ -17,7 +17,7 @@ use crate::devices::ssi::protocol::{Finding, Layout, Location, Meaning, Tally};
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
-/// The layout, which nobody but the user knows.
+/// Returns the layout, which only the user knows.
 fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Chosen> {
     let Some(spec) = given.layout.clone() else {
         let why = "ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
@@ -63,7 +63,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     ended
 }
 
-/// Whoever passes a position that looks like a line that does not move makes no news; whoever begins with one does.
+/// Returns whether a finding is reported: passing a position that looks like an idle line is not, starting with one is.
 fn is_told(finding: &Finding, is_first: bool) -> bool {
     is_first || !matches!(finding, Finding::StuckHigh { sure: false } | Finding::StuckLow { sure: false })
 }

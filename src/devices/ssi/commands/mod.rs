@@ -23,7 +23,7 @@ use crate::devices::ssi::sim::{AtAdapter, Encoder};
 use crate::kinds::at_adapter;
 use crate::profile::Body;
 
-/// What can be done with SSI encoders. They send their position and have no memory.
+/// The commands for SSI encoders. They send their position and have no memory.
 pub(crate) struct SsiCommands;
 
 impl DeviceCommands for SsiCommands {
@@ -89,7 +89,7 @@ impl DeviceCommands for SsiCommands {
     }
 }
 
-/// Who sets an encoder up.
+/// How an encoder is configured.
 const SET: &str = "it is set with its maker's own tool";
 
 /// `ssi`: frames without an encoder.

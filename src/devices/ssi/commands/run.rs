@@ -20,7 +20,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Ssi>;
 
 impl Runs for Ssi {
-    /// How words are taken where nothing else says so: as the link does.
+    /// How words are read unless an option says otherwise: as in the link.
     type Context = Asking;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 

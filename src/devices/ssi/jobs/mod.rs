@@ -23,16 +23,16 @@ use crate::worker::{Device, EndedEarly, Progress, Session, SessionContext, Tell,
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
-    /// What turns a virtual encoder.
+    /// Motor of a virtual encoder.
     motor: Option<Motor>,
     /// Microseconds between the words of a stream, where they are wished closer than one can ask for them.
     streamed_us: Option<u32>,
 }
 
-/// What can be asked of an adapter before an SSI encoder.
+/// A job of an adapter in front of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiJob {
-    /// Who the adapter is; the encoder's supply switched on where that is wished, and words taken as the station says.
+    /// Identifies the adapter; switches the encoder's supply on if requested, and configures how words are read.
     Hello,
     /// Words are taken like this from now on; a stream that is wished goes on with it.
     Set(Asking),
@@ -42,16 +42,16 @@ pub enum SsiJob {
     Check(Box<Layout>),
 }
 
-/// What a job gives.
+/// The result of a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SsiOutput {
-    /// Who the adapter is.
+    /// The identity of the adapter.
     Hello(Box<Identity>),
-    /// How words are taken now.
+    /// The new way of reading words.
     Set(Box<Identity>),
     /// The word, a run of one.
     Read(Words),
-    /// What the device check found.
+    /// The results of the device check.
     Check(Vec<check::SsiStepResult>),
 }
 
@@ -102,12 +102,12 @@ impl Session<Ssi> {
         self.device.station.asking = asking;
     }
 
-    /// What is known about the line and the adapter.
+    /// Returns the state of the line and the adapter.
     pub fn station(&self) -> &Station {
         &self.device.station
     }
 
-    /// What turns the shaft, where the encoder lives in this process.
+    /// Returns the motor of the shaft, if the encoder is in this process.
     pub fn motor(&self) -> Option<Motor> {
         self.device.motor.clone()
     }
@@ -117,7 +117,7 @@ impl Device for Ssi {
     type Job = SsiJob;
     type Output = SsiOutput;
     type Error = JobError;
-    /// Whatever there is to say stands in the words.
+    /// All messages are part of the words.
     type DeviceMessage = Infallible;
     type Sample = Words;
     /// There is nothing but words.

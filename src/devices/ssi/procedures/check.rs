@@ -20,9 +20,9 @@ pub type SsiStepResult = check::StepResult<Step, Finding>;
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// Who the adapter is, and at which clock it takes words.
+    /// The adapter, and its clock.
     Adapter,
-    /// What it supplies the encoder with.
+    /// The supply of the encoder.
     Supply,
     /// The data line moves.
     Line,
@@ -30,7 +30,7 @@ pub enum Step {
     Layout,
     /// Error bits and patterns.
     Errors,
-    /// How the position moves from word to word.
+    /// The motion of the position from word to word.
     Motion,
 }
 
@@ -59,14 +59,14 @@ pub enum Finding {
     SuppliedElsewhere,
     /// Words that were taken, and how many of them are different.
     Words {
-        /// How many.
+        /// Number of words.
         taken: u64,
         /// Different ones.
         different: usize,
     },
-    /// What a word gave cause to say, and in how many.
+    /// A finding about words, and in how many of them.
     Said {
-        /// What.
+        /// The finding.
         what: Said,
         /// In how many words.
         count: u64,
@@ -107,7 +107,7 @@ pub fn check(
     Ok(judge(&identity, layout, &words))
 }
 
-/// What there is to say of an adapter and of words that were taken one after the other.
+/// Judges an adapter and consecutive words.
 fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
     let mut said: Vec<(Said, u64)> = Vec::new();
     let mut positions = Vec::new();
@@ -190,7 +190,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: Step::Supply, verdict, findings: vec![finding] }
 }
 
-/// How the position goes from word to word, the short way round.
+/// Judges the motion of the position from word to word, the short way round.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.coding().last()) + 1;
     let apart = |one: u64, other: u64| {

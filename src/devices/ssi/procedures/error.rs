@@ -1,10 +1,10 @@
-//! What can go wrong with the adapter before an encoder. Of the encoder itself only its words tell.
+//! Errors of the adapter in front of an encoder. The encoder itself is judged by its words only.
 
 use crate::buses::bridge::procedures::{AdapterError, Failure};
 use crate::link::LinkError;
 use crate::link::line::LineError;
 
-/// Why no words come.
+/// Why no words arrive.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Error {
     /// The wire to the adapter.

@@ -114,7 +114,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Ends the stream that runs, also where an end is wished. Words that are asked for are counted anew.
+    /// Ends the running stream, even after cancellation. Requested words are counted from the start again.
     ///
     /// # Errors
     /// The adapter's; then it is tried again before whatever comes next.

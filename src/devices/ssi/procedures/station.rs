@@ -1,4 +1,4 @@
-//! What a session knows about its adapter and how it takes words, from one job to the next.
+//! The state of a session's adapter and how it reads words, kept between jobs.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,20 +17,20 @@ use crate::units::SupplyVoltage;
 parameters! {
     /// The line and the encoder's supply, as a link says.
     pub struct LinkParameters: UrlError {
-        /// How much later than the protocol's worst case a reply may come; `None`: as usual for the link.
+        /// How much later than the protocol's worst case a reply may arrive; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
         /// Clock in hertz.
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
         /// Least pause between two words.
         pub pause_us: u16 = 200, "pause" => Whole(Quantity::Microseconds, 1..=u16::MAX);
-        /// What the adapter gives the encoder; `None`: nothing.
+        /// Supply of the encoder by the adapter; `None` for none.
         pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE)), "connect.voltage" like "";
-        /// How the supply is left.
+        /// State of the supply at the end.
         pub after: SupplyAfter = SupplyAfter::AsFound, "leave-supply" => SupplyAfter::WORDS;
     }
 }
 
-/// How words are taken.
+/// How words are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Asking {
     /// Bits of a word, 1…64.
@@ -50,12 +50,12 @@ impl Default for Asking {
     }
 }
 
-/// Who takes the words, and how in fact.
+/// The adapter, and how it actually reads words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// The adapter.
     pub hello: Hello,
-    /// How words are taken.
+    /// How words are read.
     pub asking: Asking,
     /// The clock in hertz, as the adapter has set it.
     pub clock_hz: u32,
@@ -63,18 +63,18 @@ pub struct Identity {
     pub supply: Option<Supply>,
 }
 
-/// What a session knows about its adapter and how it takes words.
+/// The state of a session's adapter and how it reads words.
 #[derive(Clone, Debug)]
 pub struct Station {
     /// Silences and damage: what every line has.
     pub line: LineState,
     /// The adapter.
     pub adapter: AdapterState,
-    /// How words are taken.
+    /// How words are read.
     pub asking: Asking,
     /// The encoder's supply, where the adapter is to switch it.
     pub supply: Option<Supply>,
-    /// How the adapter is set, and the clock that it took; `None` before, and when it may have been reset.
+    /// The adapter's setting and its actual clock; `None` before, and when it may have been reset.
     pub(super) set: Option<(Asking, u32)>,
     /// The stream that the adapter sends.
     pub(super) flow: Option<Flow>,
@@ -99,14 +99,15 @@ impl Supply {
     /// Millivolts that encoders with SSI are made for: from 5 V less a tenth to 30 V (SICK SSI description, TTK70).
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
 
-    /// Which encoder is there nobody tells: a tenth more than was asked for is too much (AFS60 at 5 V: 4.5 to 5.5 V).
+    /// Returns the supply voltage with its limits. The encoder is not known: a tenth above the requested voltage is too
+    /// much (AFS60 at 5 V: 4.5 to 5.5 V).
     pub(super) const fn voltage(millivolt: u16) -> SupplyVoltage {
         SupplyVoltage { least: *Self::RANGE.start(), given: millivolt, greatest: millivolt + millivolt / 10 }
     }
 }
 
 impl Station {
-    /// An adapter that nobody has asked.
+    /// Creates the state of an unidentified adapter; `margin` is the delay allowed beyond the protocol's worst case.
     pub fn new(margin: Duration) -> Self {
         Station {
             line: LineState::new(margin),
@@ -133,7 +134,7 @@ impl Station {
         Ok(station)
     }
 
-    /// The adapter is asked anew who it is, and set anew.
+    /// Forgets the adapter: it is identified and configured again.
     pub(super) fn forget_adapter(&mut self) {
         self.adapter.forget();
         self.flow = None;

@@ -43,7 +43,7 @@ impl Words {
         }
     }
 
-    /// What came in a packet, of words that were wished so many microseconds apart.
+    /// Returns the words of a packet, requested at this interval.
     pub(super) fn run(portion: &Portion, data: &SsiData, asking: Asking, clock_hz: u32, wished_us: u32) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         Words {

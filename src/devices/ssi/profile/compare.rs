@@ -1,4 +1,4 @@
-//! What differs between two SSI encoders: one item for each entry of their profiles, as the file names it.
+//! The differences between two SSI encoders: one item for each entry of their profiles, named as in the file.
 
 use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};

@@ -2,7 +2,7 @@
 
 use crate::devices::ssi::protocol::LayoutError;
 
-/// Why an entry of a profile cannot be.
+/// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A frame that cannot work.

@@ -1,4 +1,4 @@
-//! What is saved of an SSI encoder. Its text is in [`text`](super::text).
+//! The saved content of an SSI encoder. Its text is in [`text`](super::text).
 
 use std::time::Duration;
 
@@ -8,13 +8,13 @@ use crate::profile::ron_text::Unknown;
 /// An SSI encoder as it is saved.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SsiProfile {
-    /// What a person calls it; empty: nothing.
+    /// The user's name for it; may be empty.
     pub name: String,
     /// Key of the family whose times and limits count; `None`: they are not known.
     pub family: Option<String>,
     /// The frame. Of what was read from a file it is known that it works.
     pub descriptor: Descriptor,
-    /// Which way the positions grow.
+    /// Direction in which positions grow.
     pub direction: Direction,
     /// The position at the shaft's zero, within the frame's range.
     pub preset: u64,
@@ -72,7 +72,7 @@ impl SsiProfile {
         }
     }
 
-    /// How its frame is read, for what the times allow.
+    /// Returns how its frame is read, for checking the times.
     pub fn reads(&self) -> Reads {
         let ReadingSettings { clock_hz, pause_us, cable_metres, synchronous } = self.reading;
         Reads {
@@ -85,7 +85,7 @@ impl SsiProfile {
         }
     }
 
-    /// What settings make of a family.
+    /// Returns the settings resolved for a family.
     pub fn of_family(family: &Family, resolved: &Resolved) -> Self {
         SsiProfile {
             family: Some(family.key.clone()),

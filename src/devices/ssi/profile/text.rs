@@ -251,7 +251,7 @@ fn read_frame(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Desc
     Ok(frame)
 }
 
-/// Which positions there are: bits of turns and steps, any number of them, or a length; one of the three.
+/// Reads the range of positions: bits of turns and steps, any number of them, or a length; one of the three.
 fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
     let multiturn: Option<u8> = entries.optional("multiturn", SMALL)?;
     let singleturn: Option<u8> = entries.optional("singleturn", SMALL)?;

@@ -1,4 +1,4 @@
-//! How a position becomes a code word: binary, Gray, Gray excess, BCD (SICK SSI description 2.4; reference section 2).
+//! The code of a position: binary, Gray, Gray excess, BCD (SICK SSI description 2.4; reference section 2).
 
 use serde::Deserialize;
 
@@ -76,7 +76,7 @@ impl Coding {
         Ok(Coding { code, last, bits, offset })
     }
 
-    /// Which code it is.
+    /// Returns the code.
     pub const fn code(&self) -> Code {
         self.code
     }
@@ -128,7 +128,7 @@ pub(super) const fn bits_of(number: u64) -> u8 {
     if bits == 0 { 1 } else { bits as u8 }
 }
 
-/// So many ones, 0…64, right-justified.
+/// Returns this many ones, 0…64, right-justified.
 pub(super) const fn ones(bits: u8) -> u64 {
     if bits >= 64 { u64::MAX } else { (1 << bits) - 1 }
 }

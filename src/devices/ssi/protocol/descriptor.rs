@@ -11,11 +11,11 @@ use super::range::Range;
 pub struct Descriptor {
     /// Bits that the host clocks in, 1…64.
     pub clocks: u8,
-    /// Which positions there are.
+    /// The range of positions.
     pub range: Range,
     /// Their code.
     pub code: Code,
-    /// What is coded.
+    /// The coded bits.
     pub coded: Coded,
     /// Clocks 1…`area` belong to the position and the zeros around it. Shifting right shifts these.
     pub area: u8,
@@ -37,7 +37,7 @@ pub struct Descriptor {
     pub patterns: Vec<Pattern>,
 }
 
-/// What a Gray code goes over; binary and BCD know only the position.
+/// The bits that a Gray code covers; binary and BCD cover only the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coded {
     /// The position's bits; zeros and error bits are put around the code word.
@@ -54,9 +54,9 @@ pub enum Coded {
 pub struct ErrorBit {
     /// As its manual calls it.
     pub name: String,
-    /// Which clock, counted from 1.
+    /// The clock, counted from 1.
     pub clock: u8,
-    /// What it says of the position.
+    /// Its meaning for the position.
     pub meaning: Meaning,
     /// It speaks when it is 0.
     #[serde(default)]
@@ -66,7 +66,7 @@ pub struct ErrorBit {
     pub cleared_by_transfer: bool,
 }
 
-/// What a bit or word that is no position says of it.
+/// The meaning of a bit or word, other than a position, for the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Meaning {
@@ -79,7 +79,7 @@ pub enum Meaning {
 /// A bit over those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parity {
-    /// Which clock, counted from 1; it goes over all before.
+    /// The clock, counted from 1; it covers all clocks before it.
     pub clock: u8,
     /// The ones are even in number, the parity bit among them.
     pub even: bool,
@@ -98,11 +98,11 @@ pub struct Repeat {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
-    /// What it stands for.
+    /// Its name.
     pub name: String,
-    /// Which one: the bits of a whole frame, as they were sent.
+    /// The bits of a whole frame, as sent.
     pub word: Word,
-    /// What it says of the position.
+    /// Its meaning for the position.
     pub meaning: Meaning,
 }
 

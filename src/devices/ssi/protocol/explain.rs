@@ -1,10 +1,10 @@
-//! What every bit of a frame is, and what a frame as a whole gives cause to say.
+//! The meaning of every bit of a frame, and the findings about the frame as a whole.
 
 use super::descriptor::{Meaning, Word};
 use super::layout::{Flags, Layout, Reading};
 use super::range::Range;
 
-/// What a clock of a frame carries.
+/// The content of a clock of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Role {
     /// Always 0.
@@ -28,7 +28,7 @@ pub enum Role {
 pub struct Cell {
     /// Counted from 1.
     pub clock: u8,
-    /// What it carries.
+    /// The content.
     pub role: Role,
     /// The bit as it was sent.
     pub bit: bool,
@@ -41,16 +41,16 @@ pub enum Finding {
     Error {
         /// Its name.
         name: String,
-        /// What it says of the position.
+        /// Its meaning for the position.
         meaning: Meaning,
         /// It is about the time since the last transfer.
         cleared_by_transfer: bool,
     },
     /// The frame is a word with a meaning of its own.
     Pattern {
-        /// What it stands for.
+        /// Its name.
         name: String,
-        /// What it says of the position.
+        /// Its meaning for the position.
         meaning: Meaning,
     },
     /// Every bit is 1.
@@ -65,7 +65,7 @@ pub enum Finding {
     },
     /// The code word is no position.
     Code,
-    /// What should be 0 is not.
+    /// A bit that should be 0 is 1.
     Padding,
     /// The parity is wrong.
     Parity,
@@ -74,7 +74,7 @@ pub enum Finding {
 }
 
 impl Finding {
-    /// What it says of the position.
+    /// Returns its meaning for the position.
     pub const fn meaning(&self) -> Meaning {
         match self {
             Finding::Error { meaning, .. } | Finding::Pattern { meaning, .. } => *meaning,
@@ -86,7 +86,7 @@ impl Finding {
 }
 
 impl Layout {
-    /// What each clock carries, from the first to the last.
+    /// Returns the content of each clock, from the first to the last.
     pub fn roles(&self) -> Vec<Role> {
         let descriptor = self.descriptor();
         let word = descriptor.word();
@@ -131,7 +131,7 @@ impl Layout {
         numbered.map(|(clock, role)| Cell { clock, role, bit: frame >> (clocks - clock) & 1 == 1 }).collect()
     }
 
-    /// What there is to say of a reading: what makes the position invalid first.
+    /// Returns the findings about a reading, those that invalidate the position first.
     pub fn findings(&self, reading: Reading) -> Vec<Finding> {
         let descriptor = self.descriptor();
         let flags = reading.flags;

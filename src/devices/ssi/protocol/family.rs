@@ -28,7 +28,7 @@ pub struct Family {
     pub key: String,
     /// As its maker calls it.
     pub name: String,
-    /// Where all this stands.
+    /// Source of this description.
     pub source: String,
     /// The position is a length: of a step, in nanometres. None: an angle.
     #[serde(default)]
@@ -46,7 +46,7 @@ pub struct Family {
     pub steps: Option<StepLimits>,
     /// Codes that the manual names, the one as delivered first; others are accepted with a remark.
     pub codes: Vec<Code>,
-    /// Where the position may stand, the first that has room for it as delivered.
+    /// The possible alignments; the factory setting is the first with enough room.
     pub align: Vec<Align>,
     /// The whole frame can come one clock later.
     #[serde(default)]
@@ -56,12 +56,12 @@ pub struct Family {
     /// Words with a meaning of their own.
     #[serde(default)]
     pub patterns: Vec<Pattern>,
-    /// What its times allow.
+    /// The allowed times.
     pub times: Times,
-    /// What comes beside SSI.
+    /// Signals besides SSI.
     #[serde(default)]
     pub signals: Vec<Signal>,
-    /// What else an engineer should know, a sentence each.
+    /// Further notes for engineers, a sentence each.
     #[serde(default)]
     pub notes: Vec<String>,
     /// Source and notes in German, by the English words.
@@ -94,7 +94,7 @@ pub struct Frame {
     /// Error bits in their order; `clock` of the first is where they are fixed.
     #[serde(default)]
     pub errors: Vec<ErrorBit>,
-    /// Where error bits may stand, as delivered first.
+    /// The possible places of error bits, the factory setting first.
     #[serde(default)]
     pub place: Vec<ErrorPlace>,
     /// Clocks that a burst may have at most; none: as many as the frame has bits.
@@ -102,7 +102,7 @@ pub struct Frame {
     pub most_clocks: Option<u8>,
 }
 
-/// Where the position stands in its area (reference section 3).
+/// The alignment of the position in its area (reference section 3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Align {
@@ -120,7 +120,7 @@ pub enum Align {
     Tree13,
 }
 
-/// Where error bits stand.
+/// The place of error bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorPlace {
@@ -159,7 +159,7 @@ pub struct FamilyError {
     pub line: usize,
     /// Column, counted from 1.
     pub column: usize,
-    /// What is wrong there.
+    /// The problem.
     pub what: FamilyProblem,
 }
 
@@ -251,7 +251,7 @@ impl Families {
         ("kh53.ron", include_str!("../../../../assets/devices/ssi/kh53.ron")),
     ];
 
-    /// Reads files, and says of each that cannot be used why; the rest counts all the same.
+    /// Reads files; returns the reason for each that cannot be used, which does not affect the others.
     pub fn read<'a>(files: impl IntoIterator<Item = (&'a str, &'a str)>) -> (Self, Vec<FamilyError>) {
         let mut errors = Vec::new();
         let mut read = Vec::new();

@@ -32,29 +32,29 @@ const MOST_FRAMES: usize = 4_000;
 const LEAST_DIFFERENT: usize = 32;
 /// Classes that are shown.
 const CLASSES: usize = 6;
-/// What a class that is less usual by one setting is put back, in bits of all frames.
+/// Penalty for a class that is less usual by one setting, in bits of all frames.
 const WEIGHT_BITS: f64 = 8.0;
-/// What is less probable than the first by so much is left out.
+/// Classes less probable than the first by this much are left out.
 const IMPROBABLE: f64 = 8.0;
 /// Of a thousand frames, those in which two ways have to agree to be the same.
 const SAME_PERMILLE: usize = 995;
 /// Families are looked for in what takes no more bits than this beside the best, for all frames.
 const NEAR_BITS: f64 = 300.0;
 
-/// What was found.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Search {
-    /// How many frames there were.
+    /// Number of frames.
     pub frames: usize,
-    /// How many of them were different.
+    /// Number of different frames.
     pub different: usize,
-    /// Why the first class is not to be relied on; `None`: it is the only one, and every bit is explained.
+    /// Why the first class is not certain; `None`: it is the only one, and every bit is explained.
     pub doubt: Option<Doubt>,
-    /// What fits, the best first. Empty if nothing does.
+    /// The classes that fit, the best first; may be empty.
     pub classes: Vec<Class>,
 }
 
-/// Why nothing can be said for sure.
+/// Why the result is not certain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
     /// The shaft stood, or hardly moved.
@@ -77,9 +77,9 @@ pub enum Doubt {
 pub struct Class {
     /// The most probable first: as delivered before what had to be set, usual widths before others.
     pub members: Vec<Proposal>,
-    /// What speaks for it.
+    /// The evidence.
     pub evidence: Evidence,
-    /// What would tell the members apart, or prove them.
+    /// What would separate the members, or prove them.
     pub open: Vec<Open>,
 }
 
@@ -105,7 +105,7 @@ impl Proposal {
     }
 }
 
-/// What speaks for a layout.
+/// The evidence for a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
     /// 0…1: how well it explains the frames, and how usual it is.
@@ -114,7 +114,7 @@ pub struct Evidence {
     pub explained: usize,
     /// Steps of the lowest bit between two frames, in the middle.
     pub steps_a_frame: i64,
-    /// What has to be said of a frame so that it is known from those before, in bits.
+    /// Information in a frame beyond the previous ones, in bits.
     pub bits_a_frame: f64,
     /// Frames that jump from the one before.
     pub jumps: usize,
@@ -124,25 +124,25 @@ pub struct Evidence {
     pub bits_seen: u8,
 }
 
-/// What would tell the members of a class apart, or is not explained yet.
+/// An open question: how to separate the members of a class, or an unexplained bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Open {
-    /// Where turns end and steps begin: turn exactly once, and see by how much the position grows.
+    /// The boundary of turns and steps: turn exactly once, and note by how much the position grows.
     TurnOnce,
-    /// What clocks are that never changed: turn on until they do, or the position begins again.
+    /// The meaning of clocks that never changed: turn until they do, or the position starts again.
     TurnFarther {
         /// The first of them.
         from: u8,
         /// The last of them.
         to: u8,
     },
-    /// Where the position begins again: turn on until it does.
+    /// The end of the range: turn until the position starts again.
     PassAnEnd,
-    /// Whether wires are exchanged or the counting is reversed: turn clockwise, and see whether the position grows.
+    /// Exchanged wires or reversed counting: turn clockwise, and see whether the position grows.
     Direction,
-    /// Which clock is the lowest bit: turn at another speed, unevenly.
+    /// The lowest bit: turn at another speed, unevenly.
     OtherSpeed,
-    /// How many steps there are: turn slowly over the end of the range.
+    /// The number of steps: turn slowly over the end of the range.
     PassTheEnd {
         /// The least.
         least: u32,
@@ -154,9 +154,9 @@ pub enum Open {
         /// The first such clock.
         clock: u8,
     },
-    /// Where error bits are: see one speak (turn too fast, exchange the supply).
+    /// The error bits: provoke one (turn too fast, exchange the supply).
     SeeAnError,
-    /// Which of two families that send the same: the type label.
+    /// The family, where two send the same: see the type label.
     TypeLabel,
 }
 

@@ -7,7 +7,7 @@ use super::range::{Fraction, Range};
 use super::spec::{Setting, SpecError};
 use crate::expected::Expected;
 
-/// What a frame in one word begins with.
+/// First word of a frame in one word.
 const KEY: &str = "frame";
 
 const NAMES: &[&str] = &[
@@ -33,7 +33,7 @@ const NAMES: &[&str] = &[
     "unknown",
 ];
 
-/// What a bit is called that nothing explains.
+/// Name of an unexplained bit.
 const UNKNOWN: &str = "BIT";
 /// Lists of clocks with what the bits there are called, and whether they speak when they are 0.
 const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];

@@ -1,6 +1,6 @@
 //! A frame as people write it down: bits in the order of the clocks, or a number.
 
-/// Why a text is no frame.
+/// Why a text is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameTextError {
     /// Neither bits nor a number.

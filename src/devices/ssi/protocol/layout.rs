@@ -47,16 +47,16 @@ pub(super) struct Part {
     pub(super) mask: u64,
 }
 
-/// What a frame says.
+/// A decoded frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Reading {
     /// The position; 0 where [`Flags::CODE`] says that there is none.
     pub position: u64,
-    /// What was seen beside it.
+    /// The flags besides the position.
     pub flags: Flags,
 }
 
-/// What was seen in a frame beside its position: error bits, patterns, and what does not fit.
+/// The flags of a frame besides its position: error bits, patterns, and inconsistencies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Flags(pub(super) u32);
 
@@ -188,7 +188,7 @@ impl Layout {
         Some(if self.descriptor.inverted { !frame & ones(self.clocks()) } else { frame })
     }
 
-    /// What a frame says. Bits above its clocks are not looked at.
+    /// Decodes a frame. Bits above its clocks are ignored.
     #[inline]
     pub fn decode(&self, frame: u64) -> Reading {
         let all = ones(self.clocks());
@@ -231,7 +231,7 @@ impl Layout {
         }
     }
 
-    /// What many frames say, in their order. As many as the shorter of both has.
+    /// Decodes frames in order, as many as the shorter of both has.
     pub fn decode_all(&self, frames: &[u64], readings: &mut [Reading]) {
         for (frame, reading) in frames.iter().zip(readings) {
             *reading = self.decode(*frame);
@@ -253,7 +253,7 @@ impl Layout {
         first | self.descriptor.repeat.map_or(0, |repeat| first >> (repeat.word + repeat.gap))
     }
 
-    /// What stands behind the word against what should.
+    /// Compares the repetition after the word with the word.
     fn repetition(&self, frame: u64, word: u64) -> Flags {
         let differs = frame ^ self.repeated(word);
         let again = self.repeated(ones(self.descriptor.word()));

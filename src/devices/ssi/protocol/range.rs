@@ -1,4 +1,4 @@
-//! Which positions an encoder sends, and what they are: turns and steps, a round axis, a length (reference section 5).
+//! The range of positions and their meaning: turns and steps, a round axis, a length (reference section 5).
 
 use std::fmt;
 use std::str::FromStr;
@@ -48,7 +48,7 @@ pub struct Fraction {
     pub denominator: u32,
 }
 
-/// Which way the shaft is turned, seen on it, while positions grow; a length: its own direction, or against it.
+/// Direction of the shaft, seen on it, while positions grow; for a length: its own direction, or against it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Clockwise: as delivered.
@@ -58,7 +58,7 @@ pub enum Direction {
     CounterClockwise,
 }
 
-/// Why there is no such range.
+/// Why a range is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
     /// A field is wider than it can be.
@@ -79,7 +79,7 @@ pub enum RangeError {
     Fraction(u32, u32),
 }
 
-/// What a position is on the shaft or scale.
+/// The location of a position on the shaft or scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Location {
     /// On a shaft.
@@ -133,7 +133,7 @@ impl Range {
         }
     }
 
-    /// What a position is. It may be behind the last one: nothing wraps here.
+    /// Returns the location of a position. It may be beyond the last one: nothing wraps here.
     pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {

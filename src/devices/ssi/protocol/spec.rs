@@ -2,13 +2,13 @@
 
 use crate::expected::Expected;
 
-/// Why a text is no layout.
+/// Why a text is not a layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
     /// No `name=value`.
     #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = names.join(", "))]
     Form {
-        /// What stands there.
+        /// The word.
         word: String,
         /// Names that there are.
         names: &'static [&'static str],
@@ -16,7 +16,7 @@ pub enum SpecError {
     /// A name that is none.
     #[error("there is no \"{name}\"; names: {names}", names = names.join(", "))]
     Name {
-        /// What stands there.
+        /// The name.
         name: String,
         /// Names that there are.
         names: &'static [&'static str],
@@ -26,9 +26,9 @@ pub enum SpecError {
     Value {
         /// Of which name.
         name: String,
-        /// What it may be.
+        /// The expected value.
         expected: Expected,
-        /// What it is.
+        /// The value.
         value: String,
     },
     /// The same twice.

@@ -1,25 +1,25 @@
-//! What frames gave cause to say, how often and when: error bits that a transfer clears are gone with the next frame, and
-//! whoever looks now and then would not see them.
+//! Counts findings in frames: error bits that a transfer clears are gone with the next frame, and would be missed by
+//! looking at intervals.
 
 use super::explain::Finding;
 use super::layout::{Flags, Layout, Reading};
 use crate::analysis::Time;
 
-/// How often there was something to say, of frames that were noted in their order.
+/// The number of findings in frames that were noted in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     noted: Vec<Noted>,
-    /// What the frame before had, and which of `noted` that is.
+    /// The flags of the previous frame, and their indices in `noted`.
     before: (Flags, Vec<usize>),
 }
 
 /// Something there was to say.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noted {
-    /// What it is.
+    /// The finding.
     pub finding: Finding,
-    /// How often: what is about one transfer (an error bit that it clears, parity, repetition) counts with each frame,
-    /// what stands with each time that it begins.
+    /// Its count: findings about one transfer (an error bit that it clears, parity, repetition) count with each frame,
+    /// lasting ones each time they begin.
     pub count: u64,
     /// The first frame that had it.
     pub first: Time,
@@ -66,18 +66,18 @@ impl Tally {
         begun
     }
 
-    /// What there was to say since the last [`reset`](Self::reset), in the order of its first frames.
+    /// Returns the findings since the last [`reset`](Self::reset), in the order of their first frames.
     pub fn noted(&self) -> &[Noted] {
         &self.noted
     }
 
-    /// What is said has other names from now on: what stands is told again with the next frame.
+    /// Gives the findings other names: lasting ones are noted again with the next frame.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
     }
 
-    /// Begins anew; what stands is told again with the next frame.
+    /// Starts again; lasting findings are noted again with the next frame.
     pub fn reset(&mut self) {
         *self = Tally::default();
     }

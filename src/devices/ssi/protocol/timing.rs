@@ -1,5 +1,5 @@
-//! What the times of a transfer allow: how long a burst takes, how often one may ask, how old a position is
-//! (SICK SSI description 2.2, 2.7, 2.8 and each family's section; reference sections 1 and 5).
+//! The limits of a transfer: duration of a burst, rate of reading, age of a position (SICK SSI description 2.2, 2.7,
+//! 2.8 and each family's section; reference sections 1 and 5).
 
 #[cfg(test)]
 mod tests;
@@ -33,13 +33,13 @@ pub struct Times {
 pub struct Asynchronous {
     /// From one position to the next.
     pub update: f64,
-    /// How old a position is at least when it is taken.
+    /// Least age of a position when it is read.
     #[serde(default)]
     pub least_age: f64,
     /// The longest pause between bursts.
     #[serde(default)]
     pub most_pause: Option<f64>,
-    /// How far pauses may differ, in percent.
+    /// Variation of the pauses, in percent.
     #[serde(default)]
     pub pause_varies: Option<f64>,
 }
@@ -64,7 +64,7 @@ pub struct Synchronous {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Taken {
-    /// So long after the last clock, and ready so long after that.
+    /// This long after the last clock, and ready this long after that.
     Behind {
         /// From the last clock.
         starts: f64,
@@ -75,7 +75,7 @@ pub enum Taken {
     FirstEdge,
 }
 
-/// What is longer where the number of steps is no power of two.
+/// Times that are longer if the number of steps is not a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnySteps {
@@ -85,7 +85,7 @@ pub struct AnySteps {
     pub monoflop: f64,
 }
 
-/// How one reads.
+/// How frames are read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reads {
     /// Bits of a burst.
@@ -102,7 +102,7 @@ pub struct Reads {
     pub any_steps: bool,
 }
 
-/// What comes of it.
+/// The resulting times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// A clock.
@@ -117,15 +117,15 @@ pub struct Timing {
     pub least_pause: Duration,
     /// Bursts a second with the shortest pause.
     pub most_reads_hz: f64,
-    /// How old a position is when its last bit has come, least and most; `None` where nothing is known of it.
+    /// Least and greatest age of a position when its last bit has arrived; `None` if not known.
     pub age: Option<(Duration, Duration)>,
     /// The highest clock for this cable, in hertz; `None`: longer than any that the manual speaks of.
     pub cable_hz: Option<u32>,
-    /// What does not fit.
+    /// The violated limits.
     pub warnings: Vec<Warning>,
 }
 
-/// What does not fit, with both sides.
+/// A violated limit, with both values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
     /// The encoder does not bear this clock.
@@ -168,7 +168,7 @@ pub enum Warning {
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
-    /// What reading like this comes to.
+    /// Calculates the times of reading like this.
     pub fn reckon(&self, reads: &Reads) -> Timing {
         let mut warnings = Vec::new();
         let clock = reads.clock_hz.max(1.0);

@@ -27,7 +27,7 @@ parameters! {
 /// An SSI encoder on the shaft at an adapter.
 #[derive(Clone, Debug)]
 pub struct AtAdapter {
-    /// Where the settings name none; none: as delivered.
+    /// Used if the settings name none; `None` for the factory settings.
     encoder: Option<Encoder>,
 }
 

@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub struct Encoder {
     /// Its frame.
     pub layout: Layout,
-    /// Which way it counts.
+    /// Direction of counting.
     pub direction: Direction,
     /// Its position at the shaft's zero, within the frame's range.
     pub preset: u64,
@@ -30,7 +30,7 @@ impl Encoder {
 #[derive(Clone)]
 pub(super) struct Sending {
     pub(super) encoder: Encoder,
-    /// What its frames say of it beside the position.
+    /// Faults reported in its frames.
     pub(super) troubles: Vec<InjectedFault>,
     /// The last word.
     pub(super) transferred: Option<Moment>,

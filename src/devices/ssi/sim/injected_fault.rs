@@ -1,5 +1,5 @@
-//! What the frames of the virtual SSI encoder say of it: error bits that speak, and words that stand for a fault instead of
-//! a position. Which there are its layout tells (SICK SSI description, chapter 3).
+//! Injected faults in the frames of the virtual SSI encoder: active error bits, and words that report a fault instead
+//! of a position. The layout determines which exist (SICK SSI description, chapter 3).
 
 use std::time::Duration;
 

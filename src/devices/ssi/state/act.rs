@@ -1,5 +1,5 @@
-//! What the user asks of an encoder or its layout, carried out: changes at once, everything else as a job on its line or a
-//! task.
+//! The user's actions on an encoder or its layout: changes take effect at once, everything else is a job on its line or
+//! a task.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What can be asked of an SSI encoder that is shown, or of its layout.
+//! The actions of an SSI encoder that is shown, or of its layout.
 
 use std::path::PathBuf;
 

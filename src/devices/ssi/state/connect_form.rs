@@ -1,4 +1,4 @@
-//! What a person fills in to connect an SSI encoder behind an adapter, and the link it stands for. Nothing is opened here.
+//! The connection form of an SSI encoder behind an adapter, and its link. Nothing is opened here.
 
 use crate::app::Text;
 use crate::app::connect::form::{FormModel, NoFinder};
@@ -13,7 +13,7 @@ use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// How the encoder is reached.
+/// The way to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SsiWay {
     /// The virtual encoder in this program, behind a virtual adapter.
@@ -29,7 +29,6 @@ pub enum SsiWay {
 /// for what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
-    /// How the encoder is reached.
     pub way: SsiWay,
     /// Over a network, and not a serial port of this machine.
     pub network: bool,
@@ -43,7 +42,7 @@ pub struct SsiForm {
     pub file: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
-    /// What is typed for other parameters.
+    /// Text of other parameters.
     pub typed: Typed,
     /// Parameters of the link that have no entry.
     pub rest: Vec<(String, String)>,
@@ -104,7 +103,7 @@ impl SsiForm {
         [Settings::entries(), bridge::entries()].concat()
     }
 
-    /// That of the encoder's supply, and the others.
+    /// Returns the entry of the encoder's supply, and the others.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }

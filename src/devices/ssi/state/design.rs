@@ -23,13 +23,13 @@ const TO_BEGIN_WITH: &str = "ahm36";
 /// A layout that can work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// What is saved of it.
+    /// The profile.
     pub profile: SsiProfile,
     /// Its frame, checked.
     pub layout: Layout,
     /// The settings with which its family sends just this frame; `None`: it belongs to no family, or the family cannot.
     pub settings: Option<Settings>,
-    /// What is accepted although the family's manual does not speak of it.
+    /// Accepted settings that the family's manual does not mention.
     pub advice: Vec<Advice>,
 }
 
@@ -46,13 +46,13 @@ pub enum Edit {
     Frame(Box<Descriptor>),
     /// Other positions or another code; the frame grows and shrinks with them.
     Position(Range, Code),
-    /// Which way the positions count.
+    /// Direction of counting.
     Direction(Direction),
     /// The position at the shaft's zero.
     Preset(u64),
-    /// How one reads.
+    /// How frames are read.
     Reading(ReadingSettings),
-    /// What a person calls it.
+    /// The user's name for it.
     Name(String),
     /// Another layout as a whole.
     Whole(Box<SsiProfile>),
@@ -115,7 +115,7 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// With the layout that a virtual encoder sends; nobody knows what another one does.
+    /// Creates it with the layout that a virtual encoder sends; that of any other is not known.
     pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
         let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
@@ -123,7 +123,8 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// How one reads over another link to the same wire: what that says otherwise counts, and what was set here stays.
+    /// Changes how frames are read for another link to the same wire: parameters that differ in the link apply, and
+    /// those set here stay.
     pub(super) fn reading_over(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
@@ -158,7 +159,7 @@ impl Designer {
         self.families.named(self.now.profile.family.as_deref()?)
     }
 
-    /// What the times of the family allow; `None` without one.
+    /// Returns the times of the family; `None` without one.
     pub fn times(&self) -> Option<&Times> {
         self.family().map(|family| &family.times)
     }
@@ -172,7 +173,7 @@ impl Designer {
         }
     }
 
-    /// Why the last change was refused.
+    /// Returns why the last change was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
@@ -182,7 +183,7 @@ impl Designer {
         &self.saved
     }
 
-    /// Other families are known: what one makes of the layout is looked at anew.
+    /// Takes other families, and checks the layout against them again.
     pub(super) fn take_families(&mut self, families: Arc<Families>) {
         self.families = families;
         if let Ok(design) = Design::of(self.now.profile.clone(), &self.families, self.now.settings.as_ref()) {
@@ -313,7 +314,7 @@ impl PendingEdits for Designer {
     }
 }
 
-/// How one reads over a link, as those of its parameters say that count.
+/// Returns how frames are read over a link, from those of its parameters that apply.
 fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> bool) -> ReadingSettings {
     let number = |name: &str| url.query.get(name).filter(|_| counts(name)).and_then(|text| text.parse::<u32>().ok());
     let pause_us = number("pause").and_then(|pause| u16::try_from(pause).ok());
@@ -333,7 +334,7 @@ fn of_text(text: &str, families: &Families) -> SsiProfile {
     resolved.unwrap_or_else(|| Design::default().profile)
 }
 
-/// What a family with these settings sends. Direction and preset are the profile's own.
+/// Returns the frame of a family with these settings. Direction and preset are the profile's own.
 fn resolved(mut profile: SsiProfile, family: &Family, settings: Settings) -> Result<SsiProfile, Text> {
     let settings = Settings { direction: Some(profile.direction), preset: Some(profile.preset), ..settings };
     let resolved = settings.resolve(family).map_err(|error| words::settings(&error))?;

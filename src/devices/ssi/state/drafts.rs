@@ -9,8 +9,8 @@ use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Change, Document, Profile};
 
-/// What is changed, an entry each; none where the layout is as it was saved. Earlier versions kept the whole of it, as the
-/// text of a profile.
+/// The changes, an entry each; empty if the layout is as saved. Earlier versions kept the whole layout, as the text of
+/// a profile.
 pub(crate) type Drafts = Vec<String>;
 
 impl HasSession for Encoder {

@@ -19,7 +19,6 @@ use crate::sim::Motor;
 
 /// An SSI encoder, or a layout of one.
 pub struct Encoder {
-    /// What every session has.
     pub session: Session<Ssi>,
     /// The layout.
     pub designer: Designer,
@@ -27,21 +26,21 @@ pub struct Encoder {
     pub trial: Trial,
     /// The frame that it is tried with is the word that was read last.
     pub(super) follows: bool,
-    /// What was read.
+    /// The recording of what was read.
     pub record: Record,
     /// The search for the layout.
     pub hunt: Hunt,
     /// Searches that were begun.
     pub(super) searches: u32,
-    /// Who the adapter is and how it takes words, once it has told.
+    /// The adapter and how it reads words, once known.
     pub identity: Option<Identity>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// What turns the virtual encoder's shaft.
+    /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
     /// Words have so many clocks while a layout is looked for.
     pub(super) clocks: Option<u8>,
-    /// How the adapter was last told to take words.
+    /// How the adapter was last asked to read words.
     pub(super) told: Option<Asking>,
 }
 
@@ -77,7 +76,7 @@ impl Encoder {
         self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
     }
 
-    /// What is shown is the word that was read last.
+    /// Returns whether the word that was read last is shown.
     pub fn is_following(&self) -> bool {
         self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
     }
@@ -87,7 +86,7 @@ impl Encoder {
         self.record.last()
     }
 
-    /// What an adapter streams now; `None` where it does not.
+    /// Returns what an adapter streams now; `None` if it does not.
     pub fn streamed(&self) -> Option<&Streamed> {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
@@ -102,7 +101,7 @@ impl Encoder {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }
 
-    /// How the adapter is to take words.
+    /// Returns how the adapter is to read words.
     pub(crate) fn asking(&self) -> Asking {
         let reading = &self.design().profile.reading;
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
@@ -168,19 +167,19 @@ impl Encoder {
         !matches!(self.session.source, Source::Link(_))
     }
 
-    /// Why the layout as it is cannot be asked of the adapter.
+    /// Returns why the adapter cannot read the present layout.
     pub fn refusal(&self) -> Option<&Text> {
         self.designer.problem()
     }
 }
 
 impl Designer {
-    /// How one reads, for what the times allow.
+    /// Returns how frames are read, for checking the times.
     pub fn reads(&self) -> Reads {
         self.design().profile.reads()
     }
 
-    /// What it is called: by its person, or after its family.
+    /// Returns the user's name for it, or that of its family.
     pub fn title(&self) -> String {
         let profile = &self.design().profile;
         if !profile.name.is_empty() {

@@ -1,4 +1,4 @@
-//! What the line to an SSI encoder tells: who the adapter is, words, and its loss.
+//! Events of the line to an SSI encoder: identity of the adapter, words, and loss.
 
 use std::convert::Infallible;
 
@@ -66,7 +66,7 @@ impl Encoder {
         }
     }
 
-    /// What comes like this is to be seen, unless it comes anyway.
+    /// Reads a word to show, unless words arrive anyway.
     fn see_a_word(&mut self, services: &mut Services) {
         if !self.session.is_polling() {
             self.submit(SsiJob::Read, services);

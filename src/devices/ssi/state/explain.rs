@@ -125,7 +125,7 @@ pub fn frame(layout: &Layout) -> Text {
         .fold(line, |line, more| TEXTS.text("ssi.frame_and").with_text("line", line).with_text("more", more))
 }
 
-/// What few frames have.
+/// Returns the unusual properties of a layout.
 fn unusual(layout: &Layout) -> Vec<Text> {
     let descriptor = layout.descriptor();
     let between = (descriptor.between > 0).then(|| TEXTS.text("ssi.frame_between").with("zeros", descriptor.between));
@@ -148,7 +148,7 @@ pub fn code(code: Code) -> Text {
     })
 }
 
-/// What would tell layouts apart.
+/// Returns the text of an open question about layouts.
 pub fn open(open: Open) -> Text {
     match open {
         Open::TurnOnce => TEXTS.text("ssi_find.turn_once"),
@@ -164,7 +164,7 @@ pub fn open(open: Open) -> Text {
     }
 }
 
-/// Why the first layout that was found is not to be relied on, or that it is.
+/// Returns whether the first layout found is certain, or why not.
 pub fn doubt(doubt: Option<Doubt>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",
@@ -177,7 +177,7 @@ pub fn doubt(doubt: Option<Doubt>) -> Text {
     })
 }
 
-/// What speaks for a layout.
+/// Returns the evidence for a layout in words.
 pub fn evidence(evidence: &Evidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")
@@ -187,7 +187,7 @@ pub fn evidence(evidence: &Evidence) -> Text {
         .with("bits", evidence.bits_seen)
 }
 
-/// How often and when there was something to say.
+/// Returns how often and when a finding occurred.
 pub fn noted(noted: &Noted) -> Text {
     let seconds = |time: crate::analysis::Time| time.nanoseconds() as f64 / 1e9;
     let id = if noted.count == 1 { "ssi_tally.once" } else { "ssi_tally.often" };
@@ -205,7 +205,6 @@ mod tests {
     use crate::buses::bridge::procedures::AdapterError;
     use crate::link::{LinkError, LinkErrorKind};
 
-    /// What happened, and what to do: two sentences or more in both languages, with the facts in them.
     #[test]
     fn every_error_says_what_happened_and_what_to_do() {
         let name = || "bench adapter".to_owned();

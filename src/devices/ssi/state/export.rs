@@ -8,7 +8,7 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
-/// What a layout can be written as beside a profile.
+/// A format of an exported layout, besides a profile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
     /// A function in C99.
@@ -17,7 +17,7 @@ pub enum Format {
     StructuredText,
     /// The format string of LinuxCNC.
     LinuxCnc,
-    /// What to set in common SSI modules of controls.
+    /// Settings for common SSI modules of controls.
     Sheet,
     /// A row for each clock.
     Table,
@@ -52,7 +52,7 @@ impl Format {
         }
     }
 
-    /// What it is good for, as a row of the texts.
+    /// Returns the id of its explanation.
     pub const fn hint(self) -> &'static str {
         match self {
             Format::C => "ssi_export.c_hint",
@@ -65,7 +65,7 @@ impl Format {
         }
     }
 
-    /// How such files end.
+    /// Returns the extensions of such files.
     pub const fn endings(self) -> &'static [&'static str] {
         match self {
             Format::C => &["c"],

@@ -13,17 +13,17 @@ use crate::devices::ssi::state::explain as words;
 /// A row of the form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// What it is about.
+    /// The subject of the row.
     pub field: Field,
     /// Its name.
     pub name: Text,
-    /// What stands in it.
+    /// Its entry.
     pub entry: Entry,
-    /// What it means, as a row of the texts.
+    /// Id of its explanation.
     pub hint: Option<&'static str>,
 }
 
-/// What stands in a row.
+/// The entry of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
     /// A whole number.
@@ -37,7 +37,7 @@ pub enum Entry {
     Choice {
         /// All of them.
         options: Vec<Text>,
-        /// Which is chosen.
+        /// Index of the choice.
         chosen: usize,
     },
     /// On or off.
@@ -46,7 +46,7 @@ pub enum Entry {
     Words(String),
 }
 
-/// What is put into a row.
+/// Input into a row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Input {
     /// A whole number.
@@ -59,10 +59,10 @@ pub enum Input {
     Words(String),
 }
 
-/// What a row is about.
+/// The subject of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {
-    /// What the positions are: bits, steps, a round axis, a length.
+    /// The kind of positions: bits, steps, a round axis, a length.
     Range,
     /// Bits of the turns.
     Multiturn,
@@ -82,13 +82,13 @@ pub enum Field {
     StepLength,
     /// The code.
     Code,
-    /// What a Gray code goes over.
+    /// The bits that a Gray code covers.
     Over,
-    /// Where the position stands.
+    /// The alignment of the position.
     Align,
     /// One clock later.
     Shift,
-    /// Where the error bits stand.
+    /// The place of the error bits.
     Errors,
     /// Clocks of a burst.
     Clocks,
@@ -102,21 +102,21 @@ pub enum Field {
     Inverted,
     /// A parity bit, even or odd.
     Parity,
-    /// Which clock the parity bit is on.
+    /// The clock of the parity bit.
     ParityClock,
     /// The frame comes twice.
     Repeat,
     /// Zeros between both.
     Gap,
-    /// Which way the positions count.
+    /// The direction of counting.
     Direction,
     /// The position at the shaft's zero.
     Preset,
-    /// What an error bit is called.
+    /// Name of an error bit.
     ErrorName(usize),
-    /// Which clock it is on.
+    /// Clock of an error bit.
     ErrorClock(usize),
-    /// What it says of the position.
+    /// Meaning of an error bit for the position.
     ErrorMeaning(usize),
     /// It speaks when it is 0.
     ErrorLow(usize),
@@ -194,7 +194,7 @@ impl Designer {
         groups
     }
 
-    /// How it is read, as a form.
+    /// Returns how it is read, as a form.
     pub fn reading_form(&self) -> Vec<Row> {
         let reading = &self.design().profile.reading;
         let mut rows = vec![
@@ -212,7 +212,7 @@ impl Designer {
         rows
     }
 
-    /// What an entry changes.
+    /// Applies an entry.
     ///
     /// # Errors
     /// It cannot be: why.
@@ -297,7 +297,7 @@ fn over_row(own: Coded) -> Row {
         .hinted("ssi_form.over_hint")
 }
 
-/// What kind of positions there are.
+/// The kind of positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RangeKind {
     Bits,
@@ -326,7 +326,7 @@ impl RangeKind {
     }
 }
 
-/// What the positions of a frame are and how they are coded, where they can be of these kinds.
+/// Returns the rows of the positions of a frame and their code, limited to these kinds.
 fn position_rows(kinds: &[RangeKind], has_turns: bool, descriptor: &Descriptor) -> Vec<Row> {
     let mut rows = Vec::new();
     if kinds.len() > 1 {

@@ -1,4 +1,4 @@
-//! What the studio knows of SSI before there is a device.
+//! The kind SSI for the studio, before there is a device.
 
 use std::path::{Path, PathBuf};
 

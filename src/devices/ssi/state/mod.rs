@@ -41,13 +41,12 @@ use std::path::PathBuf;
 
 use crate::store::FileError;
 
-/// What tasks come back with.
+/// The results of tasks.
 pub enum Done {
     /// The search is over.
     Found {
-        /// Which one.
         number: u32,
-        /// How it stands.
+        /// The state of the search.
         hunt: Box<Hunt>,
     },
     /// A file was written, or not.

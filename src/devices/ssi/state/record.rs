@@ -1,5 +1,5 @@
-//! What is recorded of an SSI encoder while it is read: its words as they came, what the layout makes of them as lines over
-//! time, and what its error bits said. Another layout reads the same words anew.
+//! The recording of an SSI encoder: its words as they came, decoded by the layout into lines over time, and the
+//! findings of its error bits. Another layout decodes the same words again.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -28,7 +28,7 @@ pub struct Record {
     /// Words in `kept`.
     held: usize,
     tally: Tally,
-    /// What was said until then is not to be told any more.
+    /// Findings up to this time are no longer shown.
     forgotten: Option<Moment>,
     last: Option<Seen>,
     stream: Option<Streamed>,
@@ -42,7 +42,7 @@ pub struct Seen {
     pub at: Moment,
     /// Its bits.
     pub clocks: u8,
-    /// What the layout makes of it; `None`: it has another number of clocks.
+    /// The decoded word; `None` if the layout has another number of clocks.
     pub decoded: Option<Decoded>,
     /// The word as it came, right-justified.
     pub word: u64,
@@ -105,7 +105,7 @@ impl Record {
         }
     }
 
-    /// How a run goes on from the one before: words that are missing are counted and never joined.
+    /// Appends a run to the previous one: missing words are counted and never joined.
     fn follow(&mut self, run: &Words) {
         let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
@@ -185,7 +185,7 @@ impl Record {
         runs.into_iter().flat_map(|run| run.words.iter().copied()).collect()
     }
 
-    /// How many words are kept with so many clocks, the newest run of them without a gap.
+    /// Returns the number of words kept with this many clocks: the newest run without a gap.
     pub fn count(&self, clocks: u8) -> usize {
         self.runs(clocks).map(|run| run.words.len()).sum()
     }
@@ -203,12 +203,12 @@ impl Record {
         })
     }
 
-    /// What error bits, patterns and the like have said.
+    /// Returns the findings of error bits, patterns and the like.
     pub fn tally(&self) -> &Tally {
         &self.tally
     }
 
-    /// Nothing was said until now, also where words are read anew.
+    /// Forgets the findings so far, also when words are decoded again.
     pub(super) fn forget_tally(&mut self) {
         self.tally.reset();
         self.forgotten = self.last.as_ref().map(|last| last.at);
@@ -252,7 +252,7 @@ impl Recording for Record {
     }
 }
 
-/// What makes positions and verdicts of words.
+/// Returns the part of the layout that determines positions and verdicts.
 fn nameless(layout: &Layout) -> Descriptor {
     let mut descriptor = layout.descriptor().clone();
     descriptor.errors.iter_mut().for_each(|bit| bit.name.clear());
@@ -260,7 +260,7 @@ fn nameless(layout: &Layout) -> Descriptor {
     descriptor
 }
 
-/// What the positions of a layout are.
+/// Returns the meaning of the positions of a layout.
 fn meaning(layout: &Layout) -> Meaning {
     let range = layout.descriptor().range;
     let all = range.last().ok().and_then(|last| i64::try_from(last).ok()?.checked_add(1));

@@ -12,7 +12,7 @@ use crate::store::read_file;
 /// Frames that are searched at most: the newest.
 pub(super) const MOST: usize = 8_000;
 
-/// Where the frames are from.
+/// The origin of the frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
     /// They were read from the encoder.
@@ -24,7 +24,6 @@ pub enum Origin {
 /// Frames that follow each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frames {
-    /// Where they are from.
     pub origin: Origin,
     /// Bits of each, 1…64.
     pub clocks: u8,
@@ -32,7 +31,7 @@ pub struct Frames {
     pub frames: Vec<u64>,
 }
 
-/// How it stands with the search.
+/// The state of the search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Hunt {
     /// Nothing was looked for.
@@ -40,13 +39,11 @@ pub enum Hunt {
     Nothing,
     /// It goes on; which one it is.
     Running(u32),
-    /// What was found.
+    /// A result.
     Found {
-        /// Where the frames are from.
         origin: Origin,
         /// Bits of each.
         clocks: u8,
-        /// What was found.
         search: Box<Search>,
     },
     /// There was nothing to look at: why, and what to do.
@@ -129,7 +126,7 @@ fn is_frame(column: &str) -> bool {
     hex.is_some() || bits_of(column).is_some_and(|bits| bits >= 4)
 }
 
-/// How many bits are written down; `None`: it is something else.
+/// Returns the number of bits in a column; `None` if it does not hold bits.
 fn bits_of(column: &str) -> Option<u8> {
     let bits = column.strip_prefix("0b").or(column.strip_prefix("0B")).unwrap_or(column);
     let mut bits = bits.chars().filter(|bit| *bit != '_' && !bit.is_whitespace()).peekable();

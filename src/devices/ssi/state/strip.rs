@@ -25,16 +25,16 @@ pub struct Strip {
 pub struct Cell {
     /// Counted from 1.
     pub clock: u8,
-    /// What it carries.
+    /// Its content.
     pub role: Role,
-    /// Which of the strip's fields it belongs to.
+    /// Index of its field in the strip.
     pub field: usize,
 }
 
 /// Clocks that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Field {
-    /// What they carry.
+    /// Their content.
     pub kind: Kind,
     /// The first of them.
     pub first: u8,
@@ -42,7 +42,7 @@ pub struct Field {
     pub last: u8,
 }
 
-/// What a field carries.
+/// The content of a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// Nothing, before the position.
@@ -69,26 +69,26 @@ pub enum Kind {
     Again,
 }
 
-/// What can be moved. A boundary stands behind a clock, 0 at the beginning; a bit and the position stand on one.
+/// A movable part. A boundary is after a clock, 0 at the start; a bit and the position are on one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Handle {
-    /// Where the position begins: it gets bits of the turns from the zeros before it.
+    /// The start of the position: moving it exchanges bits of the turns with the zeros before it.
     LeadEnd,
     /// Between turns and steps: bits go from one to the other. There are no zeros between.
     Split,
-    /// Where the turns end and zeros before the steps begin.
+    /// The end of the turns, followed by zeros before the steps.
     TurnsEnd,
-    /// Where the steps begin behind zeros.
+    /// The start of the steps after zeros.
     BetweenEnd,
-    /// Where the position ends: the steps get bits from what is free behind it.
+    /// The end of the position: moving it exchanges bits of the steps with the free bits after it.
     StepsEnd,
     /// The last clock that is coded or shifted together with the position.
     AreaEnd,
-    /// Where the first of two equal words ends.
+    /// The end of the first of two equal words.
     WordEnd,
-    /// Where the repetition begins.
+    /// The start of the repetition.
     GapEnd,
-    /// Where the frame ends.
+    /// The end of the frame.
     FrameEnd,
     /// The whole position, by its first clock.
     Position,
@@ -98,12 +98,12 @@ pub enum Handle {
     Parity,
 }
 
-/// How a cell of a frame looks that has come.
+/// The appearance of a cell of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellState {
     /// Its bit.
     pub bit: bool,
-    /// What it tells of the position: an error bit that speaks, a bit that has to be 0 and is not.
+    /// The meaning for the position: an active error bit, or a bit that should be 0 and is not.
     pub tells: Option<Meaning>,
 }
 
@@ -168,12 +168,12 @@ impl Strip {
         &self.fields
     }
 
-    /// What can be moved, from the first clock to the last.
+    /// Returns the movable parts, from the first clock to the last.
     pub fn handles(&self) -> &[Handle] {
         &self.handles
     }
 
-    /// Where something stands, 0 to 64; `None` where the frame has no such thing.
+    /// Returns the clock of a part, 0 to 64; `None` if the frame does not have it.
     pub fn clock(&self, handle: Handle) -> Option<u8> {
         moving::clock(&self.layout, handle)
     }
@@ -197,7 +197,7 @@ impl Strip {
         Some((first.first, last.last))
     }
 
-    /// What each cell of a frame looks like.
+    /// Returns the appearance of each cell of a frame.
     pub fn shown(&self, frame: u64) -> Vec<CellState> {
         let descriptor = self.layout.descriptor();
         let flags = self.layout.decode(frame).flags;
@@ -228,7 +228,7 @@ impl Strip {
 }
 
 impl Field {
-    /// How many clocks it has.
+    /// Returns its number of clocks.
     pub const fn count(&self) -> u8 {
         self.last.saturating_sub(self.first) + 1
     }
@@ -261,7 +261,7 @@ fn has_words(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
 
-/// What a position is made of.
+/// The parts of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Parts {
     /// Bits of the turns and of the steps, both more than none.

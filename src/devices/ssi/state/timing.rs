@@ -22,26 +22,26 @@ pub struct Diagram {
 /// A stretch of time that is drawn. Between two of them the axis is broken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// Where it begins, in seconds.
+    /// Start in seconds.
     pub from: f64,
-    /// Where it ends, in seconds.
+    /// End in seconds.
     pub to: f64,
 }
 
 /// A time with its beginning and end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// What takes so long.
+    /// The activity that lasts.
     pub what: Lasting,
-    /// Where it begins, in seconds.
+    /// Start in seconds.
     pub from: f64,
-    /// Where it ends at the latest, in seconds.
+    /// Latest end in seconds.
     pub to: f64,
-    /// Where it may end already, in seconds.
+    /// Earliest end in seconds.
     pub least: f64,
 }
 
-/// What takes its time.
+/// An activity that takes time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lasting {
     /// A clock.
@@ -61,13 +61,13 @@ pub enum Lasting {
 /// A moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mark {
-    /// What happens then.
+    /// The event.
     pub what: Moment,
     /// In seconds.
     pub at: f64,
 }
 
-/// What happens at a moment.
+/// An event at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Moment {
     /// The position that is sent is kept.
@@ -136,12 +136,12 @@ impl Diagram {
         &self.strip
     }
 
-    /// What is drawn of the axis of time, from its beginning to its end.
+    /// Returns the drawn pieces of the time axis, from start to end.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// How long the axis is broken behind a piece, in seconds; 0 behind the last.
+    /// Returns the length of the break after a piece, in seconds; 0 after the last.
     pub fn broken(&self, piece: usize) -> f64 {
         let ends = self.pieces.get(piece).zip(self.pieces.get(piece + 1));
         ends.map_or(0.0, |(own, next)| next.from - own.to)
@@ -157,7 +157,7 @@ impl Diagram {
         &self.marks
     }
 
-    /// Where the clock line changes, in seconds; it rests high, so that the first is a falling edge.
+    /// Returns the times of the edges of the clock line in seconds; it rests high, so the first is a falling edge.
     pub fn edges(&self) -> Vec<f64> {
         let (half, cycle) = (self.timing.period.as_secs_f64() / 2.0, self.timing.cycle.as_secs_f64());
         let own = (0..2 * u32::from(self.clocks())).map(|edge| f64::from(edge) * half);
@@ -180,8 +180,8 @@ impl Diagram {
         (comes(field.first), comes(field.last + 1).min(self.timing.burst.as_secs_f64()))
     }
 
-    /// Where the data line is low behind the bits, and from when to when it rises again, in seconds. It does so with the
-    /// next burst at the latest.
+    /// Returns when the data line goes low after the bits, and the range of times in which it rises again, in seconds.
+    /// It rises with the next burst at the latest.
     pub fn low(&self) -> (f64, f64, f64) {
         let (burst, cycle) = (self.timing.burst.as_secs_f64(), self.timing.cycle.as_secs_f64());
         let (least, most) = self.timing.monoflop;
@@ -198,7 +198,7 @@ impl Diagram {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
 
-    /// What is at a moment: the time, and the clock with what it carries, or what the lines wait for.
+    /// Returns the state at a moment: the time, and the clock with its content, or what the lines wait for.
     pub fn told(&self, at: f64) -> Vec<Text> {
         let mut told = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
@@ -246,7 +246,7 @@ impl Moment {
     }
 }
 
-/// What is left out where the axis is broken, in words.
+/// Returns the text of a break of the axis.
 pub fn left_out(seconds: f64) -> Text {
     TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }

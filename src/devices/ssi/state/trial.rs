@@ -21,14 +21,14 @@ pub struct Decoded {
     pub reading: Reading,
     /// The position, if the bits are one, and what it is on the shaft or scale.
     pub place: Option<(u64, Location)>,
-    /// What there is to say of it.
+    /// The findings.
     pub findings: Vec<Finding>,
     /// The position may be used.
     pub is_valid: bool,
 }
 
 impl Decoded {
-    /// What a frame says.
+    /// Decodes a frame.
     pub fn of(layout: &Layout, frame: u64) -> Self {
         let reading = layout.decode(frame);
         let is_none = reading.flags.has(Flags::CODE);
@@ -48,12 +48,12 @@ impl Trial {
         self.frame
     }
 
-    /// Why the last entry was refused.
+    /// Returns why the last entry was refused.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }
 
-    /// What the frame says.
+    /// Returns the decoded frame.
     pub fn decoded(&self, layout: &Layout) -> Decoded {
         Decoded::of(layout, self.frame)
     }

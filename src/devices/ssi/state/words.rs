@@ -1,10 +1,10 @@
-//! What is done on the line, in words.
+//! The jobs on the line in words.
 
 use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::state::TEXTS;
 
-/// What a job is.
+/// Returns the name of a job.
 pub(super) fn job(job: &SsiJob) -> Text {
     match job {
         SsiJob::Hello => TEXTS.text("ssi_job.hello"),

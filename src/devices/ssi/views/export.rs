@@ -8,7 +8,7 @@ use crate::devices::ssi::views::say;
 use crate::ui::controls::{button, card, card_with, enabled_button, name, paragraph, problem};
 use crate::ui::{Theme, icons};
 
-/// Which one is looked at.
+/// The selected format.
 #[derive(Default)]
 pub(super) struct ExportUiState {
     format: Option<Format>,

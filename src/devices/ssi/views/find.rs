@@ -13,7 +13,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// What is typed and does not count yet.
+/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct FindUiState {
     clocks: Option<(String, Option<Text>)>,
@@ -53,7 +53,7 @@ pub(super) fn page_ui(
     }
 }
 
-/// Which frames are looked into.
+/// Draws the choice of the frames to search.
 fn frames(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let mut ask = |action| actions.push(Action::device(id, action));

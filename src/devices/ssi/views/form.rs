@@ -11,7 +11,7 @@ use crate::devices::ssi::state::{Action as Ssi, Encoder, Entry, Field, Input, Ro
 use crate::ui::Theme;
 use crate::ui::controls::{LABELS, choice, entry, problem, settled_entry};
 
-/// What is typed and does not count yet.
+/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct LayoutFormUiState {
     drafts: BTreeMap<Field, Option<(String, Option<Text>)>>,

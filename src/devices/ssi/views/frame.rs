@@ -18,7 +18,7 @@ use crate::ui::controls::{
 };
 use crate::ui::{Theme, icons};
 
-/// What the page remembers.
+/// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct FrameUiState {
     /// The cell that is looked at, by its clock.
@@ -63,7 +63,7 @@ pub(super) fn page_ui(
     foot(ui, theme, studio, device, encoder, actions);
 }
 
-/// What stands beside the frame to try with, and what below it: direction and preset, and error bits.
+/// Splits the form into the part beside the trial frame, and the part below it: direction and preset, and error bits.
 fn columns(form: &[Group]) -> (&[Group], &[Group]) {
     form.split_at(form.len().min(2))
 }

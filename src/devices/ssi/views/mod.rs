@@ -26,7 +26,7 @@ pub(crate) enum Page {
     /// The frame on the drawing board, and a frame to try it with.
     #[default]
     Frame,
-    /// What the times of a transfer allow.
+    /// The times of a transfer.
     Timing,
     /// The search for the layout of frames that were read.
     Find,
@@ -46,7 +46,7 @@ impl TabPage for Page {
     ];
 }
 
-/// What the tab remembers of one session while the window is open: text buffers and selections.
+/// The state of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SsiUiState {
     form: form::LayoutFormUiState,

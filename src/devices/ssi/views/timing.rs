@@ -1,5 +1,4 @@
-//! What the times of a transfer allow: a burst to scale, how often one may ask and how old a position is, and what does not
-//! fit.
+//! The timing page: a burst to scale, the rate of reading, the age of a position, and violated limits.
 
 use egui::{RichText, Ui};
 

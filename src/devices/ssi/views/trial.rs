@@ -11,14 +11,14 @@ use crate::devices::ssi::views::say;
 use crate::ui::controls::{card_with, entry, icon_button, mono_entry, name, paragraph, problem, row, settled_entry};
 use crate::ui::{Theme, icons};
 
-/// What is typed and does not count yet.
+/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct TrialUiState {
     position: Option<(String, Option<Text>)>,
     turns: Option<(String, Option<Text>)>,
     steps: Option<(String, Option<Text>)>,
     bits: Option<String>,
-    /// What was shown when typing began: words that come meanwhile change nothing under it.
+    /// The frame shown when typing began: words that arrive meanwhile do not change it.
     held: Option<Decoded>,
 }
 
@@ -146,7 +146,7 @@ fn bits(
     }
 }
 
-/// What there is to say of the frame.
+/// Draws the findings of the frame.
 fn findings(ui: &mut Ui, theme: &Theme, shown: &Decoded) {
     if shown.findings.is_empty() {
         return;

@@ -132,7 +132,7 @@ pub(crate) fn typed(
     }
 }
 
-/// Whether the adapter leaves the encoder's supply on at the end.
+/// Draws the choice whether the adapter leaves the encoder's supply on at the end.
 pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     ui.checkbox(leave_on, theme.say("connect.leave_supply"));
     paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));

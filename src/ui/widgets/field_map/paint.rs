@@ -7,7 +7,7 @@ use super::strip::{Strip, widest};
 use crate::ui::widgets::{focus_ring, hatch, series};
 use crate::ui::{Theme, icons};
 
-/// What is going on with a part of the map.
+/// The state of a part of the map.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
     pub(super) selected: bool,
@@ -116,7 +116,7 @@ fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync
     None
 }
 
-/// What is free: an outline a block.
+/// Draws the free space: an outline for each block.
 pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: &State) {
     let painter = ui.painter();
     let edge = match state.hovered {
@@ -148,7 +148,7 @@ pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     }
 }
 
-/// What the last field would be.
+/// Draws the last field as it would be.
 pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words: &str) {
     let accent = Color32::from(theme.palette.accent);
     let painter = ui.painter();

@@ -1,4 +1,4 @@
-//! Where the blocks of a field map are.
+//! The layout of the blocks of a field map.
 
 use egui::{Pos2, Rect, Vec2};
 
@@ -9,7 +9,7 @@ use crate::ui::Theme;
 pub(super) struct Strip {
     /// Upper left corner of what was given to the map.
     pub(super) origin: Pos2,
-    /// What the map takes.
+    /// The size of the map.
     pub(super) size: Vec2,
     /// One block.
     pub(super) block: Vec2,

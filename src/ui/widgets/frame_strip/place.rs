@@ -1,6 +1,6 @@
-//! Where the fields of a frame lie: on as few lines as there is room for, each with its bits in cells of one width.
+//! The layout of the fields of a frame: on as few lines as fit, with all bits in cells of one width.
 
-/// What a field needs.
+/// The space that a field needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Want {
     /// Its bits.
@@ -38,13 +38,13 @@ const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 
 const GROUP: f32 = 3.0;
 
 impl Placed {
-    /// Where the bit `at` of the piece begins, from its left; groups of four are counted from the end of the field.
+    /// Returns the left edge of bit `at` of the piece; groups of four are counted from the end of the field.
     pub(super) fn offset(&self, at: usize, field_bits: usize, cell: f32) -> f32 {
         at as f32 * cell + groups(self.first, self.first + at, field_bits) as f32 * GROUP
     }
 }
 
-/// How many groups of four end between two bits of a field.
+/// Returns how many groups of four end between two bits of a field.
 fn groups(from: usize, to: usize, field_bits: usize) -> usize {
     let behind = |bit: usize| field_bits.saturating_sub(bit).div_ceil(4);
     behind(from).saturating_sub(behind(to))
@@ -83,7 +83,7 @@ fn with_cell(wants: &[Want], width: f32, gap: f32, cell: f32) -> Placing {
     placing
 }
 
-/// How wide so many bits of a field are from `first` on.
+/// Returns the width of a number of bits of a field, from `first` on.
 fn cells(first: usize, bits: usize, field_bits: usize, cell: f32) -> f32 {
     bits as f32 * cell + groups(first, (first + bits).saturating_sub(1), field_bits) as f32 * GROUP
 }

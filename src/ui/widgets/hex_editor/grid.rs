@@ -1,4 +1,4 @@
-//! Where the cells of a hex editor are.
+//! The layout of the cells of a hex editor.
 
 use egui::{FontId, Pos2, Rect, Ui, Vec2};
 

@@ -1,4 +1,4 @@
-//! What the keyboard does in a hex editor. What is understood is taken out of the input, so that nobody else acts on it.
+//! The keyboard of a hex editor. Handled keys are consumed, so that nothing else acts on them.
 
 use egui::{Event, FocusDirection, Key, Modifiers, Ui};
 

@@ -1,4 +1,4 @@
-//! What a hex editor says about the byte under the pointer.
+//! The tooltip of a byte in a hex editor.
 
 use egui::Ui;
 

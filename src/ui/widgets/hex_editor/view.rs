@@ -1,10 +1,10 @@
-//! Where the cursor of a hex editor is and what is selected. It knows no bytes, only how many there are.
+//! The cursor and the selection of a hex editor. It knows the number of bytes, not the bytes.
 
 use std::ops::Range;
 
 use crate::app::Text;
 
-/// What an editor remembers between two frames.
+/// The state of an editor between frames.
 #[derive(Clone, Debug, Default)]
 pub struct HexView {
     anchor: usize,
@@ -23,7 +23,7 @@ pub struct HexView {
     before: Option<Vec<u8>>,
 }
 
-/// Which of the two columns has the keyboard.
+/// The column with the keyboard focus.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Column {
     #[default]
@@ -74,7 +74,7 @@ impl HexView {
         }
     }
 
-    /// Why the last thing was not done.
+    /// Returns why the last request was not carried out.
     pub fn problem(&self) -> Option<&Text> {
         self.problem.as_ref()
     }

@@ -1,4 +1,5 @@
-//! Where the columns of a table stand: those that matter least fall away where there is no room, and two take what is left.
+//! The columns of a table: the least important ones are hidden where there is no room, and two share the rest of the
+//! width.
 
 use egui::Rangef;
 
@@ -39,7 +40,7 @@ const NUMBERS: [(Column, f32); 7] = [
     (Column::Range, 150.0),
     (Column::Default, 96.0),
 ];
-/// What falls away, the first first. It is under the pointer then.
+/// The columns that are hidden, in this order. Their values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
 /// The share of what is left that the name gets; the meaning gets the rest.
 const NAME: f32 = 0.45;
@@ -80,7 +81,7 @@ impl Columns {
         Columns(shown.into_iter().map(place).collect())
     }
 
-    /// Where a column stands, from the left of the table; `None` where there is no room for it.
+    /// Returns the range of a column, from the left of the table; `None` if it is hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
         self.0.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
     }

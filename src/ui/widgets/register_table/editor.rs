@@ -1,5 +1,5 @@
-//! What is typed over the value of a register: it counts with Enter or when it is left, unless it is refused; then it stays
-//! with the reason.
+//! The editor of a register value: it takes effect with Enter or when it loses focus, unless it is refused; it then
+//! stays open with the reason.
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 

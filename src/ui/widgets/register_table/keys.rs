@@ -1,5 +1,4 @@
-//! What the keyboard does in a register table. What is understood is taken out of the input, so that nobody else acts on
-//! it.
+//! The keyboard of a register table. Handled keys are consumed, so that nothing else acts on them.
 
 use egui::{Event, EventFilter, Id, Key, Modifiers, Ui};
 

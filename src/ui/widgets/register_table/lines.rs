@@ -1,10 +1,10 @@
-//! Which line of the table is what: headings of groups, registers, and the bit fields of those that are unfolded. Nothing is
-//! built a line; thousands of registers cost no more than their groups.
+//! The lines of the table: headings of groups, registers, and the bit fields of unfolded ones. Lines are not stored;
+//! thousands of registers cost no more than their groups.
 
 use super::view::Selected;
 use super::{RegisterLocation, RegisterTable, RegisterView};
 
-/// What a line is.
+/// The kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineKind {
     Group(usize),
@@ -50,7 +50,7 @@ impl Lines {
         self.total
     }
 
-    /// What a line is, counted from 0.
+    /// Returns the kind of a line, counted from 0.
     pub(super) fn at(&self, line: usize) -> Option<LineKind> {
         let group = self.group_at(line)?;
         let section = self.sections.get(group)?;
@@ -75,7 +75,7 @@ impl Lines {
         self.sections.partition_point(|section| section.start <= line).checked_sub(1)
     }
 
-    /// Where something stands; `None` where it is not shown.
+    /// Returns the line of an item; `None` if it is not shown.
     pub(super) fn line_of(&self, what: Selected) -> Option<usize> {
         match what {
             Selected::Group(group) => self.sections.get(group).map(|section| section.start),
@@ -87,7 +87,7 @@ impl Lines {
         }
     }
 
-    /// What can be selected nearest to a line: itself, or the register whose bit field it is.
+    /// Returns the selectable item nearest to a line: itself, or the register of a bit field.
     pub(super) fn select_at(&self, line: usize) -> Option<Selected> {
         Some(match self.at(line)? {
             LineKind::Group(group) => Selected::Group(group),

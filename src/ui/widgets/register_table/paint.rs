@@ -11,12 +11,12 @@ use crate::ui::{Theme, icons};
 
 /// Height of the line with the names of the columns.
 pub(super) const HEADER: f32 = 20.0;
-/// Where the caret of a register with bit fields ends.
+/// Right edge of the caret of a register with bit fields.
 pub(super) const CARET: f32 = 16.0;
 /// Distance of the marks.
 const MARK: f32 = 13.0;
 
-/// How a line stands.
+/// The state of a line.
 #[derive(Clone, Copy)]
 pub(super) struct State {
     selected: bool,
@@ -138,7 +138,7 @@ pub(super) fn row(
     }
 }
 
-/// Where the number of a line can be pressed to edit it.
+/// Returns the area where the value of a line can be clicked to edit it.
 pub(super) fn box_of(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     let inset = theme.space.inside;
     let x = rect.left() + value.min - inset..=rect.left() + value.max - theme.space.between;
@@ -208,7 +208,7 @@ fn inscribe(
     width
 }
 
-/// What a register is, and what there was no room for.
+/// Draws the tooltip of a register, with the hidden columns.
 pub(super) fn tip(ui: &mut Ui, theme: &Theme, (kind, columns): (RegisterKind, &Columns), row: &RegisterRow) {
     ui.spacing_mut().item_spacing.y = theme.space.inside;
     ui.label(egui::RichText::new(row.label()).color(theme.palette.text));

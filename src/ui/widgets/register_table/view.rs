@@ -1,4 +1,4 @@
-//! What a register table remembers: what is selected, folded and unfolded, and what is being typed.
+//! The state of a register table: selection, folding, and the value being edited.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use super::RegisterLocation;
 use crate::app::Text;
 use crate::ui::Theme;
 
-/// What a table remembers between two frames.
+/// The state of a table between frames.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterView {
     pub(super) selected: Option<Selected>,
@@ -17,9 +17,9 @@ pub struct RegisterView {
     pub(super) edit: Option<Edit>,
     /// The register that was pressed to be edited.
     pub(super) wanted: Option<RegisterLocation>,
-    /// Why the value that should be edited cannot be.
+    /// Why the value cannot be edited.
     pub(super) refused: Option<String>,
-    /// What is selected has moved and has to be seen.
+    /// The selection has moved and has to be scrolled into view.
     pub(super) reveal: bool,
     /// Lines of a page.
     pub(super) page: usize,
@@ -32,12 +32,12 @@ pub(super) enum Selected {
     Row(RegisterLocation),
 }
 
-/// What is being typed.
+/// The value being edited.
 #[derive(Clone, Debug)]
 pub(super) struct Edit {
     pub(super) place: RegisterLocation,
     pub(super) text: String,
-    /// Why it was not taken.
+    /// Why it was refused.
     pub(super) problem: Option<Text>,
     /// It shall have the keyboard now.
     pub(super) begins: bool,
@@ -62,7 +62,7 @@ impl RegisterView {
         }
     }
 
-    /// Why what was typed, or should be, cannot be taken.
+    /// Returns why the edited value cannot be accepted, or not be edited.
     pub fn problem(&self, theme: &Theme) -> Option<String> {
         let typed = self.edit.as_ref().and_then(|edit| edit.problem.as_ref()).map(|problem| theme.words(problem));
         typed.or_else(|| self.refused.clone())
@@ -73,7 +73,7 @@ impl RegisterView {
         self.edit.as_ref().map(|edit| edit.place)
     }
 
-    /// What was typed was refused, and stays with its reason.
+    /// Returns whether the edited value was refused and is still open.
     pub fn is_refused(&self) -> bool {
         self.edit.as_ref().is_some_and(|edit| edit.problem.is_some())
     }
@@ -93,7 +93,7 @@ impl RegisterView {
         }
     }
 
-    /// Whether the registers of a group are hidden.
+    /// Returns whether the registers of a group are hidden.
     pub fn is_folded(&self, group: usize) -> bool {
         self.folded.contains(&group)
     }

@@ -10,7 +10,7 @@ use crate::buses::bridge::protocol::{
 };
 use crate::cli::decode::Explained;
 
-/// What the packets say. Nothing between two 00 is no packet.
+/// Decodes packets. Nothing between two 00 is not a packet.
 pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {
     if bytes.iter().all(|byte| *byte == 0) {
         let why = "no bridge packet: only zeros, which end one".to_owned();

@@ -22,14 +22,14 @@ pub(super) fn of_bytes(bytes: &[u8]) -> Option<Explained> {
     fits.then(|| Explained { compact: hex_compact(bytes), ..explain(raw, hex(bytes)) })
 }
 
-/// What the bits say that were written like this.
+/// Decodes bits that were written in this form.
 pub(super) fn explain(raw: u64, shown: String) -> Explained {
     let mut more = form("position frame");
     let meaning = meaning(raw, &mut more);
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-/// What a position word says.
+/// Decodes a position word.
 pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
     let layout = Layout::default();
     let mut more = form("position word");

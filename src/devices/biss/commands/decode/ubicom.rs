@@ -7,7 +7,7 @@ use crate::cli::decode::Explained;
 use crate::devices::biss::commands::words;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
-/// What the frames say. `asked` is the request before them, and the last of theirs afterwards.
+/// Decodes frames. `asked` is the request before them, and the last of theirs afterwards.
 pub(super) fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
     let mut explained = Vec::new();
     let mut request = *asked;

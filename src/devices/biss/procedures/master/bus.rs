@@ -17,9 +17,9 @@ use crate::units::Moment;
 const SLAVE: u8 = 0;
 /// An encoder that restarts is silent for longer (EDS 02:0Eh, 500 ms): who answered within this has not restarted.
 const BANK_TRUST: Duration = Duration::from_millis(200);
-/// Between two tries: the adapter says at once that nobody answers.
+/// Pause between two attempts: the adapter reports a missing encoder at once.
 const PAUSE: Duration = Duration::from_millis(20);
-/// So many frames with wrong checksums and none with a right one are no noise (`U`).
+/// Number of frames with wrong checksums and none with a right one that cannot be noise (`U`).
 const WRONG_FRAMES: u32 = 16;
 
 /// Why there is no frame.
@@ -136,7 +136,7 @@ impl<'a> Master<'a> {
         Ok(Ok(reads))
     }
 
-    /// What an answer about a register says, and what it says about the bank.
+    /// Evaluates an answer about a register, and its consequence for the selected bank.
     fn register_answer(&mut self, answered: Result<Option<Answered>, Failure>) -> Attempt<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
@@ -233,7 +233,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Nobody answers to a register: a frame tells whether the line itself is at fault.
+    /// Reads a frame after a register gave no answer: it shows whether the line itself is at fault.
     pub(super) fn diagnose(&mut self, failed: Error) -> Error {
         let Error::NoReply { tries, .. } = failed else { return failed };
         match self.frame_once() {

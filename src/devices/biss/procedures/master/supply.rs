@@ -24,7 +24,7 @@ impl Master<'_> {
         self.wait(Supply::POWER_UP)
     }
 
-    /// An encoder that gives a frame has power already, whoever supplies it.
+    /// Returns whether the encoder has power: one that sends a frame does, whatever its supply.
     fn has_power(&mut self) -> bool {
         let bits = self.station.frame().bits();
         let ones = u64::MAX >> (64 - u32::from(bits.clamp(1, 64)));

@@ -27,13 +27,13 @@ struct Timed {
     at: Moment,
 }
 
-/// What has come so far.
+/// The bytes received so far.
 struct Heard {
     receiver: Receiver,
     sent: Vec<u8>,
     /// The first of all that came, for the trace.
     raw: Vec<u8>,
-    /// How many bytes came.
+    /// Number of bytes received.
     bytes: usize,
     echo_heard: bool,
     damage: Option<Damage>,

@@ -20,9 +20,9 @@ const LIMIT: Duration = Duration::from_secs(20);
 pub struct CalibrationReport {
     /// The encoder's temperature before it, where it tells.
     pub celsius: Option<i16>,
-    /// How the motor turned before the first run.
+    /// Motion of the motor before the first run.
     pub counterclockwise: Option<Motion>,
-    /// How it turned before the second.
+    /// Motion before the second run.
     pub clockwise: Option<Motion>,
 }
 

@@ -16,7 +16,7 @@ pub enum Failure {
     Calibration {
         /// In the clockwise run the table is lost with it.
         run: Run,
-        /// What the encoder says.
+        /// The encoder's status.
         status: CalibrationStatus,
     },
     /// The Wiegand test says why.
@@ -24,7 +24,7 @@ pub enum Failure {
     Wiegand {
         /// In which run.
         run: Run,
-        /// What the encoder says.
+        /// The encoder's status.
         status: WiegandStatus,
         /// Its error code; what it means is not published.
         code: u8,
@@ -38,41 +38,41 @@ pub enum Failure {
     /// The device mode that was written does not read back.
     #[error("device mode {wanted} was written and {found} is there")]
     Mode {
-        /// What was written.
+        /// The mode written.
         wanted: DeviceMode,
-        /// What reads back.
+        /// The mode read back.
         found: DeviceMode,
     },
     /// A status register never said what it has to.
     #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
     Status {
-        /// Which procedure.
+        /// The procedure.
         kind: ProcedureKind,
-        /// What it has to say.
+        /// The expected status.
         expected: u8,
-        /// What it says.
+        /// The reported status.
         found: u8,
     },
     /// A run has no end.
     #[error("the run has not ended after {seconds} s")]
     TooLong {
-        /// Which.
+        /// The run.
         run: Run,
-        /// How long it was waited for.
+        /// Time waited, in seconds.
         seconds: u64,
     },
-    /// What was asked of the person did not come about in the time that was given for it.
+    /// The user did not fulfil the task in the time allowed.
     #[error("what has to be is not: {blockers:?}")]
     NotReady {
-        /// What was asked.
+        /// The task.
         task: Task,
-        /// What stands against it.
+        /// What prevents the start.
         blockers: Vec<Blocker>,
     },
-    /// What was read back is not what was written.
+    /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
-        /// What was written.
+        /// The item written.
         item: String,
         /// As it should be.
         expected: String,
@@ -82,7 +82,7 @@ pub enum Failure {
     /// The description of this encoder does not have what the plan needs.
     #[error("nothing describes how this encoder does that")]
     NotDescribed {
-        /// Which procedure.
+        /// The procedure.
         kind: ProcedureKind,
     },
 }

@@ -1,5 +1,6 @@
-//! What all procedures share: device modes, commands, statuses, the person at the motor, restarts, and the way back to
-//! operation. While it works it keeps count of what the encoder may be in, so that a lost link can be told.
+//! Shared parts of all procedures: device modes, commands, statuses, the person at the motor, restarts, and the way
+//! back to operation. The possible states of the encoder are tracked meanwhile, so that they can be reported after a
+//! lost link.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -24,7 +25,7 @@ const GLANCE: Duration = Duration::from_millis(100);
 const SAMPLING: Duration = Duration::from_millis(10);
 /// Between two questions to a person.
 const ASKING: Duration = Duration::from_millis(200);
-/// How long the speed of a motor is measured, and whether a shaft stands.
+/// Duration of measuring the speed of a motor, and of checking whether a shaft stands still.
 const TURNING: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(250);
 /// A device mode that is not there by then was not taken.
@@ -46,10 +47,10 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     cycles: u64,
 }
 
-/// How a run goes.
+/// The course of a run.
 pub(super) struct Course {
     pub(super) run: Run,
-    /// What starts it.
+    /// The command that starts it.
     pub(super) command: u8,
     /// The status that was there before the command: another run may have left it.
     pub(super) was: u8,
@@ -59,12 +60,12 @@ pub(super) struct Course {
     pub(super) done: u8,
     /// Between two looks at its status.
     pub(super) every: Duration,
-    /// How long it takes, and when it has no end.
+    /// Its duration, and the limit for it.
     pub(super) expected: Duration,
     pub(super) limit: Duration,
 }
 
-/// What a person answered, with what was measured then.
+/// The person's answer, with the measurement at that time.
 pub(super) enum Attended {
     /// Go on.
     Go(Option<Motion>),
@@ -88,12 +89,12 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.master
     }
 
-    /// The encoder was found in operation; somebody may have left the password set.
+    /// Records that the encoder was found in operation; the password may have been left set.
     pub(in crate::devices::biss::procedures) fn found(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
 
-    /// What is known of the encoder's state.
+    /// Returns the known state of the encoder.
     pub(in crate::devices::biss::procedures) fn standing(&self) -> &LeftState {
         &self.standing
     }
@@ -406,7 +407,7 @@ pub(super) fn lead_back(
     Err(Error::StaysUnlocked { mode: stays })
 }
 
-/// What a procedure wants to hear before its mode is left. That it does not take it is no reason to stay.
+/// Sends what a procedure requires before its mode is left. A refusal does not prevent leaving.
 fn end_procedure(master: &mut Master<'_>, description: &Description, mode: DeviceMode) -> Result<(), Error> {
     use crate::devices::biss::protocol::{CalibrationStatus, DataCommand, DataStatus, WiegandCommand};
     let Some(procedure) = description.procedures().iter().find(|own| own.mode == mode.byte()) else { return Ok(()) };

@@ -5,22 +5,22 @@ use super::Run;
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::DeviceMode;
 
-/// What something may be: one value, or several where an answer is missing.
+/// The possible values of something: one, or several if an answer is missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Possible<T>(Vec<T>);
 
-/// What is known of the state of an encoder.
+/// The known state of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftState {
     /// Its device mode.
     pub mode: Possible<DeviceMode>,
     /// The password is set, so that device modes can be chosen.
     pub password: Possible<bool>,
-    /// What it was doing.
+    /// Its activity.
     pub activity: Activity,
 }
 
-/// What an encoder was doing.
+/// The activity of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Activity {
     /// Nothing that a loss of the link would cut off.

@@ -1,7 +1,7 @@
 //! The guided procedures (manual 6.3 to 6.7), each straight-line code from entering its device mode to operation again.
-//! They speak to whoever stands at the motor through an [`Operator`], tell every [`Step`], and end in operation mode with
-//! the password cleared, whatever happens; where the encoder can no longer be reached, what is known of its [`LeftState`]
-//! is told instead, and [`lead_back`] does the rest later.
+//! They address the person at the motor through an [`Operator`], report every [`Step`], and always end in operation
+//! mode with the password cleared; if the encoder can no longer be reached, the known [`LeftState`] is reported
+//! instead, and [`lead_back`] does the rest later.
 //!
 //! | file | what it is |
 //! |---|---|
@@ -37,7 +37,7 @@ use super::{Error, Master, PositionReading, identify};
 use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetValue, RegisterAddress};
 
-/// What came of an operation.
+/// The result of an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// The person left it out, or what comes after its first run.
@@ -47,19 +47,18 @@ pub enum Outcome {
     },
     /// Registers were written, saved where that belongs to it, and read back.
     Stored {
-        /// How many.
+        /// Number of registers.
         registers: u64,
     },
     /// A preset value was stored.
     PresetStored {
-        /// Which.
         value: PresetValue,
         /// As many bits as a turn has steps.
         singleturn_bits: u8,
     },
     /// A preset was carried out.
     PresetFired {
-        /// Which part of the position.
+        /// Parts of the position.
         parts: PresetParts,
         /// Before.
         from: PositionReading,
@@ -101,8 +100,8 @@ impl Guide<'_, '_> {
     }
 }
 
-/// Leads an encoder back to operation and clears the password, whoever left it otherwise: after a lost link, from another
-/// host. Gives back the mode in which it was. One that calibrates, and is silent, is waited for.
+/// Leads an encoder back to operation and clears the password, whoever changed it: after a lost link, or from another
+/// host. Returns the mode in which it was. One that calibrates, and is silent, is waited for.
 ///
 /// # Errors
 /// The line, or an encoder that stays where it is.

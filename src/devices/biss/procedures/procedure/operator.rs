@@ -1,5 +1,5 @@
-//! Who stands beside the motor while a procedure runs: what is asked of that person, what is measured meanwhile, and what
-//! the person answers. In a window it is somebody at a button, on a production line nobody, in a test a script.
+//! The person beside the motor while a procedure runs: the tasks, the measurement meanwhile, and the answers. In a
+//! window it is a user at a button, on a production line there is none, in a test it is a script.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -78,7 +78,7 @@ impl Run {
         if self.calibrates() { Some(2.0) } else { None }
     }
 
-    /// What is accepted as steady at this speed: as far as that can be measured.
+    /// Returns the speed variation that counts as steady at this speed, as far as it can be measured.
     pub fn accepted_fluctuation(self, rpm: f64) -> f64 {
         match self.fluctuation() {
             Some(fluctuation) => fluctuation + rpm.abs() * SpeedRange::EXACT,
@@ -90,7 +90,7 @@ impl Run {
     const UNSTEADY: f64 = 0.05;
 }
 
-/// What the person is asked to do.
+/// The task of the person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Task {
     /// Turn the motor as this run needs it.
@@ -101,7 +101,7 @@ pub enum Task {
     StandAtPlace,
 }
 
-/// Why a start is not possible yet.
+/// What prevents a start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blocker {
     /// There are not enough positions yet.
@@ -121,7 +121,7 @@ pub enum Blocker {
     Speed {
         /// Revolutions a minute, without direction.
         rpm: f64,
-        /// What is allowed.
+        /// The allowed range.
         allowed: SpeedRange,
     },
     /// The motor still accelerates, or its speed wavers.
@@ -136,41 +136,41 @@ pub enum Blocker {
     },
 }
 
-/// What a person should know before the start, which is possible all the same.
+/// Advice before the start, which is possible regardless.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advice {
     /// Another speed, or a steadier one, gives a better result.
     Speed {
-        /// What is recommended.
+        /// The recommended range.
         recommended: SpeedRange,
     },
     /// Manual 6.4: if this run fails, the table of the calibration is lost.
     TableAtRisk,
-    /// The encoder marks its positions as invalid: the speed is taken from them all the same.
+    /// The encoder marks its positions as invalid: the speed is calculated from them regardless.
     Marked,
 }
 
-/// What is asked, and what is measured at the moment.
+/// The present task and measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
-    /// What the person is to do.
+    /// The task.
     pub task: Task,
-    /// How the shaft turns; `None` until it is measured.
+    /// Motion of the shaft; `None` until it is measured.
     pub motion: Option<Motion>,
     /// The encoder's temperature, where the procedure depends on it.
     pub celsius: Option<i16>,
-    /// Why a start is not possible; empty where it is.
+    /// What prevents the start; empty if nothing does.
     pub blockers: Vec<Blocker>,
-    /// What to know before it.
+    /// Advice before the start.
     pub advice: Vec<Advice>,
-    /// How long this is being asked.
+    /// Duration of the task so far.
     pub waited: Duration,
 }
 
 impl Demand {
     /// Manual 6.4: the temperatures of the calibration.
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
-    /// Below this nobody would say that a motor turns, in revolutions a minute.
+    /// The lowest speed that counts as turning, in revolutions a minute.
     const SLOWEST: f64 = 1.0;
 
     /// Judges what was measured.
@@ -223,7 +223,7 @@ impl Demand {
     }
 }
 
-/// What was measured for a demand.
+/// The measurement for a task.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Measured {
     pub(super) motion: Option<Motion>,
@@ -234,7 +234,7 @@ pub(super) struct Measured {
     pub(super) unreadable: bool,
 }
 
-/// What the person answers.
+/// The answer of the person.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// Nothing yet.
@@ -245,11 +245,11 @@ pub enum Answer {
     Skip,
     /// End the run.
     Cancel,
-    /// Nobody will come: end with what stands against the start.
+    /// No one will come: end with what prevents the start.
     GiveUp,
 }
 
-/// Whoever stands beside the motor.
+/// The person beside the motor.
 pub trait Operator {
     /// Something is asked for the first time: whatever was answered before that belongs to something else.
     fn begins(&mut self) {}
@@ -258,10 +258,10 @@ pub trait Operator {
     fn attend(&mut self, demand: &Demand) -> Answer;
 }
 
-/// Nobody: starts as soon as everything fits, and waits for that only so long.
+/// No person: starts as soon as all conditions are met, and waits for them for a limited time.
 #[derive(Clone, Copy, Debug)]
 pub struct Unattended {
-    /// How long, for each thing that is asked.
+    /// The time limit of each task.
     pub patience: Duration,
 }
 
@@ -285,7 +285,7 @@ impl Operator for Unattended {
     }
 }
 
-/// Somebody elsewhere, for whom answers are left here. Clones share them.
+/// A person elsewhere, whose answers arrive here. Clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
 

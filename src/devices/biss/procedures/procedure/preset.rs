@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// So far the shaft may tremble around the value that it has got: 0.35°.
+/// How far the shaft may tremble around its new value: 0.35°.
 const TREMBLE: u64 = 1024;
 
 impl Guide<'_, '_> {
@@ -67,7 +67,7 @@ fn value_of(procedure: &Procedure) -> Result<RegisterRange, Failure> {
     range.ok_or(Failure::NotDescribed { kind: procedure.kind })
 }
 
-/// Where the shaft is to be from then on, as one number of steps.
+/// Returns the position of the shaft after the preset, as one number of steps.
 fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64 {
     let steps = if parts.sets_singleturn() { value.singleturn() } else { from.steps };
     let turns = if parts.sets_multiturn() { value.multiturn() } else { from.turns };

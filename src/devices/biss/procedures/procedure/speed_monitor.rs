@@ -1,5 +1,5 @@
-//! How the shaft turns, measured from positions: direction, speed, how much it wavers, and whether it stands. It reads
-//! nothing itself.
+//! The motion of the shaft, measured from positions: direction, speed, variation, and standstill. It reads nothing
+//! itself.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -18,12 +18,12 @@ pub(super) struct SpeedMonitor {
     places: VecDeque<(Time, i64)>,
 }
 
-/// How the shaft turns.
+/// The motion of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Revolutions a minute, averaged over the measurement; above 0 clockwise, that is, with rising positions.
     pub rpm: f64,
-    /// How far the speed of a quarter of the measurement lies from that at most, in revolutions a minute.
+    /// Largest deviation of the speed of a quarter of the measurement, in revolutions a minute.
     pub spread: f64,
     /// Revolutions between the farthest places.
     pub travel: f64,
@@ -68,7 +68,7 @@ impl SpeedMonitor {
         }
     }
 
-    /// What was measured; `None` until there are positions for all of the window.
+    /// Returns the measurement; `None` until there are positions for the whole window.
     pub(super) fn motion(&self) -> Option<Motion> {
         let ((first, _), (last, _)) = (self.places.front()?, self.places.back()?);
         if last.nanoseconds_since(*first) < self.window {

@@ -9,9 +9,9 @@ use crate::devices::biss::protocol::DeviceMode;
 /// A step of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Step {
-    /// What does not depend on the motor is looked at: the filter.
+    /// Checks conditions that do not depend on the motor: the filter.
     Conditions,
-    /// Somebody does something at the motor.
+    /// Waits for the person at the motor.
     Await(Task),
     /// Password and device mode.
     Enter(DeviceMode),
@@ -31,27 +31,27 @@ pub enum Step {
     Restart,
     /// Back to operation, and the password cleared.
     LeadBack,
-    /// What was written is read.
+    /// Reads back what was written.
     ReadBack,
 }
 
-/// How far a write has come.
+/// The progress of a write.
 #[derive(Clone, Debug, PartialEq)]
 pub struct News {
-    /// Which operation of the plan, counted from 0.
+    /// Index of the operation in the plan, counted from 0.
     pub op: usize,
-    /// Which step of it.
+    /// The step of the operation.
     pub step: Step,
-    /// What of it.
+    /// Detail of the step.
     pub detail: Detail,
 }
 
-/// What is told of a step.
+/// The detail of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Detail {
     /// It begins.
     Begins,
-    /// So many of so many registers.
+    /// Registers done, and their total.
     Count {
         /// Done.
         done: u64,
@@ -60,12 +60,12 @@ pub enum Detail {
     },
     /// It takes its time.
     Lasts {
-        /// So long until now.
+        /// Time so far.
         elapsed: Duration,
         /// As long as it takes, where that can be told.
         expected: Option<Duration>,
     },
-    /// What is asked of a person, and what is measured.
+    /// The task of the person, and the measurement.
     Demand(Demand),
 }
 

@@ -13,13 +13,13 @@ const REVOLUTIONS: f64 = 515.0;
 /// A Wiegand test that is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
-    /// What it found.
+    /// The result.
     pub result: WiegandResult,
     /// It is kept in the encoder; it can be seen there after a restart.
     pub saved: bool,
-    /// How the motor turned before the first run.
+    /// Motion of the motor before the first run.
     pub clockwise: Option<Motion>,
-    /// How it turned before the second.
+    /// Motion before the second run.
     pub counterclockwise: Option<Motion>,
 }
 

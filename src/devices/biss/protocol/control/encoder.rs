@@ -12,7 +12,7 @@ pub struct Encoder {
     state: State,
 }
 
-/// What a cycle asks of the encoder.
+/// The request of a cycle to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// A register is to be read; [`Encoder::answer`] gives it. Until then the host waits.
@@ -27,7 +27,7 @@ pub enum Event {
         /// Its value from now on.
         value: u8,
     },
-    /// What came is damaged: nothing is done.
+    /// The frame is damaged: nothing is done.
     Damaged,
 }
 

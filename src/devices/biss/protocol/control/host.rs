@@ -12,7 +12,7 @@ pub struct Host {
     state: State,
 }
 
-/// What comes of a cycle.
+/// The result of a cycle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
     /// CDM of this cycle. The level of the clock line during the time-out is its inverse.

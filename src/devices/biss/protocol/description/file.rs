@@ -298,7 +298,7 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
 
 /// A row that must not stand twice.
 trait Row {
-    /// What it takes that no other may take, and how to call it.
+    /// Returns the unique keys that it takes, as named in messages.
     fn claims(&self) -> Vec<String>;
 }
 

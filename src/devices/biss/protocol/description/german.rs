@@ -41,7 +41,7 @@ impl German {
     }
 }
 
-/// Where an entry stands, counted from 1; the beginning of the file where it is written in another way.
+/// Returns the position of an entry, counted from 1; the start of the file if it is written in another way.
 fn place_of(english: &str, text: &str) -> Position {
     let key = format!("\"{english}\"");
     let is_entry = |line: &str| line.find(&key).filter(|at| line.get(at + key.len()..).is_some_and(is_behind_key));

@@ -1,4 +1,4 @@
-//! What something is called: in English, and in German where the description says it.
+//! A name in English, and in German if the description has it.
 
 use std::fmt;
 

@@ -14,15 +14,15 @@ pub struct Register {
     pub width: u8,
     /// The manual's name.
     pub name: Name,
-    /// What it is for, where the program has to know that.
+    /// The role, if the program needs to know it.
     pub role: Option<Role>,
-    /// What may be done.
+    /// The access.
     pub access: Access,
-    /// Which byte comes first.
+    /// Order of the bytes.
     pub order: ByteOrder,
     /// Bytes as delivered, as many as it is wide; empty where nothing is known.
     pub default: Vec<u8>,
-    /// What its number says.
+    /// Decoding of the number.
     pub decoding: Decoding,
     /// The sign of its unit; may be empty.
     pub unit: String,
@@ -32,7 +32,7 @@ pub struct Register {
     pub since: Firmware,
 }
 
-/// What a register is for.
+/// The role of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Role {
@@ -64,7 +64,7 @@ pub enum Role {
     Manufacturer,
 }
 
-/// What may be done with a register.
+/// The access to a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Access {
@@ -76,7 +76,7 @@ pub enum Access {
     Rw,
 }
 
-/// What a register's number says.
+/// The decoding of a register's number.
 #[derive(Clone, Debug, Default, PartialEq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Decoding {
@@ -102,7 +102,7 @@ pub enum Decoding {
     Text,
 }
 
-/// What a register's bytes say.
+/// The decoded bytes of a register.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Decoded<'a> {
     /// A number.
@@ -128,7 +128,7 @@ pub struct Area {
     pub first: u8,
     /// Last bank.
     pub last: u8,
-    /// What may be done.
+    /// The access.
     pub access: Access,
     /// The command that opens it for writing, in the procedure for data.
     pub open: Option<u8>,
@@ -179,7 +179,7 @@ impl Register {
         })
     }
 
-    /// What its bytes say; `None` unless there are as many as it is wide.
+    /// Decodes its bytes; `None` unless their number equals the width.
     pub fn decode(&self, bytes: &[u8]) -> Option<Decoded<'_>> {
         let number = self.number(bytes)?;
         Some(match &self.decoding {

@@ -1,4 +1,4 @@
-//! What happens as time passes: a start ends, the runs of a procedure end, the shaft follows its motor.
+//! Effects of time: a start ends, the runs of a procedure end, the shaft follows its motor.
 
 use super::{Encoder, Power};
 use crate::devices::biss::protocol::{CalibrationStatus, WiegandStatus};

@@ -1,4 +1,4 @@
-//! What was wrong with a reply, in words.
+//! Damaged replies in words.
 
 use crate::app::Text;
 use crate::buses::ubicom::protocol::ReplyError;
@@ -6,7 +6,7 @@ use crate::devices::biss::procedures::Damage;
 use crate::devices::biss::protocol::FrameError;
 use crate::devices::biss::state::TEXTS;
 
-/// What was wrong with a reply.
+/// Returns the text of the damage of a reply.
 pub fn damage(damage: &Damage) -> Text {
     let byte = |byte: &u8| format!("0x{byte:02X}");
     match damage {

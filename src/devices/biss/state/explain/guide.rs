@@ -58,7 +58,7 @@ pub fn mode(mode: DeviceMode) -> Text {
     TEXTS.text(id).with("code", format!("0x{:02X}", mode.byte()))
 }
 
-/// What a person is to do.
+/// Returns the text of a task.
 pub fn task(task: Task) -> Text {
     match task {
         Task::Turn(run) => {
@@ -75,7 +75,7 @@ pub fn task(task: Task) -> Text {
     }
 }
 
-/// Why a start is not possible.
+/// Returns what prevents a start.
 pub fn blocker(blocker: Blocker) -> Text {
     match blocker {
         Blocker::Measuring => TEXTS.text("guide.measuring"),
@@ -89,7 +89,7 @@ pub fn blocker(blocker: Blocker) -> Text {
     }
 }
 
-/// What to know before a start.
+/// Returns the advice before a start.
 pub fn advice(advice: Advice) -> Text {
     match advice {
         Advice::Speed { recommended } => {
@@ -102,14 +102,14 @@ pub fn advice(advice: Advice) -> Text {
     }
 }
 
-/// What a calibration needs of motor and encoder.
+/// Returns the requirements of a calibration on motor and encoder.
 pub fn calibration_needs() -> Text {
     let run = Run::CalibrationCounterclockwise;
     let text = speeds(TEXTS.text("mounting_card.calibrate_words"), run.allowed());
     temperatures(text.with_number("best", run.recommended().middle(), 0))
 }
 
-/// What a Wiegand test needs of the motor.
+/// Returns the requirements of a Wiegand test on the motor.
 pub fn wiegand_needs() -> Text {
     speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
 }
@@ -124,7 +124,7 @@ pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 
-/// What came of an operation, a line each; for the page and for the report.
+/// Returns the result of an operation, a line each; for the page and for the report.
 pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
@@ -157,7 +157,7 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     }
 }
 
-/// What came of an operation, a line each with how much it matters; of one that was left out, which.
+/// Returns the result of an operation, a line each with its severity; the name of one that was skipped.
 pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     let lines = outcome(own);
     if let Outcome::Skipped { .. } = own {

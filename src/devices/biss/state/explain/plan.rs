@@ -1,4 +1,4 @@
-//! Why something cannot be planned for a BiSS encoder, and of which other type a profile is, in words.
+//! Why something cannot be planned for a BiSS encoder, and another type of profile, in words.
 
 use crate::app::Text;
 use crate::devices::biss::profile::{OtherType, PlanError};
@@ -17,7 +17,7 @@ fn of_types(types: &OtherType, kind: &'static str, width: &'static str) -> Text 
     }
 }
 
-/// Why something cannot be planned.
+/// Returns why something cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

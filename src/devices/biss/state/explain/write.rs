@@ -95,7 +95,7 @@ fn preset_words(id: &'static str, value: PresetValue, singleturn_bits: u8) -> Te
         .with("multiturn", value.multiturn())
 }
 
-/// That the write cycles of the flash are numbered, where a plan comes near their end.
+/// Returns the warning that the write cycles of the flash are limited, if a plan comes near the end.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let cycles = prepared.wear()?;
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
@@ -143,7 +143,7 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     texts
 }
 
-/// How much one of the sentences about a write that was cut off matters.
+/// Returns the severity of a sentence about an interrupted write.
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "biss_left.operation" => Severity::Good,
@@ -184,7 +184,7 @@ fn left(standing: &LeftState) -> Vec<Text> {
     texts
 }
 
-/// Why a procedure did not reach its end.
+/// Returns why a procedure did not reach its end.
 pub fn failure(failure: &Failure) -> Text {
     match failure {
         Failure::Device(error) => encoder(error),
@@ -343,7 +343,6 @@ mod tests {
         assert!(english[0].contains("1 of 3") && english[2].contains("in operation again"), "{english:?}");
     }
 
-    /// What an encoder was doing, each in words of its own.
     #[test]
     fn every_activity_is_told() {
         let activities = [

@@ -22,7 +22,7 @@ pub struct Connection {
     arrivals: Arrivals,
     /// When something that counts came last, or when the connection was opened.
     heard: Moment,
-    /// Since when somebody has listened without a gap.
+    /// Start of the present period of uninterrupted listening.
     awake: Moment,
     /// Until the target gives us up.
     timeout: Duration,
@@ -61,12 +61,12 @@ impl Connection {
         }
     }
 
-    /// What is measured.
+    /// Returns the measured figures.
     pub const fn figures(&self) -> &LinkFigures {
         &self.figures
     }
 
-    /// How process data are laid out.
+    /// Returns the layout of the process data.
     pub const fn layout(&self) -> Layout {
         self.layout
     }
@@ -76,14 +76,15 @@ impl Connection {
         self.next
     }
 
-    /// Nothing has come for three intervals, whoever is to blame: where the drives are is not known.
+    /// Returns whether nothing has arrived for three intervals, for whatever reason: the positions of the drives are
+    /// not known.
     pub fn is_quiet(&self, now: Moment) -> bool {
         self.began && now.since(self.heard) > self.come_interval * LOST
     }
 
-    /// How long nothing has come, where that is too long. While something moves that is three intervals of listening: whoever
-    /// was kept from listening by a busy computer cannot tell whether nothing came, and what came may still be on its way to
-    /// him. At rest, and in any case, it is as long as the target itself waits for a packet of ours.
+    /// Returns how long nothing has arrived, if that is too long. While something moves the limit is three intervals of
+    /// listening: a busy computer that could not listen cannot tell whether nothing arrived, and packets may still be
+    /// queued. At rest, and in any case, it is as long as the target itself waits for a packet.
     pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;

@@ -13,7 +13,7 @@ use crate::units::Moment;
 pub struct Drives {
     connection: Connection,
     men: Vec<Man>,
-    /// What the image has beyond those.
+    /// Further places of the image.
     places: usize,
     lost: Option<CyclicLost>,
     ending: Option<Ending>,
@@ -22,7 +22,7 @@ pub struct Drives {
 #[derive(Clone, Debug)]
 struct Man {
     dead_man: DeadMan,
-    /// What was heard since the last packet.
+    /// The data received since the last packet.
     heard: Option<Actual>,
 }
 
@@ -53,12 +53,12 @@ impl Drives {
         self.men.iter().map(|man| &man.dead_man)
     }
 
-    /// What is measured.
+    /// Returns the measured figures.
     pub const fn figures(&self) -> &LinkFigures {
         self.connection.figures()
     }
 
-    /// Why it has ended, where nobody has closed it.
+    /// Returns why it has ended without being closed.
     pub const fn lost(&self) -> Option<&CyclicLost> {
         self.lost.as_ref()
     }

@@ -1,4 +1,4 @@
-//! What a cyclic connection is measured by.
+//! The figures of a cyclic connection.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ pub struct LinkFigures {
     pub intervals: Histogram,
 }
 
-/// How far intervals were off, in buckets.
+/// Deviations of the intervals, in buckets.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Histogram {
     counts: [u64; EDGES.len() + 1],
@@ -32,13 +32,13 @@ pub struct Histogram {
     greatest: Option<i64>,
 }
 
-/// Why a cyclic connection has ended without being asked to.
+/// Why a cyclic connection has ended by itself.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CyclicLost {
     /// Nothing has come for three intervals.
     #[error("nothing has come for {} ms", after.as_millis())]
     Silent {
-        /// How long.
+        /// Duration of the silence.
         after: Duration,
     },
     /// The port is gone.
@@ -58,14 +58,14 @@ pub enum CyclicLost {
 /// Microseconds off, between the buckets.
 const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 200, 500, 1000, 2000, 5000];
 
-/// How many intervals there were of those that were so far off.
+/// Number of intervals with this deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
     /// Microseconds too long at least, negative for too short; `None`: however short.
     pub from_us: Option<i64>,
     /// Microseconds too long at most; `None`: however long.
     pub below_us: Option<i64>,
-    /// How many.
+    /// Number of intervals.
     pub count: u64,
 }
 
@@ -95,7 +95,7 @@ impl Histogram {
         self.least.zip(self.greatest)
     }
 
-    /// How many intervals there were.
+    /// Returns the number of intervals.
     pub fn total(&self) -> u64 {
         self.counts.iter().sum()
     }

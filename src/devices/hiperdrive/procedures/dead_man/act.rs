@@ -1,16 +1,16 @@
-//! What a person wants of a drive, what a drive may do, how it ended.
+//! Motion requests to a drive, its permit, and how an act ended.
 
 use std::time::Duration;
 
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent, RunEnd, State};
 use crate::units::Moment;
 
-/// What is wanted of a drive, and when somebody last said that it is still wanted.
+/// A motion request to a drive, and when it was last refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intent {
     /// Of which drive. The others rest.
     pub drive: DriveNumber,
-    /// What.
+    /// The request.
     pub wish: MotionRequest,
     /// The act of a person that it came with: each has a number of its own, higher than those before.
     pub number: u64,
@@ -18,7 +18,7 @@ pub struct Intent {
     pub refreshed: Moment,
 }
 
-/// What a person wants.
+/// A motion request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRequest {
     /// Nothing: what moves stops, and the drive's state is held.
@@ -29,16 +29,16 @@ pub enum MotionRequest {
     Acknowledge,
     /// To a place, in steps as scaled.
     Move {
-        /// Where.
+        /// Target position.
         target: i32,
-        /// How fast and how strong.
+        /// Speed and torque.
         effort: Effort,
     },
-    /// So many steps as scaled from where it stands: a positioning job, which a stop ends.
+    /// A number of scaled steps from the present position: a positioning job, which a stop ends.
     Step {
-        /// How many, with their sign.
+        /// Signed number of steps.
         by: i32,
-        /// How fast and how strong.
+        /// Speed and torque.
         effort: Effort,
     },
     /// The job that runs waits.
@@ -47,23 +47,23 @@ pub enum MotionRequest {
     Resume,
     /// Turning for as long as it is held, to the end of the range at most.
     Jog {
-        /// Which way.
+        /// The direction.
         direction: Direction,
-        /// How fast and how strong; slowly ([`Effort::JOG`]) where it leads further out.
+        /// Speed and torque; slow ([`Effort::JOG`]) if it leads further out.
         effort: Effort,
         /// From outside the limits it may lead further out: a wrong reference can make that the only way back.
         outward: bool,
     },
     /// Turning in speed mode.
     Run {
-        /// Which way.
+        /// The direction.
         direction: Direction,
-        /// How far.
+        /// The end of the run.
         end: RunEnd,
-        /// How fast and how strong.
+        /// Speed and torque.
         effort: Effort,
     },
-    /// What moves stops.
+    /// Stops the motion.
     Stop,
 }
 
@@ -80,7 +80,7 @@ pub enum Goal {
     Enabled,
 }
 
-/// How fast and how strong.
+/// Speed and torque of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
     /// Of the greatest speed (parameter 166).
@@ -89,12 +89,12 @@ pub struct Effort {
     pub torque: Percent,
 }
 
-/// What a drive may do.
+/// The permit of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Permit {
     /// Parameters 158 and 160; `None` where they were not read.
     pub limits: Option<(i32, i32)>,
-    /// Why nothing may move.
+    /// The locks that prevent motion.
     pub locks: Vec<Lock>,
     /// It may run past its limits.
     pub endless: bool,
@@ -104,14 +104,14 @@ pub struct Permit {
     pub degree: u32,
 }
 
-/// Why a drive may not move.
+/// A reason why a drive may not move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lock {
     /// Its parameters were not read.
     Unread,
     /// Parameter 186 is 255, or no time: a drive that hears nothing any more could go on.
     NoTimeout,
-    /// The scaling has changed, and the limits with it; nobody has looked at them yet.
+    /// The scaling has changed, and the limits with it; the user has not confirmed them yet.
     LimitsUnconfirmed,
     /// Parameter 152 is not 1.
     NotRequested,
@@ -121,7 +121,7 @@ pub enum Lock {
     NoAnswer,
 }
 
-/// What a drive does for its person.
+/// The phase of a drive's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// Nothing: its state is held.
@@ -134,7 +134,7 @@ pub enum Phase {
     Moving(Motive),
     /// Its job waits.
     Paused {
-        /// Where it leads.
+        /// The target.
         target: i32,
     },
     /// It is to stand.
@@ -151,9 +151,9 @@ pub enum Motive {
     },
     /// In speed mode.
     Run {
-        /// Which way.
+        /// The direction.
         direction: Direction,
-        /// How far.
+        /// The end of the run.
         end: RunEnd,
     },
 }
@@ -180,11 +180,11 @@ pub enum Ended {
     Arrived,
     /// It stands at the end of the range.
     RangeEnd,
-    /// Somebody let go, or stopped it.
+    /// Released or stopped by the user.
     Stopped,
     /// Another act came.
     Replaced,
-    /// Nobody has said for too long that it is still wanted.
+    /// Not refreshed in time.
     Stale,
     /// The drive has said nothing for too long.
     Deaf,
@@ -265,7 +265,7 @@ pub enum Refusal {
 }
 
 impl Intent {
-    /// How long what was said holds. Whoever wants motion says so every 100 ms.
+    /// How long a refresh stays valid. It has to be repeated every 100 ms.
     pub const FRESH: Duration = Duration::from_millis(250);
 
     /// Nothing is wanted.
@@ -273,7 +273,7 @@ impl Intent {
         Intent { drive, wish: MotionRequest::Rest, number, refreshed: now }
     }
 
-    /// Nobody has said it for too long.
+    /// Returns whether it was not refreshed in time.
     pub fn is_stale(&self, now: Moment) -> bool {
         now.since(self.refreshed) > Intent::FRESH
     }
@@ -292,7 +292,7 @@ impl MotionRequest {
         )
     }
 
-    /// How fast and how strong, where it says so.
+    /// Returns speed and torque, if it has any.
     pub fn effort(self) -> Option<Effort> {
         match self {
             MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
@@ -323,7 +323,7 @@ impl Goal {
         }
     }
 
-    /// How far up a state is. A fault and the lock are as low as can be.
+    /// Returns how far up a state is. A fault and the lock are the lowest.
     pub(super) const fn of(state: State) -> Goal {
         match state {
             State::NotReady | State::Fault | State::Locked => Goal::Off,
@@ -337,10 +337,10 @@ impl Goal {
 impl Effort {
     /// Nothing would begin.
     pub const NONE: Effort = Effort { speed: Percent::NONE, torque: Percent::NONE };
-    /// What a jog begins with: 10 % and 25 %.
+    /// Speed and torque of a new jog: 10 % and 25 %.
     pub const JOG: Effort = Effort { speed: percent(10), torque: percent(25) };
-    /// What a move by hand begins with: a quarter of the speed, so that whoever mistypes a target has time for STOP, and the
-    /// torque that an axis may need.
+    /// Speed and torque of a new move: a quarter of the speed, which leaves time for STOP after a mistyped target, and
+    /// the torque that an axis may need.
     pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
     /// No faster and no stronger than another one.
@@ -374,7 +374,7 @@ impl Permit {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }
 
-    /// Whether a motion may begin, or go on. `target` is where it leads, for what leads somewhere.
+    /// Checks whether a motion may begin, or continue. `target` is its end, if it has one.
     ///
     /// # Errors
     /// [`Refusal`].

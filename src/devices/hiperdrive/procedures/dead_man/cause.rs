@@ -1,4 +1,4 @@
-//! Why what is under way ends before its time.
+//! Why a running act ends early.
 
 use super::{DEAF, DeadMan, Ended, Intent, Lock, MotionRequest, Motive, Permit, Refusal, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
@@ -21,8 +21,8 @@ impl DeadMan {
         }
     }
 
-    /// A pause or its end is an act that carries the job on, where it is the very next one: between others a stop may have been
-    /// said while nobody looked.
+    /// Accepts a pause or its end, which continue the job, only as the very next request: a stop in between may have
+    /// been missed.
     fn follow(&mut self, intent: &Intent, permit: &Permit, now: Moment) {
         let mark = self.mark(now);
         let Some(act) = &mut self.act else { return };
@@ -86,7 +86,7 @@ impl DeadMan {
         }
     }
 
-    /// What is wanted is not this act any more.
+    /// Returns whether another request has replaced this act.
     fn overtaken(&self, number: u64, said: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(
             intent.wish,

@@ -10,11 +10,11 @@ use crate::units::Moment;
 pub(super) struct Lead {
     goal: Goal,
     acknowledges: bool,
-    /// What is sent, and since when.
+    /// The word being sent, and since when.
     word: Option<(ControlWord, Mark)>,
 }
 
-/// How a drive is to go on.
+/// How a drive is to continue.
 enum Way {
     /// With this word.
     By(ControlWord),
@@ -25,7 +25,7 @@ enum Way {
 }
 
 impl Goal {
-    /// How far up a word leads.
+    /// Returns how far up a word leads.
     pub(super) const fn of_word(word: ControlWord) -> Goal {
         if !word.has(ControlBit::Control) {
             Goal::Off
@@ -63,12 +63,12 @@ impl Lead {
         self.goal
     }
 
-    /// It takes torque away or leaves it away: nobody has to keep it fresh.
+    /// Returns whether it only removes torque or leaves it off, so that it needs no refresh.
     pub(super) fn only_down(&self, state: State) -> bool {
         self.goal <= Goal::of(state) || self.goal == Goal::Off
     }
 
-    /// What is sent; nothing before the first step.
+    /// Returns the word being sent; zero before the first step.
     pub(super) fn word(&self) -> ControlWord {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }

@@ -1,4 +1,4 @@
-//! Where an act is: armed, started, under way, to be stopped; and the word that goes with it.
+//! The stage of an act: armed, started, under way, to be stopped; and its control word.
 
 use std::time::Duration;
 
@@ -7,12 +7,12 @@ use super::{DeadMan, Effort, Ended, Goal, Motion, Motive, RUNG, Rung, SETTLE, SH
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
 
-/// What is done with the drive.
+/// The stage of an act.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
     /// Its level is held.
     Rest {
-        /// Since when it moves all the same.
+        /// Since when it moves regardless.
         moves: Option<Moment>,
     },
     /// It is led to another state.
@@ -20,7 +20,7 @@ pub(super) enum Stage {
     /// It has the set-points of a motion, and the word from which that begins.
     Arm {
         since: Mark,
-        /// What the drive said of status bit 12 before.
+        /// Status bit 12 as reported before.
         acknowledged: bool,
     },
     /// The motion begins.
@@ -52,7 +52,7 @@ pub(super) struct Mark {
     pub(super) report: u64,
 }
 
-/// What was heard twice since a mark, and late enough, is of after it.
+/// Number of reports after a mark, late enough, that prove a later state.
 const REPORTS: u64 = 2;
 
 impl Mark {
@@ -85,7 +85,7 @@ impl Rung {
 }
 
 impl DeadMan {
-    /// What comes by itself: by what the drive says, and by time.
+    /// Advances by the drive's reports, and by time.
     pub(super) fn advance(&mut self, now: Moment, actual: Actual) {
         let mark = self.mark(now);
         let has = |bit| actual.status.has(bit);
@@ -207,7 +207,7 @@ impl DeadMan {
         }
     }
 
-    /// What goes with the stage.
+    /// Returns the setpoint of the stage.
     pub(super) fn setpoint(&self, actual: Actual) -> Setpoint {
         let motion = self.act.and_then(|act| act.motion);
         let control = match (&self.stage, motion) {

@@ -17,7 +17,7 @@ struct Bench {
     permit: Permit,
     status: u16,
     position: i32,
-    /// Somebody says all the time that it is still wanted.
+    /// The request is refreshed all the time.
     refreshes: bool,
     heard: bool,
 }

@@ -25,7 +25,7 @@ pub enum Side {
     Above,
 }
 
-/// Where a drive is beyond its limits.
+/// How a drive is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     /// On this side.
@@ -34,14 +34,14 @@ pub enum Outside {
     Unclear,
 }
 
-/// How a motion has gone so far.
+/// Supervises the course of a motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
     /// It began outside the limits, here, and has not been inside since.
     outside: Option<Outside>,
     /// The least distance so far: of a job to its target, of a run to where it leads.
     best: i64,
-    /// Where a job that waits stood once it had braked.
+    /// Position of a waiting job after braking.
     waits_at: Option<i32>,
     /// A person has freed the way further out, from outside, for this press.
     freed: bool,
@@ -63,8 +63,8 @@ impl Outside {
 }
 
 impl Permit {
-    /// Where a drive is beyond its limits: by its position, or else by status bit 15, at the one limit that is within a degree then.
-    /// `None` inside, and where no limits are known.
+    /// Returns how a drive is outside its limits: by its position, or else by status bit 15, at the one limit that is
+    /// within a degree then. `None` inside, and if no limits are known.
     pub fn outside(&self, actual: Actual) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
@@ -152,7 +152,7 @@ impl Watch {
         beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
     }
 
-    /// Whether a job that waits moves on: by more than a degree from where it stood once it had braked.
+    /// Detects that a waiting job moves on: by more than a degree from its position after braking.
     fn wait(&mut self, has_braked: bool, actual: Actual, permit: &Permit) -> Option<Ended> {
         if !has_braked {
             self.waits_at = None;
@@ -186,8 +186,8 @@ impl Watch {
 }
 
 impl Permit {
-    /// Whether a motion may begin where the drive is: from outside its limits only back in, unless the way further out was
-    /// freed for this press.
+    /// Returns whether a motion may begin at this position: outside the limits only back in, unless the way further out
+    /// was enabled for this press.
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].

@@ -18,9 +18,9 @@ use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
 /// A cyclic connection that was opened.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Opened {
-    /// What packets to the target have to carry.
+    /// Connection id of packets to the target.
     pub to_target_id: u32,
-    /// What packets to the originator carry.
+    /// Connection id of packets to the originator.
     pub to_originator_id: u32,
     /// From one packet to the target to the next.
     pub to_target_interval: Duration,
@@ -28,13 +28,13 @@ pub struct Opened {
     pub to_originator_interval: Duration,
     /// Without a packet for so long, the target ends the connection and the drives stop.
     pub timeout: Duration,
-    /// What process data look like.
+    /// Layout of the process data.
     pub layout: Layout,
-    /// Where packets to the target go.
+    /// Port for packets to the target.
     pub port: u16,
-    /// Where its packets come from, besides, where it sends them to all who listen.
+    /// Multicast group of its packets, if it uses one.
     pub group: Option<SocketAddrV4>,
-    /// What ends it.
+    /// The request that closes it.
     pub close: ForwardClose,
 }
 
@@ -45,11 +45,11 @@ const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
 /// From here on intervals are long.
 const LONG: Duration = Duration::from_millis(35);
-/// What a device makes of an interval may be this many times as long, and no longer than what may be asked for.
+/// Factor by which a device may extend the interval, up to the longest that may be requested.
 const SLOWER: u32 = 2;
 const LONGEST: Duration = Duration::from_millis(100);
 
-/// What the device may not take of a request.
+/// Status of a device that refuses because the connection is in use.
 const CONNECTION_IN_USE: u16 = 0x0100;
 const OWNED: u16 = 0x0106;
 const KIND: u16 = 0x0108;
@@ -104,7 +104,7 @@ impl Master<'_> {
         }
     }
 
-    /// What may be open, and cannot be used, is closed; why it cannot be used is what counts.
+    /// Closes a connection that may be open and cannot be used; the original error is the one reported.
     fn close_blindly(&mut self, close: &ForwardClose) {
         if let Err(why) = self.shielded(|master| master.forward_close(close)) {
             tracing::warn!("{why}");
@@ -174,7 +174,7 @@ impl Master<'_> {
     }
 }
 
-/// Where one has to listen for what goes to all.
+/// Returns the multicast group to listen to.
 fn group(to: SocketAddress) -> Option<SocketAddrV4> {
     to.address.is_multicast().then(|| SocketAddrV4::new(to.address, to.port))
 }

@@ -1,5 +1,5 @@
-//! Why a parameter was refused, as far as the device can be asked: whether there is such a drive, whether anything is wanted of
-//! it, and what a value may be at the moment.
+//! Finds out why a parameter was refused, as far as possible: whether the drive exists, whether it is requested, and
+//! the present range of the value.
 
 use super::{Master, Repeats, settable};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 
 impl Master<'_> {
-    /// Why a parameter was refused, as far as can be asked.
+    /// Returns why a parameter was refused, as far as can be found out.
     ///
     /// # Errors
     /// The way.
@@ -72,8 +72,8 @@ impl Master<'_> {
         }
     }
 
-    /// What a parameter may be at the moment: 160 is above 158, position and reference lie between them (reference 4), and no
-    /// limit is more turns from 0 than the drive has (5).
+    /// Returns the present range of a parameter: 160 is above 158, position and reference lie between them (reference
+    /// 4), and no limit is more turns from 0 than the drive has (5).
     fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,
@@ -102,7 +102,7 @@ impl Master<'_> {
         }))
     }
 
-    /// How far a drive turns, as far as it says.
+    /// Returns the travel of a drive, as far as it is known.
     fn travel(&mut self, drive: DriveNumber) -> Result<Travel, Error> {
         let mut word = |base| {
             let Some(number) = ParameterNumber::of_drive(base, drive) else { return Ok(None) };

@@ -23,7 +23,7 @@ use crate::units::Moment;
 pub(super) struct Connections {
     pub(super) cyclic: Option<Cyclic>,
     explicit: Vec<Explicit>,
-    /// How many there were: none has the number of another.
+    /// Number of connections so far: no number is used twice.
     opened: u32,
 }
 
@@ -38,7 +38,7 @@ struct Explicit {
     heard: Moment,
 }
 
-/// Why a connection is not opened: the first word behind the status.
+/// Why a connection is not opened: the first word after the status.
 type Refusal = u16;
 
 const IN_USE: Refusal = 0x0100;
@@ -276,7 +276,7 @@ impl Plant {
     }
 }
 
-/// Where cyclic data go to: as the originator has said it, else to its address and the usual port.
+/// Returns the address for cyclic data: as the originator requested, else its address and the usual port.
 fn originator_socket(peer: Ipv4Addr, said: Option<SocketAddress>) -> SocketAddrV4 {
     match said {
         Some(socket) if socket.address.is_unspecified() => SocketAddrV4::new(peer, socket.port),

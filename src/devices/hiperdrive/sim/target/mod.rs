@@ -45,7 +45,7 @@ pub struct Target {
     ended: bool,
 }
 
-/// What has come so far.
+/// The figures so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Figures {
     /// Whole frames over TCP.
@@ -88,7 +88,7 @@ impl Target {
         self.lock().power_cycle();
     }
 
-    /// Where it is reached, over TCP and over UDP: what it says when it is asked, and where it wants cyclic data.
+    /// Sets the address over TCP and UDP, which it reports and where it receives cyclic data.
     pub fn listen(&self, at: SocketAddrV4) {
         let mut plant = self.lock();
         (plant.listens, plant.udp) = (at, at.port());
@@ -99,7 +99,7 @@ impl Target {
         self.lock().set_faults(faults);
     }
 
-    /// What has come so far.
+    /// Returns the figures so far.
     pub fn figures(&self) -> Figures {
         self.lock().figures
     }

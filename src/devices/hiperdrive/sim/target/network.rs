@@ -11,7 +11,7 @@ use crate::buses::ethernet_ip::protocol::{
 };
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// Where the address comes from, and what it is.
+/// The source of the address, and the address.
 #[derive(Debug)]
 pub(super) struct Network {
     switch: u8,
@@ -29,7 +29,7 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
     domain: String::new(),
 };
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
-/// What a virtual DHCP or BOOTP server gives.
+/// The address that a virtual DHCP or BOOTP server assigns.
 const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
 /// Attribute 1: an address was got; attribute 2: BOOTP, DHCP, can be set.
 const CONFIGURED: u32 = 1;
@@ -49,7 +49,7 @@ impl Network {
         network
     }
 
-    /// The address is found out anew.
+    /// Determines the address again.
     pub(super) fn power_up(&mut self) {
         let source = match AddressSwitch::parse(self.switch) {
             Some(AddressSwitch::Fixed(address)) => {

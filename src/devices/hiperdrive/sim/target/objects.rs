@@ -1,4 +1,4 @@
-//! What CIP asks of the objects: identity, parameters (reference 7), and those of the network.
+//! The CIP objects: identity, parameters (reference 7), and those of the network.
 
 use super::plant::Plant;
 use crate::buses::ethernet_ip::protocol::{
@@ -24,7 +24,7 @@ const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);
 type Answer = Result<Vec<u8>, GeneralStatus>;
 
 impl Plant {
-    /// What an object replies.
+    /// Returns the reply of an object.
     pub(super) fn object(&mut self, request: &Request) -> Reply {
         match self.ask(request) {
             Ok(data) => request.done(data),
@@ -121,7 +121,7 @@ pub(super) fn object(path: &Path) -> Result<(u16, Option<u16>), GeneralStatus> {
     Ok((class.ok_or(GeneralStatus::PATH_UNKNOWN)?, path.number(LogicalKind::Attribute)))
 }
 
-/// What bytes that are not what they should be come back with.
+/// Returns the status for bytes that cannot be parsed.
 pub(super) const fn wrong(error: PacketError) -> GeneralStatus {
     match error {
         PacketError::Short { .. } => GeneralStatus::TOO_SHORT,

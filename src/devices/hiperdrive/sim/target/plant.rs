@@ -1,4 +1,4 @@
-//! What all connections to a target have in common: its time, who has a session, what its faults do to it.
+//! The state shared by all connections to a target: its time, the sessions, its injected faults.
 
 use std::collections::BTreeMap;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -25,9 +25,9 @@ pub(super) struct Plant {
     pub(super) connections: Connections,
     pub(super) order: ByteOrder,
     pub(super) counted_texts: bool,
-    /// Where it is reached.
+    /// Its address.
     pub(super) listens: SocketAddrV4,
-    /// Where cyclic data are taken.
+    /// Port of cyclic data.
     pub(super) udp: u16,
     pub(super) figures: Figures,
     pub(super) now: Moment,
@@ -41,7 +41,7 @@ pub(super) struct Plant {
     originators: u64,
 }
 
-/// Who is at the other end of a TCP connection.
+/// The peer of a TCP connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Originator {
     number: u64,
@@ -82,7 +82,7 @@ impl Plant {
         self.faults = faults.clone();
     }
 
-    /// What is due by then happens.
+    /// Carries out everything due by then.
     pub(super) fn advance(&mut self, now: Moment) {
         self.now = self.now.max(now);
         self.produce();
@@ -105,7 +105,7 @@ impl Plant {
         Some((leaves + REPLY + self.faults.delay(), bytes))
     }
 
-    /// Whether the TCP connection stays open behind this frame.
+    /// Returns whether the TCP connection stays open after this frame.
     pub(super) fn keeps(&self, frame: &Frame) -> bool {
         frame.command != Command::UNREGISTER_SESSION
     }
@@ -121,7 +121,7 @@ impl Plant {
         self.connections.end(session);
     }
 
-    /// What lost its supply gets it back.
+    /// Restores a lost supply.
     pub(super) fn supply(&mut self, now: Moment) {
         self.advance(now);
         if self.station.is_dead(self.now) {

@@ -1,18 +1,18 @@
-//! What a person does in the set-up of an axis, and what that asks of the device.
+//! The user's actions in the set-up of an axis, and the requests to the device that follow.
 
 use std::path::PathBuf;
 
 use super::{Entries, TestTarget};
 use crate::app::Language;
 
-/// What is to be done for it.
+/// A request to the device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Ask {
     /// Parameters, by the numbers of drive 1, are written through a plan that does not save.
     Try(Vec<(u16, i64)>),
     /// The place where the drive stands gets this position, which is not saved.
     SetPosition(i32),
-    /// Somebody has seen what the limits are.
+    /// The user has confirmed the limits.
     ConfirmLimits,
     /// The drive moves slowly.
     Move(i32),
@@ -22,7 +22,7 @@ pub enum Ask {
     Give,
     /// Everything is saved.
     Save,
-    /// What it was before is written back, and not saved.
+    /// Writes the previous values back, without saving them.
     Restore(Vec<(u16, i64)>),
     /// Its fault is acknowledged.
     Acknowledge,
@@ -32,10 +32,10 @@ pub enum Ask {
     PowerCycle,
 }
 
-/// What can be pressed, beside what moves while it is held.
+/// A button, besides those that move while they are held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Button {
-    /// What the step is about: request, write, save.
+    /// The task of the step: request, write, save.
     Do,
     /// The limits are right.
     Confirm,
@@ -57,7 +57,7 @@ pub enum Button {
     Recall,
 }
 
-/// What a person does in the run.
+/// An action of the user in the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Begin it, or begin it again.

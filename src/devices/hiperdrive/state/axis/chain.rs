@@ -1,12 +1,12 @@
-//! What the set-up has made sure of, step by step. Each result keeps the facts of the drive that it rests on. Where one of
-//! them is another by now, whoever changed it, the result falls, and with it all that come after it.
+//! The results of the set-up, step by step. Each keeps the facts of the drive that it depends on. If one of them
+//! changes, whoever changed it, the result is void, and with it all later ones.
 
 use super::{Seen, Step};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// What the numbers of places count from: the position that was set last (198), how often one was set from here, and how often
-/// the position jumped at a standstill, by which alone a reference that was set again at the same number shows.
+/// The origin of positions: the position that was set last (198), how often one was set from here, and how often the
+/// position jumped at a standstill, which alone reveals a reference set again at the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Origin {
     set: Option<i64>,
@@ -86,7 +86,7 @@ impl Chain {
     }
 }
 
-/// Whether the drive's own facts of a step are what they were. Those of earlier steps are looked at there.
+/// Returns whether the drive's own facts of a step are unchanged. Those of earlier steps are checked there.
 fn stands(step: Step, on: &Basis, now: &Basis) -> bool {
     match step {
         Step::Request => now.requested == Some(true),
@@ -98,7 +98,7 @@ fn stands(step: Step, on: &Basis, now: &Basis) -> bool {
     }
 }
 
-/// Whether a result is the same as the one before.
+/// Returns whether a result equals the previous one.
 fn is_same(step: Step, before: &Basis, now: &Basis) -> bool {
     stands(step, before, now) && (step != Step::Lower || before.lower == now.lower)
 }

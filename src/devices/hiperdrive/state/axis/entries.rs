@@ -1,4 +1,4 @@
-//! What is typed in the set-up of an axis: pitch and resolution, the position of a place, both limits; and what comes of it.
+//! The entries of the set-up of an axis: pitch and resolution, the position of a place, both limits; and their results.
 
 use super::{Seen, words};
 use crate::app::number::within;
@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, neares
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::ruler::{Beyond, Measure, Ruler};
 
-/// What is typed, in millimetres.
+/// The entered text, in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entries {
     /// Of the spindle, a turn.
@@ -23,22 +23,22 @@ pub struct Entries {
     pub upper: String,
 }
 
-/// What pitch and resolution come to.
+/// The result of pitch and resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preview {
     /// Parameters 154 and 156.
     pub scale: PositionScale,
-    /// How they measure.
+    /// The new ruler.
     pub ruler: Ruler,
     /// The limits that hold for the set-up: as far as the drive turns.
     pub lower: i32,
     /// As `lower`.
     pub upper: i32,
-    /// What the limits of now would be under the new scale, in millimetres, if nobody changed their numbers.
+    /// The present limits under the new scale, in millimetres, if their numbers were not changed.
     pub unchanged: Option<(f64, f64)>,
 }
 
-/// What setting a position comes to.
+/// The result of setting a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     /// As typed.
@@ -48,7 +48,8 @@ pub struct Reference {
 }
 
 impl Entries {
-    /// As they begin: with what is known of the spindle. No pitch is proposed: one that nobody confirmed would measure wrong.
+    /// Creates the initial entries, with the known data of the spindle. No pitch is proposed: an unconfirmed one would
+    /// measure wrong.
     pub(super) fn new(ruler: Option<Ruler>) -> Self {
         let known = ruler.and_then(|own| Some((own.pitch?, own)));
         let pitch = known.map(|(pitch, _)| trimmed(pitch.nanometres as f64 / 1e6)).unwrap_or_default();
@@ -78,7 +79,7 @@ impl Entries {
         length("hd_axis.pitch", &self.pitch, 1000.0)
     }
 
-    /// What pitch and resolution come to.
+    /// Returns the result of pitch and resolution.
     ///
     /// # Errors
     /// In words.
@@ -97,7 +98,7 @@ impl Entries {
         Ok(Preview { scale, ruler, lower, upper, unchanged })
     }
 
-    /// What the place where the axis stands would get.
+    /// Returns the number that the present place of the axis would get.
     ///
     /// # Errors
     /// In words, also where it is not within the limits.

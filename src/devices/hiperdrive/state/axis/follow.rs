@@ -1,4 +1,4 @@
-//! How the run goes on: what a person presses, what was written, what the drive says.
+//! The progress of the run: by the user's buttons, by completed writes, by the drive's data.
 
 use super::entries::{Entries, typed};
 use super::standstill::Shift;
@@ -6,7 +6,7 @@ use super::supply::Power;
 use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Seen, Step, TestTarget, Travel};
 
 impl Axis {
-    /// What is typed has changed.
+    /// Changes the entries.
     pub(crate) fn edit(&mut self, entries: Entries) {
         if self.over.is_none() {
             self.entries = entries;
@@ -92,7 +92,7 @@ impl Axis {
         self.over = Some(Over { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
-    /// What was asked for is under way.
+    /// Records that a request is in progress.
     pub(crate) fn begin(&mut self, ask: Ask, seen: &Seen) {
         match ask {
             Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Restore(_) => self.asked = Some(ask),
@@ -114,7 +114,7 @@ impl Axis {
         self.going = Some((place, target, act));
     }
 
-    /// What was asked for is written and read back.
+    /// Records that a request was written and read back.
     pub(crate) fn written(&mut self) {
         match self.asked.take() {
             Some(Ask::Try(values)) => {
@@ -155,7 +155,7 @@ impl Axis {
         }
     }
 
-    /// What was asked for was not written; `begun`: a part of it may have been.
+    /// Records that a request was not written; `begun`: a part of it may have been.
     pub(crate) fn not_written(&mut self, begun: bool) {
         match self.asked.take() {
             Some(Ask::Try(values)) if begun => {
@@ -191,7 +191,7 @@ impl Axis {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
 
-    /// What the drive says now: how far it went, how a test move ended, whether all still holds that was made sure of.
+    /// Takes the drive's present data: the travel, the end of a test move, and whether all results still hold.
     pub(crate) fn look(&mut self, seen: &Seen) {
         if self.over.is_some() {
             return;
@@ -235,7 +235,7 @@ impl Axis {
         }
     }
 
-    /// What this step and those behind it have found is undone. What was `taught` stays as it is typed.
+    /// Undoes the results of this step and the later ones. Taught entries (`taught`) stay as entered.
     fn undo_from(&mut self, step: Step, taught: bool) {
         if step <= Step::Confirm {
             self.confirmed = None;

@@ -1,4 +1,4 @@
-//! What can be pressed in the set-up of an axis, what that asks for, and what is missing before the next step.
+//! The buttons of the set-up of an axis: what each requests, and what is missing before the next step.
 
 use std::time::Duration;
 
@@ -10,11 +10,11 @@ use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
-/// So long a step is looked at before it can be left.
+/// How long a step must be shown before it can be left.
 const SETTLES: Duration = Duration::from_millis(600);
 
 impl Axis {
-    /// What pressing would ask for.
+    /// Returns the request of a button.
     ///
     /// # Errors
     /// Why it cannot be pressed now.
@@ -74,7 +74,7 @@ impl Axis {
         }
     }
 
-    /// What the step itself does to the drive.
+    /// Returns the request of the step itself.
     fn ask_of_step(&self, seen: &Seen) -> Result<Ask, Text> {
         match self.step {
             Step::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
@@ -127,7 +127,7 @@ impl Axis {
         Ok((low, high))
     }
 
-    /// Why the axis must not be moved.
+    /// Returns why the axis must not be moved.
     ///
     /// # Errors
     /// In words.
@@ -155,7 +155,7 @@ impl Axis {
         }
     }
 
-    /// Whether the place where the axis stands can become a limit.
+    /// Checks whether the present place of the axis can become a limit.
     ///
     /// # Errors
     /// Why not, in words.
@@ -172,8 +172,8 @@ impl Axis {
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
-    /// Whether a step that has been looked at for so long can be left, forward or back: what a second click was meant for is
-    /// the step before.
+    /// Checks whether a step that has been shown for this long can be left, forward or back: a second click is meant
+    /// for the step before.
     ///
     /// # Errors
     /// How much longer it has to be looked at.
@@ -184,17 +184,17 @@ impl Axis {
         }
     }
 
-    /// Whether the step before can be shown now.
+    /// Returns whether the previous step can be shown now.
     pub fn may_go_back(&self, seen: &Seen) -> bool {
         self.step != Step::Request && self.asked.is_none() && !seen.moves
     }
 
-    /// Whether the step can be left out now.
+    /// Returns whether the step can be skipped now.
     pub fn may_skip(&self, seen: &Seen) -> bool {
         self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.fallen().is_none()
     }
 
-    /// Whether the step that counts is done, so that the next one may come.
+    /// Checks whether the present step is done, so that the next one may come.
     ///
     /// # Errors
     /// What is missing.
@@ -253,7 +253,7 @@ impl Axis {
         own.scale == seen.scale && are_agreed && !seen.locks.contains(&Lock::LimitsUnconfirmed)
     }
 
-    /// Where a test move leads.
+    /// Returns the target of a test move.
     ///
     /// # Errors
     /// Without limits.

@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 pub struct Device {
     /// The name of the adapter or hub.
     pub name: String,
-    /// What the drive is, where that is known.
+    /// The variant, if known.
     pub variant: Option<Text>,
     /// Its serial number.
     pub serial_number: String,
@@ -60,7 +60,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
     }
 }
 
-/// What was written, whether that lasts, and what is other than saved now.
+/// Returns what was written, whether it is saved, and what differs from the saved values now.
 pub fn end_lines(axis: &Axis, now: &Seen) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), words::returned(axis, now)) {

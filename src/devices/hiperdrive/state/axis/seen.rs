@@ -1,4 +1,4 @@
-//! What is known of a drive while its axis is set up.
+//! The known facts of a drive while its axis is set up.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::protocol::{Actual, Direction, ErrorCode, Family,
 use crate::devices::hiperdrive::state::ruler::Ruler;
 use crate::units::Moment;
 
-/// What is known of the drive at a moment.
+/// The known facts of the drive at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Seen {
     /// The device answers.
@@ -24,15 +24,15 @@ pub struct Seen {
     pub moves: bool,
     /// The act of a pad that is held, and which way the drive turns by it.
     pub held: Option<(u64, Direction)>,
-    /// What the drive said last.
+    /// The data received last.
     pub actual: Option<Actual>,
     /// When it said that, on the clock of the session; `None` where that is not known.
     pub actual_at: Option<Moment>,
-    /// Where it is. The first packets after taking control say nothing about that.
+    /// Its position. The first packets after taking control do not contain it.
     pub position: Option<i32>,
     /// Parameters of the drive as they were read, by the numbers of drive 1.
     pub values: BTreeMap<u16, i64>,
-    /// What was saved where that is known to be something else than what was written since: the same numbers.
+    /// The saved values known to differ from those written since, by the same numbers.
     pub unsaved: BTreeMap<u16, i64>,
     /// How often its position was set from here.
     pub times_set: u32,
@@ -44,7 +44,7 @@ pub struct Seen {
     pub pitch: Option<Length>,
     /// Parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
-    /// How far it turns.
+    /// Its family, which determines the travel.
     pub family: Option<Family>,
     /// Why it may not move.
     pub locks: Vec<Lock>,
@@ -55,7 +55,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What it says can be concluded from.
+    /// Returns whether its data are reliable.
     pub(super) fn is_settled(&self) -> bool {
         self.connected && !self.busy && !self.stale
     }
@@ -65,7 +65,7 @@ impl Seen {
         self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
     }
 
-    /// How steps are measured: in millimetres where a person has confirmed a pitch.
+    /// Returns the ruler: in millimetres if the user has confirmed a pitch.
     pub fn ruler(&self) -> Option<Ruler> {
         Some(Ruler { scale: self.scale?, pitch: self.pitch })
     }

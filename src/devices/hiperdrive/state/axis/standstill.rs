@@ -1,6 +1,6 @@
-//! What the position of an axis says while it stands. Parameter 198 is the number that was written last, and no parameter tells
-//! the place where that was (manual, 198 and 107): a reference that is set again at the same number elsewhere shows only as a
-//! position that jumps although nothing moves. So two readings of an axis that stands are held against each other.
+//! The position of an axis at a standstill. Parameter 198 is the number that was written last, and no parameter shows
+//! the place where that was (manual, 198 and 107): a reference set again at the same number elsewhere shows only as a
+//! position that jumps although nothing moves. So two readings of a standing axis are compared.
 
 use std::time::Duration;
 

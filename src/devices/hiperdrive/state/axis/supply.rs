@@ -11,7 +11,7 @@ pub(super) const MARK: u16 = 182;
 /// Degrees by which a drive may readjust its position by itself, at power-up and behind a stop (manual, 8.3).
 pub(super) const READJUSTS: f64 = 5.0;
 
-/// What is known before the supply goes.
+/// The facts before the supply is switched off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Before {
     scale: Option<PositionScale>,
@@ -21,7 +21,7 @@ pub struct Before {
     marked: bool,
 }
 
-/// What says that the supply was off.
+/// The evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
     /// It was read: parameter 182 is as from the factory again.
@@ -36,7 +36,7 @@ pub enum Restart {
     Disproved,
 }
 
-/// What came of the supply's going and coming back.
+/// The outcome of switching the supply off and on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Power {
     /// The device still answers.
@@ -47,13 +47,13 @@ pub enum Power {
     Back {
         /// As it was.
         before: Before,
-        /// What was saved is there.
+        /// The saved values are present.
         kept: bool,
         /// Steps between where it stood and where it stands; `None` where one of them is not known.
         moved: Option<i64>,
-        /// So many are allowed.
+        /// Allowed deviation in steps.
         allowed: i64,
-        /// What says that the supply was off.
+        /// The evidence that the supply was off.
         restart: Restart,
     },
 }
@@ -124,7 +124,7 @@ impl Power {
         }
     }
 
-    /// What was saved is there, the axis stands where it stood, and the supply was off.
+    /// Returns whether the saved values are present, the axis stands where it stood, and the supply was off.
     pub(super) fn is_survived(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
             if moved.abs() <= allowed && matches!(restart, Restart::Read | Restart::Switched | Restart::Said))
@@ -136,7 +136,7 @@ pub(super) fn is_marked(seen: &Seen) -> Option<bool> {
     Some(*seen.values.get(&MARK)? != from_the_factory()?)
 }
 
-/// What marks a drive: the value beside the factory's.
+/// Returns the value that marks a drive: the one next to the factory setting.
 pub(super) fn mark() -> Option<i64> {
     from_the_factory().map(|value| value + 1)
 }

@@ -1,10 +1,10 @@
-//! How far an axis was moved by hand, and the three places that the test moves to.
+//! How far an axis was moved by hand, and the three targets of the test.
 
 use super::Seen;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::Direction;
 
-/// Where a test move leads.
+/// The target of a test move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum TestTarget {
@@ -16,20 +16,20 @@ pub enum TestTarget {
     Upper,
 }
 
-/// What came of a test move.
+/// The outcome of a test move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// Where it led.
+    /// The target.
     pub target: i32,
-    /// Where the drive stood when it was over.
+    /// The position of the drive at its end.
     pub position: i32,
     /// How it ended.
     pub ended: Ended,
-    /// So many steps beside the target are allowed: 1° (reference 5, repeatability).
+    /// Allowed deviation from the target: 1° in steps (reference 5, repeatability).
     pub allowed: i64,
 }
 
-/// How far an axis was moved by hand, in steps. Only what it turns under a held pad counts.
+/// How far an axis was moved by hand, in steps. Only motion under a held pad counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
     /// The farthest up while a pad was held once; 0 until that can be told from nothing.

@@ -1,4 +1,4 @@
-//! What the steps of an axis set-up are called, what to do in them, and what was found.
+//! The texts of the steps of an axis set-up: names, tasks, findings.
 
 use super::{Axis, Change, Outcome, Power, Reached, Restart, Seen, Step, TestTarget};
 use crate::app::Text;
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::devices::hiperdrive::state::ruler::{Measure, Ruler};
 
-/// What a step is called.
+/// Returns the name of a step.
 pub fn title(step: Step) -> Text {
     TEXTS.text(match step {
         Step::Request => "hd_axis.step_request",
@@ -25,7 +25,7 @@ pub fn title(step: Step) -> Text {
     })
 }
 
-/// What to do in it.
+/// Returns the task of a step.
 pub fn todo(step: Step, seen: &Seen) -> Text {
     TEXTS.text(match step {
         Step::Request => "hd_axis.do_request",
@@ -42,7 +42,7 @@ pub fn todo(step: Step, seen: &Seen) -> Text {
     })
 }
 
-/// How far it is, in a word.
+/// Returns the progress in a word.
 pub fn reached(own: Reached) -> Text {
     TEXTS.text(match own {
         Reached::Done => "guide.done",
@@ -53,7 +53,7 @@ pub fn reached(own: Reached) -> Text {
     })
 }
 
-/// What its button does.
+/// Returns the label of its button.
 pub fn button(step: Step) -> Text {
     TEXTS.text(match step {
         Step::Request => "hd_axis.request",
@@ -64,7 +64,7 @@ pub fn button(step: Step) -> Text {
     })
 }
 
-/// What was found in it, as far as there is something.
+/// Returns the findings, if any.
 pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
     let ruler = seen.ruler();
     let mm = |steps: i32| millimetres(ruler, steps.into());
@@ -143,7 +143,7 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
     Some(text.with_text("allowed", millimetres(ruler, allowed)).with_text("restart", proof))
 }
 
-/// Why a step does not hold any more.
+/// Returns why a step no longer holds.
 pub fn fallen(step: Step) -> Text {
     let why = TEXTS.text(match step {
         Step::Request => "hd_axis.fell_request",
@@ -170,13 +170,13 @@ pub fn fault(seen: &Seen) -> Option<Text> {
     Some(text.with_text("name", words.name).with_text("remedy", words.remedy))
 }
 
-/// How the pads and the test move: as they are sent.
+/// Returns speed and torque of the pads and of the test, as sent.
 pub fn effort(id: &'static str) -> Text {
     let Effort { speed, torque } = Effort::JOG;
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
-/// What came of a test move.
+/// Returns the outcome of a test move in words.
 pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
@@ -187,7 +187,7 @@ pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
     TEXTS.text("hd_axis.not_arrived").with_text("position", mm(outcome.position.into())).with_text("why", why)
 }
 
-/// What is known to be other than saved; `None`: nothing is.
+/// Returns the values known to differ from the saved ones; `None` if there are none.
 pub fn differences(seen: &Seen) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
         let id = if own.number == REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
@@ -197,7 +197,7 @@ pub fn differences(seen: &Seen) -> Option<Text> {
     (!all.is_empty()).then(|| TEXTS.text("hd_axis.unsaved").with_list("differences", all))
 }
 
-/// What came of writing back; `None`: nothing was.
+/// Returns the outcome of writing back; `None` if nothing was.
 pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
     if axis.returned.is_empty() {
         return None;
@@ -221,7 +221,7 @@ pub fn unexplained(axis: &Axis, seen: &Seen) -> Option<Text> {
     Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
 }
 
-/// What a place of the test is called.
+/// Returns the name of a target of the test.
 pub fn place(place: TestTarget) -> Text {
     TEXTS.text(match place {
         TestTarget::Middle => "hd_axis.middle",
@@ -251,7 +251,7 @@ fn change(own: &Change) -> Text {
     }
 }
 
-/// Steps in millimetres, with as many decimals as tell one step from another; as steps where nobody knows the spindle.
+/// Returns steps in millimetres, with enough decimals to distinguish steps; as steps if the spindle is not known.
 pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
     match ruler.and_then(|ruler| Some((ruler.of(steps, Measure::Millimetres)?, ruler))) {
         Some((value, ruler)) => {
@@ -262,7 +262,7 @@ pub fn millimetres(ruler: Option<Ruler>, steps: i64) -> Text {
     }
 }
 
-/// Why a pitch and a resolution make no scale.
+/// Returns why a pitch and a resolution are not a scale.
 pub fn scale(error: &ScaleError) -> Text {
     match error {
         ScaleError::TooFine { steps, .. } => TEXTS.text("hd_axis.too_fine").with("steps", steps),

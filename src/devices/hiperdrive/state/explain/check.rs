@@ -97,7 +97,7 @@ fn finding(finding: &Finding) -> Text {
     }
 }
 
-/// What the address switches say.
+/// Returns the setting of the address switches in words.
 pub fn switch(switch: AddressSwitch) -> Text {
     match switch {
         AddressSwitch::Object => TEXTS.text("hd_switch.object"),
@@ -108,7 +108,7 @@ pub fn switch(switch: AddressSwitch) -> Text {
     }
 }
 
-/// Where the TCP/IP object says that the address comes from.
+/// Returns the source of the address in words.
 pub fn source(source: AddressSource) -> Text {
     match source {
         AddressSource::Stored => TEXTS.text("hd_switch.source_stored"),

@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::profile::{EntryError, ItemError};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::profile::Cause;
 
-/// Why a profile is refused.
+/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::DriveTwice(drive) => TEXTS.text("hd_wrong.drive_twice").with("drive", drive.get()),

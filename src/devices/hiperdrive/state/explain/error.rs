@@ -1,4 +1,4 @@
-//! What an adapter, a hub or a drive did not do: what happened, and what to do.
+//! Errors of an adapter, a hub or a drive in words: what happened, and what to do.
 
 use super::names::parameter;
 use super::status;
@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::procedures::{Asked, Damage, Error, Late, Refusal
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// What a device did not do.
+/// Returns the text of an error of a device.
 pub fn device(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -88,7 +88,7 @@ pub fn wrong_length(error: &WrongLength) -> Text {
     named("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
 }
 
-/// What a parameter may be, in a sentence.
+/// Returns the range of a parameter, as a sentence.
 pub fn range(range: Range) -> Text {
     match range {
         Range::Any => TEXTS.text("hd_range.any"),
@@ -124,7 +124,7 @@ fn asked(asked: Asked) -> Text {
     }
 }
 
-/// What was wrong with a reply.
+/// Returns the text of the damage of a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
         Damage::Packet(why) => TEXTS.text("hd_damage.packet").with_text("why", status::packet(why)),
@@ -144,7 +144,7 @@ fn frame_remedy(status: EncapsulationStatus) -> Text {
     })
 }
 
-/// What to do where a request was refused.
+/// Returns what to do after a refusal.
 fn remedy(refusal: &Refusal) -> Text {
     if refusal.status == GeneralStatus::CONNECTION
         && let Some(row) = refusal.row()

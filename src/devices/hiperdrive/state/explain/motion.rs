@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, Phase,
 use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Why nothing may move, and what to do.
+/// Returns why motion is locked, and what to do.
 pub fn lock(lock: Lock) -> Text {
     TEXTS.text(match lock {
         Lock::Unread => "hd_lock.unread",
@@ -20,7 +20,7 @@ pub fn lock(lock: Lock) -> Text {
     })
 }
 
-/// Why an act was refused, and what to do; `place` says steps as a person measures.
+/// Returns why an act was refused, and what to do; `place` formats steps in the user's unit.
 pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     match refusal {
         Refusal::Locked(own) => lock(own),
@@ -49,7 +49,7 @@ pub fn refusal(refusal: Refusal, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// How an act ended, and what to do where it did not end well.
+/// Returns how an act ended, and what to do if it did not end well.
 pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     match ended {
         Ended::Done => TEXTS.text("hd_end.done"),
@@ -72,7 +72,7 @@ pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// How much an end matters to whoever looks at the window.
+/// Returns the severity of an end.
 pub const fn weight(ended: Ended) -> Severity {
     match ended {
         Ended::Done | Ended::Arrived | Ended::Stopped | Ended::Replaced => Severity::Note,
@@ -99,7 +99,7 @@ pub fn goal(goal: Goal) -> Text {
     })
 }
 
-/// What a drive does for its person.
+/// Returns the text of a phase.
 pub fn phase(phase: Phase) -> Text {
     match phase {
         Phase::Idle => TEXTS.text("hd_phase.idle"),
@@ -111,11 +111,11 @@ pub fn phase(phase: Phase) -> Text {
     }
 }
 
-/// What [`lost`] says, as rows of the texts: true no more once somebody has control again.
+/// Ids of the texts of [`lost`]: they end once control is taken again.
 pub const LOST: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 
-/// Why the cyclic connection is gone, and what to do.
+/// Returns why the cyclic connection was lost, and what to do.
 pub fn lost(lost: Option<&CyclicLost>) -> Text {
     match lost {
         Some(CyclicLost::Silent { after }) => TEXTS.text("hd_lost.silent").with("milliseconds", after.as_millis()),

@@ -1,4 +1,4 @@
-//! What things in a HIPERDRIVE are called: states, bits of its words, errors with cause and remedy, parameters.
+//! The names of parts of a HIPERDRIVE: states, bits of its words, errors with cause and remedy, parameters.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -18,7 +18,7 @@ pub fn state(state: State) -> Text {
     })
 }
 
-/// What a bit of the status word says when it is set.
+/// Returns the meaning of a set bit of the status word.
 pub fn status_bit(bit: StatusBit) -> Text {
     TEXTS.text(match bit {
         StatusBit::Ready => "hd_bit.ready",
@@ -40,7 +40,7 @@ pub fn status_bit(bit: StatusBit) -> Text {
     })
 }
 
-/// What a bit of the control word says when it is set; bits 4 to 6 mean something else in speed mode.
+/// Returns the meaning of a set bit of the control word; bits 4 to 6 differ in speed mode.
 pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
     TEXTS.text(match (bit, speed_mode) {
         (ControlBit::On, _) => "hd_bit.control_on",
@@ -62,11 +62,11 @@ pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
 /// An error in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ErrorWords {
-    /// What it is called.
+    /// The name.
     pub name: Text,
-    /// What brings it about.
+    /// The cause.
     pub cause: Text,
-    /// What to do before it is acknowledged.
+    /// What to do before acknowledging it.
     pub remedy: Text,
 }
 
@@ -110,7 +110,7 @@ pub fn parameter(number: ParameterNumber) -> Text {
     }
 }
 
-/// Which drive it is.
+/// Returns the name of a variant.
 pub fn variant(variant: Variant) -> Text {
     match variant.row() {
         Some(row) => plain(row.name),

@@ -1,5 +1,5 @@
-//! Writes in words: what is wanted, the operations of a plan, why there is no plan, what somebody should know of it, what was
-//! written, and why it ended early.
+//! Writes in words: changes, operations of a plan, why there is no plan, warnings, results, and why a write ended
+//! early.
 
 use std::path::Path;
 
@@ -32,7 +32,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// What a device does when it is asked to.
+/// Returns the name of a service.
 pub fn service(service: Service) -> Text {
     match service {
         Service::Save => TEXTS.text("hd_service.save"),
@@ -98,7 +98,7 @@ fn of_types(types: &OtherType, whole: &'static str, of_drive: &'static str) -> T
     }
 }
 
-/// Why something cannot be planned; nothing was written.
+/// Returns why something cannot be planned; nothing was written.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
@@ -141,7 +141,7 @@ fn about(id: &'static str, item: Item) -> Text {
     TEXTS.text(id).with("number", item).with_text("name", parameter(item.0))
 }
 
-/// What somebody should know of a plan.
+/// Returns a warning of a plan.
 pub fn warning(warning: &Warning) -> Text {
     match warning {
         Warning::LimitsMove { drive, now, then } => TEXTS

@@ -29,12 +29,12 @@ pub enum Edit {
         drive: DriveNumber,
         /// Steps a turn.
         scale: PositionScale,
-        /// What becomes of its limits.
+        /// How its limits change.
         limits: LimitsStay,
     },
 }
 
-/// What becomes of the limits when their steps become other ones.
+/// How limits change when the size of a step does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsStay {
     /// They stay where they are: their numbers become other ones.
@@ -43,7 +43,7 @@ pub enum LimitsStay {
     AsNumbers,
 }
 
-/// Why something cannot be changed. Nothing is, then.
+/// Why something cannot be changed. Nothing has changed then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// Nothing is known of the device.
@@ -71,7 +71,7 @@ pub enum EditError {
     },
 }
 
-/// What is wanted after a change.
+/// Returns the values after an edit.
 pub(super) fn edited(
     (base, wanted): (&Image, &Image),
     edit: &Edit,

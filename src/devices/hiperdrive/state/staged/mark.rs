@@ -1,4 +1,4 @@
-//! What is not right in what is wanted, where it stands.
+//! The problems of the edited values, with their location.
 
 use super::{Staged, travel};
 use crate::devices::hiperdrive::profile::Image;
@@ -23,7 +23,7 @@ pub enum Mark {
     Outside {
         /// Whose.
         drive: DriveNumber,
-        /// Where it stands, as it would be scaled.
+        /// Its position in the new scale.
         position: i64,
         /// As wanted.
         lower: i64,
@@ -39,7 +39,7 @@ pub enum Mark {
         /// Likewise.
         upper: (f64, f64),
     },
-    /// Parameter 186 is 255: the drive would go on where nobody is heard any more, so that nothing moves it from here.
+    /// Parameter 186 is 255: the drive would continue after a lost connection, so it is not moved from here.
     NoTimeout {
         /// Whose.
         drive: DriveNumber,

@@ -1,4 +1,4 @@
-//! What the single steps of the set-up of an axis have of their own: entries, what comes of them, buttons that are held.
+//! The contents of the single steps of the set-up of an axis: entries, their results, buttons to hold.
 
 use egui::{RichText, Ui, vec2};
 
@@ -52,7 +52,7 @@ pub(super) fn content_ui(
     }
 }
 
-/// What the step does, in one line as far as there is room.
+/// Draws the buttons of the step, in one line as far as there is room.
 fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if matches!(step, Step::Lower | Step::Upper) {
@@ -71,7 +71,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     super::skip(ui, theme, shown, actions);
 }
 
-/// What comes of the entries, and what came of the step so far. Nothing of it can be clicked.
+/// Draws the results of the entries and of the step so far. Nothing of it can be clicked.
 pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let step = shown.axis.step();
     if step.jogs() {
@@ -108,7 +108,7 @@ fn may_jog(shown: &AxisPicture<'_>, direction: Direction) -> Result<(), Text> {
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
 }
 
-/// Why the pads do nothing, or what the drive does by them.
+/// Draws why the pads do nothing, or what they do.
 fn said(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
@@ -182,7 +182,7 @@ fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries)
     }
 }
 
-/// The limits that somebody has to have looked at.
+/// Draws the limits that the user has to confirm.
 fn limits(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| words::millimetres(shown.seen.ruler(), steps.into());
     let range = |(low, high): (i32, i32)| {

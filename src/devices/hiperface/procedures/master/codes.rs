@@ -1,5 +1,5 @@
-//! The queue of status codes. 50h takes a code out of the encoder, so that a reply to it that is lost may have been one: a
-//! reply that comes late is taken all the same, and what may have been lost is counted.
+//! The queue of status codes. 50h takes a code out of the encoder, so that a lost reply may have carried one: late
+//! replies are accepted as well, and possibly lost codes are counted.
 
 use super::Master;
 use crate::devices::hiperface::procedures::Error;
@@ -121,7 +121,7 @@ impl Master<'_> {
     }
 }
 
-/// What an answer to 50h says.
+/// Returns the codes of an answer to 50h.
 fn codes(answer: Answer) -> Codes {
     match answer {
         Answer::Reply { reply: Reply::Status(codes), pending } | Answer::Rejected { codes, pending } => {

@@ -13,7 +13,7 @@ use crate::devices::hiperface::protocol::{Answer, Command, Request, SecretFrame,
 use crate::link::LinkError;
 use crate::units::Moment;
 
-/// What an encoder says to a request that the line has damaged. A byte 00h that got lost leaves the checksum right.
+/// The encoder's replies to a request that was damaged on the line. A lost byte 00h leaves the checksum right.
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
 /// An exchange that gave no answer.
@@ -35,7 +35,7 @@ pub(in super::super) struct Answered {
     pub(super) at: Moment,
 }
 
-/// What came back, without the echo.
+/// The bytes received, without the echo.
 struct Heard {
     reply: Vec<u8>,
     /// When the first byte of the reply was complete.
@@ -96,7 +96,7 @@ impl Master<'_> {
         self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
     }
 
-    /// After so long without a byte nobody talks.
+    /// Returns the silence after which the line is free.
     pub(super) fn quiet(&self) -> Duration {
         self.dead_time() + self.station.line.margin
     }

@@ -1,4 +1,4 @@
-//! Whether an encoder is the one that a profile was read from.
+//! Checks whether an encoder is the one that a profile was read from.
 
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;

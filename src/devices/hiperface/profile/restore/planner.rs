@@ -160,7 +160,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// What a new field holds is not known, so all of it is written; then it is protected if it has to be.
+    /// Plans a new field. Its content is not known, so all of it is written; then it is protected if necessary.
     pub(super) fn create(&mut self, target: &FieldImage) {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };

@@ -1,4 +1,4 @@
-//! What a write created, and how restoring its before-image takes that back.
+//! The fields that a write created, and how restoring its before-image removes them.
 
 use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};

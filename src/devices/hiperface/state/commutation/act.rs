@@ -1,4 +1,4 @@
-//! What the user asks of the commutation assistant, carried out.
+//! The user's actions in the commutation assistant.
 
 use super::outcome::may_read;
 use super::{Action, Slot};

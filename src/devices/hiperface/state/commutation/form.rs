@@ -1,4 +1,4 @@
-//! What is ticked, chosen and typed in the commutation assistant, and what it means.
+//! The form of the commutation assistant, and its meaning.
 
 use crate::analysis::arctan::Phase;
 use crate::analysis::commutation::Motor;
@@ -20,7 +20,7 @@ pub struct Form {
     pub current_a: String,
     /// Longest time with current in seconds, as typed.
     pub time_s: String,
-    /// Which vector is energised.
+    /// The vector that is energised.
     pub vector: Vector,
     /// Its angle in electrical degrees, as typed, where it is another.
     pub vector_deg: String,
@@ -30,13 +30,13 @@ pub struct Form {
     pub periods: String,
     /// The position falls while the electrical angle rises.
     pub reversed: bool,
-    /// Where the position inside a period comes from.
+    /// Source of the position within a period.
     pub source: Source,
-    /// That position in periods, as typed, where it is measured elsewhere.
+    /// That position in periods, as entered, if it is measured externally.
     pub phase: String,
-    /// How far apart both sides may be, in electrical degrees, as typed.
+    /// Allowed difference of both sides in electrical degrees, as entered.
     pub limit_deg: String,
-    /// How far the second vector is ahead, in electrical degrees, as typed.
+    /// Lead of the second vector in electrical degrees, as entered.
     pub second_deg: String,
     /// Fine positions in periods, as typed, in the order of [`Slot::ALL`].
     pub typed: [String; 3],
@@ -50,7 +50,7 @@ pub struct Form {
     pub period: String,
 }
 
-/// What a position is read for.
+/// The purpose of a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     /// At rest, approached from one side.
@@ -74,7 +74,7 @@ pub enum Vector {
     Other,
 }
 
-/// Where the position inside a period comes from.
+/// The source of the position within a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// The encoder's analogue channels, where it has them, else the absolute position.
@@ -107,7 +107,7 @@ pub struct Inputs {
     pub reversed: bool,
     /// Angle of the energised vector in electrical turns.
     pub vector_turns: f64,
-    /// How far apart both sides may be, in electrical degrees.
+    /// Allowed difference of both sides, in electrical degrees.
     pub limit_deg: f64,
 }
 
@@ -155,7 +155,7 @@ impl Form {
         Ok((current?, time?))
     }
 
-    /// What is wrong with the current and with the time that are typed, in words; an empty entry is not wrong yet.
+    /// Returns what is wrong with the entered current and time, in words; an empty entry is not wrong yet.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
         let (current, time) = self.each_limit();
@@ -198,7 +198,7 @@ impl Form {
         }
     }
 
-    /// How far the second vector is ahead, in electrical turns: below ½, or the shaft may go the other way round.
+    /// Returns the lead of the second vector in electrical turns: below ½, or the shaft may go the other way round.
     ///
     /// # Errors
     /// In words.

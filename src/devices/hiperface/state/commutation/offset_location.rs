@@ -1,4 +1,4 @@
-//! Where in the memory the offset goes: a place that holds nothing is proposed, and what another one holds is told before
+//! The location of the offset in the memory: an empty one is proposed, and the content of another one is shown before
 //! it is replaced. Nothing here changes the memory.
 
 use super::{Commutation, Storage};
@@ -43,7 +43,7 @@ impl Commutation {
         Ok(OffsetLocation { field, address })
     }
 
-    /// What putting the offset into the memory would replace, as a warning; `None` where nothing is there, or an offset.
+    /// Returns a warning about the content that the offset would replace; `None` if it is empty, or an offset.
     pub fn replaced(&self, geometry: Option<Geometry>, staged: &Staged) -> Option<Text> {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();

@@ -1,5 +1,5 @@
-//! What comes of the readings: the mean of both sides, the offset, what a second vector says, the bytes of method 1 and
-//! the position of method 2.
+//! The result of the readings: the mean of both sides, the offset, the check with a second vector, the bytes of method
+//! 1 and the position of method 2.
 
 use super::{Commutation, Inputs, Kind, OffsetLocation, Slot, Source, Storage};
 use crate::analysis::arctan::Phase;
@@ -19,15 +19,15 @@ const WEAK_DEG: f64 = 30.0;
 /// The offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offset {
-    /// Where the shaft rests, in periods within a revolution.
+    /// Rest position of the shaft, in periods within a revolution.
     pub fine_periods: f64,
     /// The same in degrees.
     pub shaft_deg: f64,
-    /// How far both sides are apart, in electrical degrees; `None` where only one was taken.
+    /// Difference of both sides in electrical degrees; `None` with one side only.
     pub apart_deg: Option<f64>,
     /// The offset: electrical angle = pole pairs × shaft − offset.
     pub angle: ElectricalAngle,
-    /// The smallest step that the readings tell apart, in electrical degrees; `None` where nobody knows.
+    /// Smallest step that the readings resolve, in electrical degrees; `None` if not known.
     pub resolution_deg: Option<f64>,
 }
 
@@ -38,9 +38,9 @@ pub struct Setting {
     pub value: u32,
     /// Absolute position and phase do not agree now: exactly this value makes them.
     pub exact: bool,
-    /// What remains of the offset, in electrical degrees from −180 to 180.
+    /// Remaining offset in electrical degrees, −180 to 180.
     pub remaining_deg: f64,
-    /// How good that can be with this step.
+    /// Verdict for this step size.
     pub verdict: Verdict,
 }
 
@@ -51,7 +51,7 @@ pub struct Stored {
     pub field: u8,
     /// Its first byte there.
     pub address: usize,
-    /// What it says.
+    /// The record.
     pub record: Result<CommutationRecord, Damaged>,
     /// It is an edit that is not written yet.
     pub edited: bool,
@@ -94,7 +94,7 @@ impl Commutation {
         })
     }
 
-    /// What the second vector says, and how bad that is; `None` while it was not read.
+    /// Returns the result of the second vector with its verdict; `None` until it is read.
     ///
     /// # Errors
     /// What is missing, in words.
@@ -106,7 +106,7 @@ impl Commutation {
     fn judge_second(&self, fine_periods: f64, geometry: Option<Geometry>) -> Result<(Verdict, Text), Text> {
         /// Share of the expected movement below which the shaft counts as not moved.
         const STILL: f64 = 0.1;
-        /// How far the movement may be from the expected one.
+        /// Allowed ratio of the movement to the expected one.
         const FITS: std::ops::RangeInclusive<f64> = 0.8..=1.25;
         let (inputs, offset, turns) = (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_turns()?);
         let moved = apart(offset.fine_periods, fine_periods, inputs.periods);

@@ -52,7 +52,7 @@ impl Commutation {
     }
 }
 
-/// How a position came, in words.
+/// Returns how a position was obtained, in words.
 pub fn kind_words(reading: &Reading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {

@@ -1,4 +1,4 @@
-//! What a user wants, in words: the title of a review, the name of a job.
+//! The changes in words: the title of a review, the name of a job.
 
 use super::words;
 use crate::app::Text;
@@ -40,7 +40,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// Why an edit of `count` bytes from `start` cannot be made.
+/// Returns why an edit of `count` bytes from `start` cannot be made.
 pub fn staged(error: &StagedError, count: usize, start: usize) -> Text {
     match error {
         StagedError::NoField { field } => TEXTS.text("staged.no_field").with("field", field),

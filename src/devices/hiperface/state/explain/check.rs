@@ -26,7 +26,7 @@ fn step(step: Step) -> Text {
     })
 }
 
-/// How good a line is.
+/// Returns the quality of a line in words.
 pub fn line_quality(quality: &LineQuality) -> Text {
     let [retries, damaged, silent, late] = quality.troubles();
     TEXTS
@@ -38,7 +38,7 @@ pub fn line_quality(quality: &LineQuality) -> Text {
         .with("late", late)
 }
 
-/// What a step found.
+/// Returns the text of a finding.
 fn finding(finding: &Finding) -> Text {
     match finding {
         Finding::Code(code) => status_with_number(*code),

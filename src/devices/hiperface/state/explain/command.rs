@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::devices::hiperface::protocol::Command;
 use crate::devices::hiperface::state::TEXTS;
 
-/// What a command is called.
+/// Returns the name of a command.
 pub fn command(command: Command) -> Text {
     TEXTS.text(match command {
         Command::ReadPosition => "command.read_position",

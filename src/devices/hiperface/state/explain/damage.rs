@@ -1,4 +1,4 @@
-//! What was wrong with a reply, in words.
+//! Damaged replies in words.
 
 use super::words::status_with_number;
 use crate::app::Text;
@@ -6,7 +6,7 @@ use crate::devices::hiperface::procedures::Damage;
 use crate::devices::hiperface::protocol::{FrameError, ReplyError};
 use crate::devices::hiperface::state::TEXTS;
 
-/// What was wrong with a reply.
+/// Returns the text of the damage of a reply.
 pub fn damage(damage: &Damage) -> Text {
     match damage {
         Damage::Reply(error) => reply(error),

@@ -1,4 +1,4 @@
-//! What things in an encoder are called, and why an entry of a profile is refused.
+//! The names of items of an encoder, and why an entry of a profile is refused.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -30,7 +30,7 @@ pub fn field_range(range: &FieldRange) -> Text {
     text.with("count", range.count.unwrap_or_default())
 }
 
-/// What a write confirms, changes and reads back.
+/// Returns the name of an item of a write.
 pub fn plan_item(own: &PlanItem) -> Text {
     match own {
         PlanItem::Item(own) => item(own),
@@ -41,7 +41,7 @@ pub fn plan_item(own: &PlanItem) -> Text {
     }
 }
 
-/// What was read back after a write.
+/// Returns the text of a value read back.
 pub fn read_back(read: &ReadBack) -> Text {
     match read {
         ReadBack::Value(value) => plain(value),
@@ -49,7 +49,7 @@ pub fn read_back(read: &ReadBack) -> Text {
     }
 }
 
-/// Why a profile is refused.
+/// Returns why a profile is refused.
 pub fn refused(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::Twice(field) => TEXTS.text("hf_entry.twice").with("field", field),

@@ -12,7 +12,6 @@ pub struct LabelRow {
     pub addresses: String,
     /// The bytes.
     pub bytes: String,
-    /// What they are.
     pub meaning: Text,
 }
 

@@ -1,4 +1,4 @@
-//! What the lower layers of the device say, in both languages.
+//! Tests of the texts of the lower layers, in both languages.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! What an encoder says about itself in words of both languages. The English words are those of the protocol's tables.
+//! The texts of an encoder's own data in both languages. The English ones are those of the protocol's tables.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{DataFieldStatus, Geometry, LineSettings, Position, StatusCode};
@@ -35,7 +35,7 @@ const STATUS: [(u8, &str); 27] = [
     (0x23, "status.code_23"),
 ];
 
-/// What a status code says.
+/// Returns the text of a status code.
 pub fn status(code: StatusCode) -> Text {
     let id = STATUS.iter().find(|(byte, _)| *byte == code.byte()).map_or("status.unknown", |(_, id)| id);
     TEXTS.text(id)
@@ -46,7 +46,7 @@ pub fn status_with_number(code: StatusCode) -> Text {
     TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
 }
 
-/// What the status byte of a data field says: "48 bytes, write protected, code 2, code required".
+/// Returns the text of the status byte of a data field: "48 bytes, write protected, code 2, code required".
 pub fn field_status(status: DataFieldStatus) -> Text {
     if !status.exists() {
         return TEXTS.text("field.not_defined");
@@ -101,7 +101,7 @@ pub fn raw_position(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }
 
-/// What the settings byte of the interface says: "9600 8E1, time-out 44 bits, standard".
+/// Returns the text of the settings byte of the interface: "9600 8E1, time-out 44 bits, standard".
 pub fn line_settings(settings: LineSettings) -> Text {
     let text = TEXTS
         .text("line.settings")

@@ -1,4 +1,4 @@
-//! What comes of the readings: the offset, its way into a data field, a position to be set, and the report.
+//! The result of the readings: the offset, storing it in a data field, setting a position, and the report.
 
 use egui::{RichText, Ui};
 

@@ -14,7 +14,7 @@ use crate::devices::interbus::protocol::{Command, Reply, Value};
 
 /// The word of an encoder at work without anything beside it: also the echo of cam 0's start at 0.
 const BUSY: u32 = 0xC000_0000;
-/// So often an edge of cam 0 is set until it reads back. None of it stores.
+/// How often an edge of cam 0 is set until it reads back. None of this stores.
 const TRIES: u32 = 4;
 
 impl Master<'_> {
@@ -86,7 +86,7 @@ impl Master<'_> {
         })
     }
 
-    /// So long an echo has to stay that looks like an encoder at work; `None` where it does not.
+    /// Returns how long an echo must stay that looks like an encoder at work; `None` if it does not.
     fn holds(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;

@@ -58,7 +58,7 @@ impl Held {
         self.stays_for(STAYS_FOR)
     }
 
-    /// For so long; of a slow gateway in no more cycles than it takes to see it stand.
+    /// Returns whether it stayed this long; with a slow gateway, for as many cycles as show that it stands.
     pub(super) fn stays_for(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.lasts(duration)
@@ -74,7 +74,7 @@ impl Held {
     }
 }
 
-/// What a cycle brought.
+/// The result of a cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CycleResult {
     /// When.

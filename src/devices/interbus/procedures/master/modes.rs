@@ -1,4 +1,4 @@
-//! What an encoder does, what it is sent to do, and back to what it did.
+//! The mode of an encoder: reading it, changing it, and returning to the one before.
 
 use std::time::Duration;
 
@@ -8,13 +8,13 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
 
-/// So long the value of a question about a cam may stay behind `00000000`, before `80000000` is tried (`U`).
+/// How long the value of a question about a cam may stay `00000000` before `80000000` is tried (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
 /// An old word may still stand when one looks for the first time: so many looks after it.
 const LOOKS: u32 = 2;
 /// From one to the next.
 const LOOK: Duration = Duration::from_millis(10);
-/// What an encoder said it does holds for so long between two steps of a job; both lead it back.
+/// How long a mode that was read stays valid between two steps of a job; both lead it back.
 const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
@@ -50,9 +50,9 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Ends what somebody has left: parameterisation, an error, a read-out. Gives back what the encoder does then. What was
-    /// set and not stored is stored by it: one store, which is counted. An error that stays is left
-    /// to whoever looks at the IN word: the encoder can be asked and set all the same.
+    /// Ends a state left by another program: parameterisation, an error, a read-out. Returns the encoder's mode
+    /// afterwards. Values set and not stored are stored by that: one store, which is counted. An error that stays is
+    /// left to the reader of the IN word: the encoder can be read and set regardless.
     ///
     /// # Errors
     /// The handshake and the way.

@@ -1,4 +1,4 @@
-//! What a job notes of an encoder that it sends into other modes, so that a run that is cut off is completed by the next.
+//! Notes about an encoder that a job sends into other modes, so that the next run completes one that was cut off.
 
 use super::Master;
 use super::modes::does_the_same;
@@ -6,7 +6,7 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::journal::{Excursion, Journal};
 use crate::devices::interbus::protocol::{ReadOut, StartupMode};
 
-/// What is noted in this job.
+/// The notes of this job.
 #[derive(Default)]
 pub(super) struct Notes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
@@ -33,7 +33,7 @@ impl Master<'_> {
         self.notes.serial_number = Some(serial_number.to_string());
     }
 
-    /// So many cam programs will be selected to be read.
+    /// Notes that this many cam programs will be selected for reading.
     pub(in crate::devices::interbus::procedures) fn will_read(&mut self, programs: usize) -> Result<(), Error> {
         if programs == 0 || self.notes.journal.is_none() {
             return Ok(());
@@ -50,7 +50,7 @@ impl Master<'_> {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
 
-    /// Where an earlier run was cut off that had sent the encoder into this mode, it is led back to what it did before that.
+    /// Leads the encoder back if an earlier run was cut off that had sent it into this mode.
     pub(super) fn resume(&mut self, mode: StartupMode) -> Result<(), Error> {
         if !self.notes.journal.as_ref().is_some_and(|journal| journal.has_excursions()) {
             return Ok(());
@@ -95,7 +95,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// What somebody else had set was stored by leading back.
+    /// Notes that leading back stored settings of another program.
     pub(super) fn note_store(&mut self) -> Result<(), Error> {
         if self.notes.journal.is_some() {
             self.serial_number()?;

@@ -1,4 +1,4 @@
-//! Which column of a table holds what: as its header says in English or German, else as many as there are.
+//! Assigns the columns of a table: by its header in English or German, else by their number.
 
 use super::Column;
 use crate::analysis::capture::Delimiter;
@@ -51,14 +51,14 @@ impl Columns {
         Columns { places, cam_or_name: matches!(count, 3 | 4) }
     }
 
-    /// Where a column is.
+    /// Returns the index of a column.
     pub(super) fn place(&self, column: Column) -> Option<usize> {
         self.places.iter().find(|(own, _)| *own == column).map(|(_, place)| *place)
     }
 }
 
-/// What stands between the columns: what the most lines have outside of quotes; a comma only where it is more, as it may be
-/// a decimal sign.
+/// Returns the delimiter: the one that most lines have outside of quotes; a comma only if it is more frequent, as it
+/// may be a decimal sign.
 pub(super) fn delimiter(text: &str) -> Delimiter {
     let has = |line: &str, sign: char| {
         let mut quoted = false;

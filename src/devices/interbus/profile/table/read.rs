@@ -8,7 +8,7 @@ use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Outside, Placed, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
-/// What is more is no table of cams: eight programs of eight, with room for what is wrong in it.
+/// Most rows of a table of cams: eight programs of eight, with room for errors.
 const MOST_ROWS: usize = 1000;
 /// Letters of a wrong cell that are told.
 const SHOWN: usize = 24;

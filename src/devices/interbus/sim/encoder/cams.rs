@@ -1,4 +1,4 @@
-//! What cam words set in the program that runs (reference 5).
+//! Cam words that change the running program (reference 5).
 
 use super::{Activity, Encoder, Fault, INVALID, Says};
 use crate::devices::interbus::protocol::{CamNumber, Gear, Program, StartupMode, Value};

@@ -7,7 +7,7 @@ use crate::devices::interbus::sim::memory::PLACES;
 use crate::units::Moment;
 
 impl Encoder {
-    /// The position becomes the preset; one beyond the range, which a later gear may have made of it, begins anew.
+    /// Sets the position to the preset; one beyond the range, which a later gear may cause, wraps.
     pub(super) fn fire(&mut self, now: Moment) {
         let gear = self.memory.gear;
         let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
@@ -33,7 +33,7 @@ impl Encoder {
         Value::of_word((position % u64::from(gear.steps())) as u32)
     }
 
-    /// What stands in the IN word while it runs.
+    /// Returns the IN word while it runs.
     pub(super) fn live(&self, now: Moment) -> u32 {
         let position = self.position(now);
         match (self.class, self.mode) {

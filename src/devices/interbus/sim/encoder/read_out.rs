@@ -1,4 +1,4 @@
-//! What is read out (reference 3 and 5).
+//! Read-outs (reference 3 and 5).
 
 use super::{Activity, Encoder, Says};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Command, ReadOut, StartupMode, Value};

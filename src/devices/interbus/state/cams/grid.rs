@@ -6,9 +6,9 @@ use crate::devices::interbus::profile::{Scale, Unit};
 /// A line across the chart, at the beginning of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tick {
-    /// Where, in steps.
+    /// Position in steps.
     pub position: f64,
-    /// What it says, in units of the scale.
+    /// Value in units of the scale.
     pub value: f64,
     /// Decimals that it needs.
     pub decimals: usize,

@@ -1,11 +1,11 @@
-//! What a cam becomes when an edge of it is pulled, when it is moved as a whole, or drawn anew. The measuring range goes
-//! round: what is pulled over its end comes in at the other.
+//! Changes of a cam when an edge is dragged, when it is moved as a whole, or drawn. The measuring range wraps: what is
+//! dragged over its end comes in at the other.
 
 use super::of_edge;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 
-/// What is taken hold of.
+/// The dragged part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hold {
     /// An edge.

@@ -1,13 +1,13 @@
-//! What draws the edge of a cam to itself while it is dragged: edges of other cams, and the lines of the grid.
+//! Snapping of an edge while it is dragged: to edges of other cams, and to the lines of the grid.
 
 use super::{Chart, Hold, grid, of_edge};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
-/// What draws, and how near one has to come.
+/// The targets of snapping, and its reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
-    /// How near, in steps.
+    /// Reach in steps.
     pub reach: f64,
     /// The lines of a grid in round units, at least so many steps apart; `None`: they do not draw.
     pub apart: Option<f64>,
@@ -25,9 +25,9 @@ impl Snap {
     }
 }
 
-/// How near one has to come, in points.
+/// Reach in points.
 const REACH: f64 = 6.0;
-/// How far the lines of the grid are apart at least, in points.
+/// Least distance of the lines of the grid, in points.
 const GRID: f64 = 10.0;
 
 /// By how much something that would be moved by `by` steps is moved instead: an edge of the cam as it was comes to the
@@ -52,7 +52,7 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &
     best.map_or(whole, |(_, by)| by)
 }
 
-/// What could draw an edge to itself, the strongest first.
+/// Returns the possible targets of an edge, the strongest first.
 fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &Snap) -> Vec<f64> {
     let range = f64::from(chart.range.max(1));
     // The same place in the turn that the pointer has come to.

@@ -1,4 +1,4 @@
-//! What is told of a table of cams that was read.
+//! The texts about a table of cams that was read.
 
 use crate::analysis::capture::Delimiter;
 use crate::app::Text;
@@ -7,10 +7,10 @@ use crate::devices::interbus::profile::{
 };
 use crate::devices::interbus::state::TEXTS;
 
-/// Decimals beyond which nobody reads.
+/// Most decimals that are useful.
 const MOST_DECIMALS: usize = 6;
 
-/// How it was read: what stands between the columns, and whether they have names.
+/// Returns how it was read: its delimiter, and whether the columns have names.
 pub fn layout(table: &CamTable) -> Text {
     let delimiter = match table.delimiter {
         Some(Delimiter::Tab) => "camtable.tab",

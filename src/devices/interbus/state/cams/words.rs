@@ -46,7 +46,7 @@ pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
-/// Where a cam is, and how long.
+/// Returns the place and length of a cam in words.
 pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
@@ -62,7 +62,7 @@ pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
     TEXTS.text(id).with_text("where", stretch(edges, scale, range))
 }
 
-/// What is not right about a lane.
+/// Returns the problems of a lane.
 pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
     let beyond = lane.beyond.then(|| TEXTS.text("cams.beyond").with("last", chart.last()));
     let clash = lane.clashes.then(|| TEXTS.text("cams.clash").with("name", lane.name.as_deref().unwrap_or_default()));
@@ -82,7 +82,7 @@ pub fn lamp(lamp: Lamp) -> Text {
     }
 }
 
-/// What a person should look at; the cams of a program that are beyond the measuring range in one.
+/// Returns the problems in words; the cams of a program that are beyond the measuring range are combined.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
     let mut told = Vec::new();
@@ -127,7 +127,7 @@ fn mark(mark: &Mark) -> Text {
     }
 }
 
-/// Why something could not be changed, and what to do.
+/// Returns why something could not be changed, and what to do.
 pub fn refused(error: &EditError) -> Text {
     let program = |id, program: ProgramNumber| TEXTS.text(id).with("program", program.get());
     match error {
@@ -157,7 +157,7 @@ pub fn refused(error: &EditError) -> Text {
     }
 }
 
-/// Why steps and turns do not go together.
+/// Returns why steps and turns do not go together.
 pub fn gear(error: &GearError) -> Text {
     match *error {
         GearError::Turns { turns } => TEXTS.text("cams.gear_turns").with("turns", turns).with("most", TURNS),

@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::{Program, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::profile::Cause;
 
-/// Why a profile is refused.
+/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::ProgramTwice(program) => TEXTS.text("ib_entry.program_twice").with("program", program.get()),

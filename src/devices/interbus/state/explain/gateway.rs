@@ -1,10 +1,10 @@
-//! What a gateway was asked, what it refuses, and what was wrong with its reply, in words.
+//! Requests to a gateway, its refusals and damaged replies in words.
 
 use crate::app::Text;
 use crate::devices::interbus::procedures::{Asked, Damage, Exception};
 use crate::devices::interbus::state::TEXTS;
 
-/// What a gateway was asked; the part of a sentence.
+/// Returns the text of a request to a gateway, as a part of a sentence.
 pub(super) fn asked(asked: Asked) -> Text {
     let id = match asked {
         Asked::Input { .. } => "ib_asked.input",
@@ -34,7 +34,7 @@ pub(super) fn exception_name(exception: Exception) -> Text {
     })
 }
 
-/// What is the matter, most likely, and what to do.
+/// Returns the most likely cause, and what to do.
 pub fn exception(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {
         0x01 => "ib_exception.function",
@@ -49,7 +49,7 @@ pub fn exception(exception: Exception) -> Text {
     })
 }
 
-/// What was wrong with a reply.
+/// Returns the text of the damage of a reply.
 pub fn damage(damage: Damage) -> Text {
     match damage {
         Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),

@@ -1,4 +1,4 @@
-//! What things in an INTERBUS encoder are called, in the middle of a sentence.
+//! The names of items of an INTERBUS encoder, for use within a sentence.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -26,7 +26,7 @@ pub(super) fn number(parameter: Parameter, number: u32) -> Text {
     }
 }
 
-/// Which way a position counts.
+/// Returns the name of a direction.
 pub fn direction(direction: Direction) -> Text {
     TEXTS.text(match direction {
         Direction::Clockwise => "ib_item.clockwise",
@@ -51,7 +51,7 @@ pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {
         .with("cam", cam.get())
 }
 
-/// What an encoder does when it is left alone.
+/// Returns the name of a mode at power-up.
 pub fn startup(mode: StartupMode) -> Text {
     match mode {
         StartupMode::K2 => TEXTS.text("ib_startup.k2"),
@@ -62,7 +62,7 @@ pub fn startup(mode: StartupMode) -> Text {
     }
 }
 
-/// What is read out.
+/// Returns the name of a value.
 pub fn read_out(read_out: ReadOut) -> Text {
     match (read_out.number(), read_out.register()) {
         (_, Some(register)) => TEXTS.text("ib_doing.chip").with("register", register),

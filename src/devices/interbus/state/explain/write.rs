@@ -79,7 +79,7 @@ fn of_types(id: &'static str, types: OtherType) -> Text {
     TEXTS.text(id).with_text("profile", profile).with_text("device", device)
 }
 
-/// Why something cannot be planned.
+/// Returns why something cannot be planned.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
@@ -118,7 +118,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-/// That the stores of the EEPROM are numbered, where a plan comes near their end.
+/// Returns the warning that the stores of the EEPROM are limited, if a plan comes near the end.
 pub fn wear(prepared: &Prepared) -> Option<Text> {
     let (id, after) = match prepared.wear()? {
         Wear::Known(after) => ("ib_stores.known", after),
@@ -129,7 +129,7 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text(id).with("after", after).with("nominal", WEAR_ASK).with("limit", WEAR_LIMIT))
 }
 
-/// Why a write was not begun.
+/// Returns why a write was not begun.
 pub(super) fn not_begun(why: &NotBegun) -> Text {
     match why {
         NotBegun::Worn { seen, cost, .. } => {
@@ -182,7 +182,7 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     texts
 }
 
-/// How much one of the sentences about a write that was cut off matters.
+/// Returns the severity of a sentence about an interrupted write.
 pub fn weight(text: &Text) -> Severity {
     match text.id() {
         "ib_left.as_found" => Severity::Good,

@@ -1,4 +1,4 @@
-//! What is wanted otherwise than the encoder, or the profile, has it.
+//! The differences of the edited values from the encoder or the profile.
 
 use super::{Staged, Wanted};
 use crate::devices::interbus::profile::Edge;
@@ -13,14 +13,14 @@ pub enum ValueId {
     Shift,
     /// An edge of a cam.
     Edge(ProgramNumber, CamNumber, Edge),
-    /// Whether a cam works: 1 or 0.
+    /// Whether a cam is active: 1 or 0.
     On(ProgramNumber, CamNumber),
 }
 
 /// A value that is wanted otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
-    /// What it is of.
+    /// Its location.
     pub place: ValueId,
     /// Now; `None`: a profile does not say it.
     pub from: Option<u32>,
@@ -63,7 +63,7 @@ impl Wanted {
 }
 
 impl Staged {
-    /// How something is wanted otherwise than it is; `None` where it is not.
+    /// Returns how a value differs; `None` if it does not.
     pub fn differs(&self, place: ValueId) -> Option<Differs> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref())?;
         let (from, to) = (base.value(place), wanted.value(place));
@@ -89,7 +89,7 @@ impl Staged {
         base.image.program(program) != wanted.image.program(program) || is_renamed && !self.is_encoder()
     }
 
-    /// How many values are wanted otherwise.
+    /// Returns the number of edited values.
     pub fn count(&self) -> usize {
         self.differences().len()
     }

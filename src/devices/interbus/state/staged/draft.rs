@@ -108,8 +108,8 @@ fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &m
 }
 
 impl SavedEdit {
-    /// Puts it into what is wanted; not where a number of it is none. What lies beyond the measuring range is put there all
-    /// the same, as it was left.
+    /// Applies it to the edited values, unless a number is invalid. Values beyond the measuring range are applied as
+    /// they were left.
     fn put(self, wanted: &mut Wanted, ground: Ground) {
         let parameters = &mut wanted.image.parameters;
         match self {
@@ -174,7 +174,7 @@ impl SavedEdit {
         }
     }
 
-    /// What it changes was not read. A name needs nothing to be read.
+    /// Returns whether the changed value was not read. A name needs no reading.
     fn is_of_unread(&self, wanted: &Wanted, ground: Ground) -> bool {
         ground == Ground::Encoder
             && match self {

@@ -11,7 +11,7 @@ use crate::devices::interbus::protocol::{
 pub enum Edit {
     /// Steps of the measuring range.
     Steps(u32),
-    /// Turns until the position begins anew.
+    /// Turns until the position starts again.
     Revolutions(u32),
     /// Both at once, where one after the other would not go.
     Gear {
@@ -20,7 +20,7 @@ pub enum Edit {
         /// Turns.
         revolutions: u32,
     },
-    /// Which way the position counts.
+    /// Direction of counting.
     Direction(Direction),
     /// The preset, in steps. Nothing is fired by it.
     Preset(u32),
@@ -32,18 +32,15 @@ pub enum Edit {
     Edge {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
-        /// Which of its edges.
         edge: Edge,
         /// Its position.
         to: u32,
     },
-    /// Both edges of a cam, typed, moved as a whole, or drawn anew.
+    /// Both edges of a cam: typed, moved as a whole, or drawn.
     Cam {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
         /// Its first position.
         start: u32,
@@ -52,36 +49,33 @@ pub enum Edit {
         /// It works from then on, if it did not yet.
         on: bool,
     },
-    /// Whether a cam works.
+    /// Whether a cam is active.
     Switch {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
         /// It does.
         on: bool,
     },
-    /// What a cam is called; nothing where that is empty.
+    /// Name of a cam; empty for none.
     Name {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
         /// At most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// What a program is called; nothing where that is empty.
+    /// Name of a program; empty for none.
     ProgramName {
-        /// Which one.
         program: ProgramNumber,
         /// At most [`LONGEST_NAME`] characters.
         name: String,
     },
     /// A program becomes as another is, with the names of its cams.
     Copy {
-        /// What is copied.
+        /// The source program.
         from: ProgramNumber,
-        /// What it replaces.
+        /// The replaced program.
         to: ProgramNumber,
     },
     /// A program runs the other way: what is on at a position is then on as far from the other end of the range. Cams
@@ -90,7 +84,6 @@ pub enum Edit {
     /// A program later or earlier by so many steps; what leaves the range at one end comes in at the other. Cams that do
     /// not work go along, unless they lie beyond the range.
     Rotate {
-        /// Which one.
         program: ProgramNumber,
         /// Later by so many steps; below 0 earlier.
         by: i64,
@@ -99,7 +92,7 @@ pub enum Edit {
     Table(Vec<Filled>),
 }
 
-/// Why something cannot be changed. Nothing is, then.
+/// Why something cannot be changed. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
     /// Nothing is known of the encoder.
@@ -116,7 +109,6 @@ pub enum EditError {
     NoCam {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
     },
     /// Steps and turns are not one.
@@ -128,7 +120,6 @@ pub enum EditError {
     /// An edge beyond the measuring range.
     #[error("{to} is beyond the measuring range, which ends at {last}")]
     Edge {
-        /// Which one was to go there.
         edge: Edge,
         /// As given.
         to: u32,
@@ -140,7 +131,6 @@ pub enum EditError {
     Beyond {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
         /// The last position.
         last: u32,
@@ -150,7 +140,7 @@ pub enum EditError {
     Name,
 }
 
-/// What is wanted after a change.
+/// Returns the values after an edit.
 pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wanted, EditError> {
     let mut after = wanted.clone();
     let parameters = &mut after.image.parameters;

@@ -1,4 +1,4 @@
-//! What is not right in what is wanted, where it stands.
+//! The problems of the edited values, with their location.
 
 use super::Wanted;
 use crate::devices::interbus::profile::Edge;
@@ -18,9 +18,8 @@ pub enum Mark {
     Beyond {
         /// Whose cam.
         program: ProgramNumber,
-        /// Which one.
         cam: CamNumber,
-        /// Which edge; the start where both are.
+        /// The edge; the start if both are concerned.
         edge: Edge,
         /// The last position.
         last: u32,

@@ -1,10 +1,10 @@
-//! What becomes of edits when the encoder, or the profile, says something else.
+//! Merges edits with new values of the encoder or the profile.
 
 use super::Wanted;
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
-/// What was read, over what was known: what it does not have stays.
+/// Returns the values read, over the known ones where nothing was read.
 pub(super) fn over(known: &Image, read: Image) -> Image {
     let mut programs = read.programs;
     for (own, known) in programs.iter_mut().zip(&known.programs) {
@@ -55,7 +55,7 @@ fn rebase_program(program: &mut Program, was: &Program, is: &Program) {
     program.mask = program.mask & edited | is.mask & !edited;
 }
 
-/// What was not changed is as it is now.
+/// Takes a new value unless the old one was edited.
 fn follow<T: PartialEq + Clone>(own: &mut T, was: &T, is: &T) {
     if own == was {
         own.clone_from(is);

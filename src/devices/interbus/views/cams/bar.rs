@@ -11,7 +11,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem, text_entry};
 use crate::ui::{Theme, icons};
 
-/// What is typed.
+/// The entered text.
 #[derive(Default)]
 pub(super) struct CamBarUiState {
     by: String,

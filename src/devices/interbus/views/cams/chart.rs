@@ -11,7 +11,7 @@ use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, ca
 use crate::ui::controls::{card_with, icon_button, name, paragraph};
 use crate::ui::{Theme, icons};
 
-/// What is looked at, and how.
+/// The view of the chart.
 pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,
@@ -97,7 +97,7 @@ pub(super) fn card_ui(
     }
 }
 
-/// How the outputs that came agree with the cams that the encoder holds.
+/// Draws how the received outputs agree with the cams of the encoder.
 fn agreement(ui: &mut Ui, theme: &Theme, preview: &Preview) {
     let Preview { same, other, last, .. } = preview;
     let Some(last) = last else {

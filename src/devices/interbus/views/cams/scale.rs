@@ -1,4 +1,4 @@
-//! What the machine counts in, and where its 0 is.
+//! The units of the machine, and its zero.
 
 use egui::Ui;
 
@@ -9,7 +9,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, choice, entry, paragraph, problem, settled_entry};
 
-/// What is typed and does not count yet.
+/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct CamScaleUiState {
     steps: Option<(String, Option<Text>)>,

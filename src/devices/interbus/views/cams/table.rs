@@ -15,16 +15,16 @@ use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, forms};
 use crate::ui::controls::{card, name, paragraph, problem, settled_entry};
 use crate::ui::{Theme, icons};
 
-/// What is typed and does not count yet.
+/// Entered text that does not take effect yet.
 #[derive(Default)]
 pub(super) struct CamTableUiState {
     drafts: BTreeMap<(ProgramNumber, CamNumber, Column), Draft>,
 }
 
-/// What is typed, and why it was refused.
+/// Entered text, with the reason if it was refused.
 type Draft = Option<(String, Option<Text>)>;
 
-/// What is typed in a row.
+/// The entries of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Column {
     Name,
@@ -36,7 +36,7 @@ enum Column {
 const CAM: f32 = 48.0;
 const NAME: f32 = 160.0;
 const NUMBER: f32 = 104.0;
-/// What the frame of an entry takes of it.
+/// Width of an entry's frame.
 const MARGIN: f32 = 16.0;
 
 pub(super) fn card_ui(
@@ -69,7 +69,7 @@ pub(super) fn card_ui(
     });
 }
 
-/// What stands in a column.
+/// Draws the content of a column.
 fn cell<R>(ui: &mut Ui, width: f32, content: impl FnOnce(&mut Ui) -> R) -> R {
     let layout = egui::Layout::left_to_right(egui::Align::Center);
     let cell = ui.allocate_ui_with_layout(egui::vec2(width, ui.spacing().interact_size.y), layout, |ui| {

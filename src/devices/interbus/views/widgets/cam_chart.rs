@@ -1,5 +1,5 @@
-//! What the two pictures of a cam program have in common: what they are given, what a user wants, and how a cam is pulled
-//! with pointer, keyboard and by a screen reader.
+//! Shared parts of the two pictures of a cam program: input, events, and dragging with pointer, keyboard and screen
+//! reader.
 
 use egui::accesskit::{Action, ActionData, Role};
 use egui::{Color32, EventFilter, FontId, Id, Key, Modifiers, Painter, Pos2, Rect, Response, Ui, Vec2, WidgetInfo};
@@ -21,11 +21,11 @@ pub(crate) struct CamChart<'a> {
     pub(crate) chart: &'a Chart,
     /// The machine's units.
     pub(crate) scale: &'a Scale,
-    /// Where the encoder is; `None`: not known.
+    /// Position of the encoder; `None` if not known.
     pub(crate) position: Option<u32>,
     /// The outputs as the encoder says, bit i for cam i; `None`: it does not.
     pub(crate) own: Option<u8>,
-    /// Which cam is selected.
+    /// The selected cam.
     pub(crate) selected: Option<CamNumber>,
     /// Cams can be changed.
     pub(crate) movable: bool,
@@ -33,18 +33,16 @@ pub(crate) struct CamChart<'a> {
     pub(crate) snaps: bool,
 }
 
-/// What the user wants.
+/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
     /// While something is dragged: the cam would come to lie there. It comes at every drawing until the drag ends.
     Preview(CamNumber, Cam),
     /// The cam is to lie there, where it does not yet.
     Moved {
-        /// Which one.
         cam: CamNumber,
-        /// Where to.
         to: Cam,
-        /// It was drawn anew and is to work.
+        /// It was drawn and is to be active.
         drawn: bool,
     },
     /// The cam is to work, or not.
@@ -62,7 +60,7 @@ pub(super) struct Drag {
     /// The position under the pointer where it was pressed, and where it is; around the range more than once.
     pub(super) from: f64,
     pub(super) at: f64,
-    /// Where the cam would come to lie; `None`: it was given up.
+    /// The target of the drag; `None` if it was cancelled.
     pub(super) to: Option<Cam>,
 }
 
@@ -72,7 +70,7 @@ pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
 }
 
 impl CamChart<'_> {
-    /// Where a cam comes to lie that is pulled from one position to another.
+    /// Returns the cam after dragging it from one position to another.
     pub(super) fn pulled(&self, hold: Hold, from: f64, at: f64, snap: &Snap) -> Option<Cam> {
         let range = self.chart.range;
         let own = self.chart.lane(hold.cam())?.edges;
@@ -90,7 +88,7 @@ impl CamChart<'_> {
         }
     }
 
-    /// What a drag does: what it would come to while the pointer is down, and what it has come to.
+    /// Returns the effect of a drag: the preview while the pointer is down, and the result.
     pub(super) fn dragged(&self, ui: &Ui, base: Id, response: &Response, drag: Drag, snap: &Snap) -> Option<CamEvent> {
         let given_up = ui.input(|input| input.key_pressed(Key::Escape)) || is_given_up(ui, base);
         let snap = if self.snaps && !ui.input(|input| input.modifiers.alt) { *snap } else { Snap::OFF };
@@ -160,7 +158,7 @@ impl CamChart<'_> {
         (to != own).then_some(CamEvent::Moved { cam, to, drawn: false })
     }
 
-    /// What a screen reader hears of an edge, and what it sets.
+    /// Sets the text of an edge for screen readers, and handles their input.
     pub(super) fn tell_edge(
         &self,
         ui: &Ui,
@@ -211,7 +209,7 @@ impl CamChart<'_> {
         if more == less { None } else { self.by(hold, more - less) }
     }
 
-    /// What stands under the pointer beside an edge or a cam.
+    /// Shows the tooltip of an edge or a cam.
     pub(super) fn tip(&self, theme: &Theme, response: Response, hold: Hold) {
         let Some(lane) = self.chart.lane(hold.cam()) else { return };
         response.on_hover_ui(|ui| {
@@ -233,7 +231,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Where something would come to, in words at a place; never outside the room there is.
+    /// Draws the target of a drag in words, always within the available room.
     pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;

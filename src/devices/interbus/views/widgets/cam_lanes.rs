@@ -27,7 +27,7 @@ use crate::ui::Theme;
 
 use place::PlotArea;
 
-/// What everything here needs.
+/// The context of all functions here.
 struct Lanes<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
@@ -63,7 +63,7 @@ pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: 
 }
 
 impl Lanes<'_> {
-    /// What draws an edge to itself.
+    /// Returns the snapping of edges.
     fn snap(&self) -> Snap {
         Snap::on(self.place.steps_in_point())
     }

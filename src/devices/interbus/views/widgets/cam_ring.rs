@@ -25,11 +25,11 @@ use crate::ui::widgets::focus_ring;
 
 /// The least side of the square.
 const LEAST: f32 = 160.0;
-/// Where the innermost circle is, as a share of the radius.
+/// Radius of the innermost circle, as a share of the outer radius.
 const INNER: f32 = 0.34;
 /// Room around it for numbers.
 const NUMBERS: f32 = 26.0;
-/// How thick an edge is to take hold of.
+/// Width of the grab area of an edge.
 const GRIP: f32 = 12.0;
 /// Around the ring at most so many numbers.
 const LINES: f64 = 12.0;
@@ -56,7 +56,7 @@ impl Dial {
         part.rem_euclid(1.0) * self.range
     }
 
-    /// How thick a circle is with the gap to the next one.
+    /// Returns the width of a circle with the gap to the next one.
     fn pitch(self) -> f32 {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
@@ -83,7 +83,7 @@ impl Dial {
     }
 }
 
-/// What everything here needs.
+/// The context of all functions here.
 struct Ring<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
@@ -185,7 +185,7 @@ impl Ring<'_> {
         event
     }
 
-    /// Where an edge is drawn.
+    /// Returns the place of an edge.
     fn place(&self, chart: &Chart, cam: CamNumber, edge: Edge) -> Option<Pos2> {
         let at = chart.edge(cam, edge)?.min(chart.range);
         let beyond = u32::from(edge == Edge::Stop && at < chart.range);
@@ -290,7 +290,7 @@ impl Ring<'_> {
     }
 }
 
-/// Where the number of a cam stands: at the beginning of the range.
+/// Returns the place of the number of a cam: at the start of the range.
 fn pos_of_name(dial: Dial, cam: CamNumber) -> Pos2 {
     dial.middle - Vec2::new(0.0, dial.circle(cam))
 }

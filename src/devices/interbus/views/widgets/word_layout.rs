@@ -25,7 +25,7 @@ use crate::ui::widgets::{BitCell, series};
 pub(crate) struct WordLayout<'a> {
     /// Accessible name.
     pub(crate) label: &'a str,
-    /// How far the position is shifted under its window.
+    /// Shift of the position under its window.
     pub(crate) shift: WindowShift,
     /// A cam output word as it came; `None`: the layout alone.
     pub(crate) word: Option<u32>,
@@ -107,7 +107,7 @@ impl WordLayout<'_> {
         u8::try_from(high).ok().zip(u8::try_from(mask.trailing_zeros()).ok())
     }
 
-    /// What a group is, with where it stands in the word.
+    /// Returns the name of a group, with its bits in the word.
     fn name(&self, group: Group) -> Text {
         match group.kind {
             Kind::Invalid => TEXTS.text("cams.word_invalid"),
@@ -120,7 +120,7 @@ impl WordLayout<'_> {
         }
     }
 
-    /// What a bit is, in a sentence.
+    /// Returns the meaning of a bit, as a sentence.
     fn says(&self, bit: u8) -> Text {
         let own = match self.bit(bit) {
             CamBit::Invalid => TEXTS.text("cams.word_invalid"),
@@ -136,7 +136,7 @@ impl WordLayout<'_> {
     }
 }
 
-/// Where the cells are.
+/// The layout of the cells.
 struct Cells {
     left: f32,
     top: f32,

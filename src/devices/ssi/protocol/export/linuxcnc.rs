@@ -7,7 +7,7 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::Range;
 
-/// What LinuxCNC cannot decode.
+/// A part of a frame that LinuxCNC cannot decode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoFormat {
     /// Gray over more than the position.
@@ -27,7 +27,7 @@ pub enum NoFormat {
     Inverted,
 }
 
-/// Why a frame has no format string, or a format string is no frame.
+/// Why a frame has no format string, or a format string is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     /// LinuxCNC cannot decode that.
@@ -113,8 +113,8 @@ enum Field {
     Bit(String),
 }
 
-/// The frame of a format string. Bits become error bits that say that the position is invalid; whoever knows better
-/// changes that. How the position divides into turns and steps is not in it: it is one number.
+/// Parses the frame of a format string. Bits become error bits that invalidate the position, which the user can change.
+/// The division of the position into turns and steps is not in it: it is one number.
 ///
 /// # Errors
 /// [`FormatError`] with the field that is wrong.

@@ -5,7 +5,7 @@ use crate::devices::ssi::protocol::descriptor::Coded;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
-/// How a language writes things. Values are words of 64 bits unless they are said to be numbers.
+/// The syntax of a language. Values are words of 64 bits unless they are called numbers.
 pub(super) trait Dialect {
     fn hex(&self, value: u64) -> String;
     fn and(&self, a: &str, b: &str) -> String;
@@ -26,8 +26,8 @@ pub(super) trait Dialect {
     fn both(&self, a: &str, b: &str) -> String;
 }
 
-/// Statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`, `steps`, and
-/// `valid`. `fold` and `digit` are words to reckon with.
+/// Writes statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`,
+/// `steps`, and `valid`. `fold` and `digit` are auxiliary words.
 pub(super) fn statements(layout: &Layout, dialect: &dyn Dialect) -> Vec<String> {
     let mut writer = Writer { dialect, lines: Vec::new() };
     writer.frame(layout);

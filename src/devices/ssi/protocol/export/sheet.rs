@@ -1,5 +1,5 @@
-//! What to set in a control's SSI module so that it reads this frame. The modules' terms are those of their own manuals.
-//! It does not program the encoder.
+//! The settings of a control's SSI module for this frame. The terms are those of the modules' own manuals. The encoder
+//! is not changed.
 
 use std::fmt::Write;
 
@@ -9,7 +9,7 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::Times;
 
-/// Where the position and the other bits stand, counted as modules count: bit 0 is the last one received.
+/// The location of the position and the other bits, counted as modules count: bit 0 is the last one received.
 struct Places {
     frame: u8,
     lowest: u8,
@@ -94,7 +94,7 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> St
     text
 }
 
-/// What no module decodes.
+/// Returns what no module can decode.
 fn obstacle(layout: &Layout) -> Option<&'static str> {
     let descriptor = layout.descriptor();
     match descriptor.code {

@@ -6,7 +6,8 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 
 impl Layout {
-    /// What a clock carries, in the words of the manual: `MT11`, `ST0`, `P3`, the error bit's name, `0`.
+    /// Returns the name of the content of a clock, in the words of the manual: `MT11`, `ST0`, `P3`, the error bit's
+    /// name, `0`.
     pub fn role_name(&self, role: Role) -> String {
         match role {
             Role::Zero => "0".to_owned(),

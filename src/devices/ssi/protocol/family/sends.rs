@@ -51,7 +51,7 @@ impl Family {
         })
     }
 
-    /// What a frame says of itself: everything but where its bits are aligned to.
+    /// Returns the settings that a frame shows: all but the alignment of its bits.
     fn asked(&self, frame: &Descriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),

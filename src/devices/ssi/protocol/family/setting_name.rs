@@ -1,4 +1,4 @@
-//! What a family's description calls its settings.
+//! The names of settings in a family's description.
 
 /// A setting of a family, where it is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]

@@ -1,4 +1,4 @@
-//! What a family's settings make of its frame: resolution, code, alignment, error bits, clocks.
+//! The frame that results from a family's settings: resolution, code, alignment, error bits, clocks.
 
 use super::{Align, ErrorPlace, Family, Frame, SettingName};
 use crate::devices::ssi::protocol::code::{Code, CodeError, Coding};
@@ -6,7 +6,7 @@ use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit};
 use crate::devices::ssi::protocol::layout::{Layout, LayoutError};
 use crate::devices::ssi::protocol::range::{Direction, Fraction, Range, RangeError};
 
-/// What is set at an encoder of a family; what is none is as delivered, with the largest resolution.
+/// The settings of an encoder of a family; `None` is the factory setting, with the largest resolution.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Bits of the revolutions.
@@ -21,19 +21,19 @@ pub struct Settings {
     pub revolutions: Option<Fraction>,
     /// Code.
     pub code: Option<Code>,
-    /// What the code goes over.
+    /// The bits that the code covers.
     pub coded: Option<Coded>,
     /// Clocks of a burst.
     pub clocks: Option<u8>,
-    /// Where the position stands.
+    /// Alignment of the position.
     pub align: Option<Align>,
     /// The frame comes one clock later.
     pub shift: bool,
-    /// Where error bits stand.
+    /// Place of the error bits.
     pub errors: Option<ErrorPlace>,
     /// Length of a step.
     pub step_nanometres: Option<u32>,
-    /// Which way it counts.
+    /// Direction of counting.
     pub direction: Option<Direction>,
     /// The position at the shaft's zero.
     pub preset: Option<u64>,
@@ -44,15 +44,15 @@ pub struct Settings {
 pub struct Resolved {
     /// The frame.
     pub layout: Layout,
-    /// Where the position stands in it.
+    /// Alignment of the position.
     pub align: Align,
-    /// Where the error bits stand.
+    /// Place of the error bits.
     pub errors: ErrorPlace,
-    /// Which way the encoder counts. Its frames are read the same.
+    /// Direction of counting. Frames are read the same way.
     pub direction: Direction,
     /// The position at the shaft's zero, within the range. Frames are read the same.
     pub preset: u64,
-    /// What is accepted although the manual does not speak of it.
+    /// Accepted settings that the manual does not mention.
     pub advice: Vec<Advice>,
 }
 
@@ -70,7 +70,7 @@ pub enum Advice {
     },
 }
 
-/// Why settings cannot be.
+/// Why settings are not possible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
     /// The family has no such field.
@@ -78,7 +78,7 @@ pub enum SettingsError {
     None {
         /// Its name.
         family: String,
-        /// What it does not have.
+        /// The missing setting.
         field: SettingName,
     },
     /// Two that say the same in other ways.
@@ -89,7 +89,7 @@ pub enum SettingsError {
     Limit {
         /// The family's name.
         family: String,
-        /// What is limited.
+        /// The limited setting.
         field: SettingName,
         /// Lowest value.
         least: u64,

@@ -91,7 +91,7 @@ impl Settings {
     }
 }
 
-/// What stands for a value in text: the word, and others that are understood.
+/// The words for a value in text: the preferred one, and others that are accepted.
 trait Words: Copy + PartialEq + 'static {
     const ALL: &'static [(&'static str, Self)];
 

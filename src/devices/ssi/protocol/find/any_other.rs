@@ -83,7 +83,7 @@ fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     ]
 }
 
-/// What the numbers of a reading can be, with so many bits.
+/// Returns the possible ranges of the numbers of a reading with this many bits.
 fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
     let reading = &read.reading;
     if let Some((steps, _)) = reading.steps {

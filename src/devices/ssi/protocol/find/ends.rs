@@ -97,7 +97,7 @@ fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u6
     Some((first, others.copied().unwrap_or(first)))
 }
 
-/// How many steps there are, from the size that most jumps have.
+/// Returns the number of steps from the size that most jumps have.
 fn jumped(motion: &Motion, whole: u64) -> Option<u64> {
     let mut jumps: Vec<u64> = motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     jumps.retain(|size| *size > motion.limit);
@@ -130,7 +130,7 @@ fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     all
 }
 
-/// How seldom an encoder is ordered with so many steps.
+/// Returns how unusual this number of steps is in orders.
 pub(super) fn unusual(steps: u64) -> u8 {
     if !usual(steps..=steps).is_empty() || steps.is_power_of_two() {
         return 0;

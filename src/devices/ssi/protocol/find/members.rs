@@ -23,7 +23,7 @@ pub(super) struct Member {
     pub(super) layout: Layout,
     /// How improbable it is.
     pub(super) weight: f64,
-    /// What it reads.
+    /// Its result for the frames.
     pub(super) trial: Trial,
 }
 

@@ -1,11 +1,11 @@
-//! How evenly a shaft turned if frames are read as certain numbers: what it takes to say each number once the ones before
-//! it are known. A number that is read wrong jumps, and has to be said as a whole.
+//! Measures how evenly a shaft turns if frames are read as certain numbers: the information needed for each number once
+//! the previous ones are known. A misread number jumps and needs its full information.
 
 /// Differences that one median stands for.
 const BLOCK: usize = 16;
 /// Bits for the choice of what a group of differences is like.
 const MODEL_BITS: f64 = 8.0;
-/// What a frame costs whose number is none.
+/// Information of a frame whose number is invalid, in bits.
 const NONE_BITS: f64 = 16.0;
 
 /// The motion that numbers make.
@@ -19,7 +19,7 @@ pub(super) struct Motion {
     pub(super) steps: Vec<Option<i64>>,
     /// For each of them: by how much it differs from its neighbours.
     pub(super) uneven: Vec<i64>,
-    /// What differs more is a jump.
+    /// Differences beyond this are jumps.
     pub(super) limit: u64,
     pub(super) jumps: usize,
     /// Frames whose number is none.

@@ -1,4 +1,4 @@
-//! What a family can be set to so that its position ends where the reading does.
+//! Finds the settings of a family whose position ends where the reading does.
 
 use super::members::{EXCHANGED, PADDED, Take, goes_over_zero, sum};
 use super::plausible::widths;

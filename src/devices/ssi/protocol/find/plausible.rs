@@ -1,5 +1,5 @@
-//! How probable a layout is before any frame was read: encoders are built with a few usual widths, and nobody builds 4096
-//! turns of 2 steps. Weights, 0 for what is most usual; one is about as much as a setting that was changed.
+//! The prior probability of a layout: encoders are built with a few usual widths, and never with 4096 turns of 2 steps.
+//! Weights, 0 for the most usual; one is about a changed setting.
 
 /// Bits within a revolution.
 const STEPS: [(u8, f64); 16] = [
@@ -23,10 +23,10 @@ const STEPS: [(u8, f64); 16] = [
 /// Bits of the revolutions.
 const TURNS: [(u8, f64); 9] =
     [(0, 0.0), (12, 0.0), (13, 0.6), (16, 0.6), (14, 1.0), (10, 1.4), (8, 1.4), (15, 1.6), (11, 1.6)];
-/// Fewer steps a turn than this nobody builds in several turns.
+/// Bits of steps below which multiturn encoders are not built.
 const FEW_STEPS: u8 = 8;
 
-/// How unusual so many bits of turns and of steps are together.
+/// Returns how unusual these bits of turns and steps are together.
 pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
     let of = |table: &[(u8, f64)], bits: u8, other: f64| {
         table.iter().find(|(known, _)| *known == bits).map_or(other, |(_, weight)| *weight)

@@ -12,7 +12,7 @@ const TRIED: usize = 96;
 /// Of a hundred of these, those that may not fit.
 const MISFITS_PERCENT: usize = 4;
 
-/// What a layout makes of the frames that it was tried with.
+/// The result of a layout for the frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Trial {
     pub(super) positions: Vec<u64>,
@@ -65,7 +65,7 @@ impl<'a> Probe<'a> {
         self.seen.clocks
     }
 
-    /// What a layout reads, where its steps are those of the reading: forwards or backwards, in the same or in halved steps.
+    /// Tries a layout whose steps are those of the reading: forwards or backwards, in the same or in halved steps.
     pub(super) fn trial(&self, layout: &Layout) -> Option<Trial> {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let invalid = layout.descriptor().errors.iter().enumerate().filter(|(_, bit)| bit.meaning == Meaning::Invalid);

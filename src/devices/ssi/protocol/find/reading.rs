@@ -76,7 +76,7 @@ impl Reading {
         }
     }
 
-    /// How many numbers the bits can be.
+    /// Returns how many numbers the bits can represent.
     fn whole(&self) -> u64 {
         match self.code {
             Code::Bcd => 10_u64.saturating_pow(u32::from(self.width().div_ceil(4))),
@@ -138,7 +138,7 @@ impl Reading {
         Some((from, to))
     }
 
-    /// What has to be said of everything but the motion, in bits, and the clocks that are not explained.
+    /// Returns the information in everything but the motion, in bits, and the unexplained clocks.
     fn beside(&self, seen: &Seen) -> (f64, Vec<u8>) {
         let frames = seen.words().len();
         let mut bits = 0.0;

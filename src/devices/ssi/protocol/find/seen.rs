@@ -22,7 +22,7 @@ pub(super) struct Seen {
     bits: Vec<Bit>,
 }
 
-/// What the bit on a clock did.
+/// The behaviour of the bit on a clock.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bit {
     /// Its usual value.
@@ -53,7 +53,7 @@ impl Seen {
         &self.words
     }
 
-    /// What the bit on this clock did; clocks count from 1.
+    /// Returns the behaviour of the bit on this clock, counted from 1.
     pub(super) fn bit(&self, clock: u8) -> Bit {
         usize::from(clock).checked_sub(1).and_then(|index| self.bits.get(index)).copied().unwrap_or_default()
     }

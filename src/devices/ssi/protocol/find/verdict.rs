@@ -1,4 +1,4 @@
-//! What may be said of the classes: which doubt there is, how good each one is, and what would decide.
+//! The verdict on the classes: the doubt, the quality of each, and what would decide.
 
 use super::members::{Member, never_odd};
 use super::probe::Trial;
@@ -18,12 +18,12 @@ const DISTURBED_PERCENT: usize = 15;
 /// To be sure, so many frames and so many bits that moved are needed.
 const SURE_FRAMES: usize = 200;
 const SURE_BITS: u8 = 5;
-/// So many different frames.
+/// Number of different frames for certainty.
 const SURE_DIFFERENT: usize = 64;
 /// Members of a class that are shown.
 const MEMBERS: usize = 200;
 
-/// Why the first group is not to be relied on.
+/// Returns why the first group is not certain.
 pub(super) fn doubt(words: &Seen, groups: &[Group]) -> Option<Doubt> {
     let Some(first) = groups.first() else { return Some(Doubt::Nothing) };
     let frames = words.words().len();
@@ -58,7 +58,7 @@ fn is_even(read: &Read, frames: usize, part: f64) -> bool {
         && disturbed * 100 <= DISTURBED_PERCENT * frames
 }
 
-/// What keeps a group from being certain.
+/// Returns what keeps a group from being certain.
 fn unproven(words: &Seen, group: &Group) -> Vec<Open> {
     let Group { read, members, .. } = group;
     let reading = &read.reading;
@@ -92,7 +92,7 @@ fn unproven(words: &Seen, group: &Group) -> Vec<Open> {
     open
 }
 
-/// How many steps there are, at least and at most: fewer may be where the first or the last was never seen.
+/// Returns the least and the greatest number of steps: fewer are possible where the first or the last was never seen.
 fn steps(read: &Read) -> Option<(u64, u64)> {
     let allowed = read.reading.allowed();
     let (first, last) = match read.reading.steps {
@@ -157,7 +157,7 @@ fn evidence(words: &Seen, group: &Group, most: f64) -> Evidence {
     }
 }
 
-/// What would tell the members apart, or prove them.
+/// Returns what would separate the members, or prove them.
 fn open(words: &Seen, group: &Group) -> Vec<Open> {
     let mut open = unproven(words, group);
     let members = &group.members;

@@ -1,11 +1,11 @@
-//! Whether a frame can work, and its shifts and masks if it can.
+//! Checks whether a frame is possible, and computes its shifts and masks.
 
 use super::{Flags, Layout, Part};
 use crate::devices::ssi::protocol::code::{Code, CodeError, Coding, ones};
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, Meaning, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
-/// Why a frame cannot work.
+/// Why a frame is not possible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// No clock at all, or more than an adapter and a number hold.
@@ -43,19 +43,19 @@ pub enum LayoutError {
     /// Two things on one clock.
     #[error("clock {clock} is asked for by {first} and by {second}")]
     Overlap {
-        /// Which clock.
+        /// The clock.
         clock: u8,
-        /// What is there.
+        /// The first content.
         first: Taker,
-        /// What is to be there too.
+        /// The second content.
         second: Taker,
     },
     /// A bit behind the last clock.
     #[error("{name} is on clock {clock}, beyond the {clocks} clocks of the frame")]
     Behind {
-        /// Which bit.
+        /// The bit.
         name: Taker,
-        /// Where it is.
+        /// Its clock.
         clock: u8,
         /// Clocks of the frame.
         clocks: u8,
@@ -67,7 +67,7 @@ pub enum LayoutError {
         what: Several,
         /// Most of them.
         limit: usize,
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
     /// A code over more than the position that is not Gray.
@@ -76,13 +76,13 @@ pub enum LayoutError {
     /// An error or parity bit among what is coded or shifted as a whole.
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
     Inside {
-        /// Which bit.
+        /// The bit.
         name: Taker,
-        /// Where it is.
+        /// Its clock.
         clock: u8,
         /// Clocks of the area.
         area: u8,
-        /// What is done with them.
+        /// The operation on the clocks.
         done: AsAWhole,
     },
     /// The lowest bit is lost, and the code does not bear it.
@@ -106,7 +106,7 @@ pub enum LayoutError {
     },
 }
 
-/// What asks for a clock.
+/// A content that takes a clock.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Taker {
     /// The position.
@@ -120,7 +120,7 @@ pub enum Taker {
     Error(String),
 }
 
-/// What a frame has several of.
+/// A part of which a frame has several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Several {
     /// Error bits.
@@ -131,7 +131,7 @@ pub enum Several {
     Patterns,
 }
 
-/// What is done with a number of clocks together.
+/// An operation on several clocks together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AsAWhole {
     /// They are one code word.
@@ -244,7 +244,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     })
 }
 
-/// Where the code word's bits stand in a word.
+/// Returns the location of the code word's bits in a word.
 fn parts(descriptor: &Descriptor, coding: &Coding) -> Result<[Part; 2], LayoutError> {
     let bits = coding.bits();
     let lead = descriptor.lead.saturating_add(descriptor.between);

@@ -1,4 +1,4 @@
-//! What the files of the families say in sentences, and why one cannot be used.
+//! The sentences of the families' files, and why one cannot be used.
 
 use super::refused::settings_reason;
 use crate::app::Text;

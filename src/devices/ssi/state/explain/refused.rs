@@ -1,4 +1,4 @@
-//! Why a layout cannot be: what the frame, its family or a format string says, in both languages.
+//! Why a layout is not possible, in both languages, as reported by the frame, its family or a format string.
 
 use crate::app::Text;
 use crate::app::explain::plain;
@@ -20,7 +20,7 @@ pub fn settings(error: &SettingsError) -> Text {
     refused(settings_reason(error))
 }
 
-/// What a family does not have: the part of a sentence that says it.
+/// Returns why settings are not possible, as a part of a sentence.
 pub(super) fn settings_reason(error: &SettingsError) -> Text {
     match error {
         SettingsError::None { family, field } => {
@@ -76,7 +76,7 @@ pub fn format(error: &FormatError) -> Text {
     refused(why)
 }
 
-/// Why a text is no frame.
+/// Returns why a text is not a frame.
 pub fn frame_text(error: &FrameTextError) -> Text {
     match error {
         FrameTextError::Form(text) => TEXTS.text("ssi_trial.form").with("text", text),
@@ -90,7 +90,7 @@ fn refused(why: Text) -> Text {
     TEXTS.text("ssi.refused").with_text("why", why)
 }
 
-/// What a family's description calls a setting.
+/// Returns the name of a setting in a family's description.
 fn field_name(field: SettingName) -> Text {
     TEXTS.text(match field {
         SettingName::Frame => "ssi_field.frame",
@@ -118,7 +118,7 @@ fn field_name(field: SettingName) -> Text {
     })
 }
 
-/// Why a frame cannot work: the part of a sentence that says it.
+/// Returns why a frame is not possible, as a part of a sentence.
 pub(super) fn layout_reason(error: &LayoutError) -> Text {
     match error {
         LayoutError::Clocks(clocks) => TEXTS.text("ssi_reason.clocks").with("clocks", clocks),
@@ -192,7 +192,7 @@ fn taker(taker: &Taker) -> Text {
     }
 }
 
-/// Why a profile is refused.
+/// Returns why a profile is refused.
 pub fn entry(cause: &Cause) -> Option<Text> {
     Some(match cause.get()? {
         EntryError::Layout(error) => layout_reason(error),

@@ -104,7 +104,7 @@ pub(super) fn entered(
     Some(next)
 }
 
-/// What positions its encoders can have.
+/// Returns the kinds of positions that its encoders can have.
 fn kinds(family: &Family) -> Vec<RangeKind> {
     if family.step_nanometres.is_some() {
         return vec![RangeKind::Length];
@@ -114,7 +114,7 @@ fn kinds(family: &Family) -> Vec<RangeKind> {
     std::iter::once(RangeKind::Bits).chain(steps).chain(round).collect()
 }
 
-/// Where the error bits of the frame may stand.
+/// Returns the possible places of the error bits.
 fn places(designer: &Designer, family: &Family) -> Vec<ErrorPlace> {
     let bits = designer.layout().coding().bits();
     let frame: Option<&Frame> = family.frames.iter().find(|frame| bits <= frame.up_to).or(family.frames.last());

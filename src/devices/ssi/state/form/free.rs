@@ -65,7 +65,7 @@ fn error(index: usize, bit: &ErrorBit) -> Group {
     }
 }
 
-/// What an entry changes; `None` where it cannot stand there.
+/// Applies an entry; `None` if it is not possible there.
 pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Option<Edit> {
     let before = &designer.design().profile.descriptor;
     if let Some(range) = range_entered(&before.range, field, input) {

@@ -1,5 +1,5 @@
-//! What a frame becomes when something in it is moved. Whatever is tried, what comes is a frame that works: of the clocks
-//! between the one asked for and the one where it is, the first that does.
+//! Moves a part of a frame. The result is always a possible frame: of the clocks between the requested and the present
+//! one, the first that is possible.
 
 use super::{Handle, Parts, has_words};
 use crate::devices::ssi::protocol::{Coded, Descriptor, Layout, Parity, Pattern, Range, Repeat, Word};
@@ -17,7 +17,7 @@ pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout
     tried.next().unwrap_or_else(|| layout.clone())
 }
 
-/// What can be moved in a frame, from its first clock to its last.
+/// Returns the movable parts of a frame, from its first clock to its last.
 pub(super) fn handles(layout: &Layout) -> Vec<Handle> {
     let descriptor = layout.descriptor();
     let mut handles = vec![Handle::Position];
@@ -42,7 +42,7 @@ pub(super) fn handles(layout: &Layout) -> Vec<Handle> {
     handles
 }
 
-/// Where something stands; `None` where the frame has no such thing.
+/// Returns the clock of a part; `None` if the frame does not have it.
 pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     let descriptor = layout.descriptor();
     let begins = descriptor.lead + u8::from(descriptor.shift_right);
@@ -95,7 +95,7 @@ pub(super) fn end(layout: &Layout) -> u8 {
     (descriptor.lead + descriptor.between + Parts::of(layout).bits() + late).min(descriptor.area)
 }
 
-/// Where the area ends can be told from a frame.
+/// Returns whether the end of the area matters for a frame.
 const fn area_counts(descriptor: &Descriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, Coded::Position)
 }
@@ -162,7 +162,7 @@ fn bits(new: &Descriptor, old: &Layout) -> u8 {
     }
 }
 
-/// What goes with the end of the position.
+/// Moves what follows the end of the position.
 fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
     let chain = chain(old);
     if !following || chain.is_empty() {

@@ -5,7 +5,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::{Coded, Meaning, Role};
 use crate::devices::ssi::state::TEXTS;
 
-/// What a clock carries, in a sentence; the clock is in it.
+/// Returns the content of a clock as a sentence that names the clock.
 pub fn cell(strip: &Strip, clock: u8) -> Text {
     let index = usize::from(clock).checked_sub(1);
     let cell = index.and_then(|index| strip.cells().get(index));
@@ -28,7 +28,7 @@ pub fn cell(strip: &Strip, clock: u8) -> Text {
     )
 }
 
-/// What a field is, with its number of bits.
+/// Returns the content of a field, with its number of bits.
 pub fn field(strip: &Strip, field: &Field) -> Text {
     let count = |id| TEXTS.text(id).with("count", field.count());
     match field.kind {
@@ -74,7 +74,7 @@ pub fn bare(strip: &Strip, field: &Field) -> String {
     }
 }
 
-/// Where a field stands.
+/// Returns the clocks of a field.
 pub fn clocks(field: &Field) -> Text {
     if field.first == field.last {
         TEXTS.text("ssi.strip_on_clock").with("clock", field.first)
@@ -83,7 +83,7 @@ pub fn clocks(field: &Field) -> Text {
     }
 }
 
-/// What a handle is called.
+/// Returns the name of a handle.
 pub fn handle(strip: &Strip, handle: Handle) -> Text {
     TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_lead_end",
@@ -102,7 +102,7 @@ pub fn handle(strip: &Strip, handle: Handle) -> Text {
     })
 }
 
-/// Where a handle stands.
+/// Returns the place of a handle.
 pub fn value(strip: &Strip, handle: Handle) -> Text {
     let clock = strip.clock(handle).unwrap_or(0);
     let at = |id| TEXTS.text(id).with("clock", clock);
@@ -115,7 +115,7 @@ pub fn value(strip: &Strip, handle: Handle) -> Text {
     }
 }
 
-/// How far a handle can be moved.
+/// Returns how far a handle can be moved.
 pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
     let (first, last) = strip.limits(handle, following);
     if first == last {
@@ -125,7 +125,7 @@ pub fn reach(strip: &Strip, handle: Handle, following: bool) -> Text {
     }
 }
 
-/// What moving a handle does.
+/// Returns the effect of moving a handle.
 pub fn hint(handle: Handle) -> Text {
     TEXTS.text(match handle {
         Handle::LeadEnd => "ssi.strip_move_lead_end",

@@ -39,7 +39,7 @@ pub(crate) struct BitStrip<'a> {
     pub(crate) strip: &'a Strip,
     /// Bits to show in it, right-justified.
     pub(crate) frame: Option<u64>,
-    /// Which clock's cell is selected.
+    /// Clock of the selected cell.
     pub(crate) selected: Option<u8>,
     /// Bits can be turned over.
     pub(crate) toggles: bool,
@@ -49,7 +49,7 @@ pub(crate) struct BitStrip<'a> {
     pub(crate) following: bool,
 }
 
-/// What the user wants.
+/// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
     /// While something is dragged: it would come to this clock. It comes at every drawing until the drag ends.
@@ -68,7 +68,7 @@ struct Drag {
     handle: Handle,
     /// The clock on which it was taken hold of.
     from: Option<u8>,
-    /// Where it would come to; `None`: it was given up.
+    /// The target clock; `None` if the drag was cancelled.
     to: Option<u8>,
 }
 
@@ -99,7 +99,7 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     moved.or(pressed).or(chosen)
 }
 
-/// What everything here needs.
+/// The context of all functions here.
 struct StripContext<'a> {
     ui: &'a Ui,
     theme: &'a Theme,
@@ -198,7 +198,7 @@ impl StripContext<'_> {
         event
     }
 
-    /// What a screen reader hears of the fields.
+    /// Sets the texts of the fields for screen readers.
     fn fields(&self, tags: &[Tag]) {
         for tag in tags {
             let Some(field) = self.shown.fields().get(tag.field) else { continue };

@@ -27,7 +27,7 @@ use crate::ui::Theme;
 use axis::Axis;
 use place::{Bar, Flag, Put};
 
-/// What is drawn.
+/// A timing diagram to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TimingDiagram<'a> {
     /// Accessible name.
@@ -42,12 +42,12 @@ pub(crate) struct TimingDiagram<'a> {
 const ROW: f32 = 24.0;
 const WORDS: f32 = 15.0;
 const LANE: f32 = 19.0;
-/// How long the lines are drawn before the first edge.
+/// Length of the lines before the first edge.
 const BEFORE: f32 = 12.0;
 /// A bit narrower than this has no digit.
 const DIGIT: f32 = 9.0;
 
-/// Where the rows are.
+/// Positions of the rows.
 struct Rows {
     flags: f32,
     clock: Rangef,
@@ -133,7 +133,7 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     }
 }
 
-/// What is painted, and where.
+/// The context of painting.
 struct Picture<'a> {
     painter: &'a Painter,
     theme: &'a Theme,

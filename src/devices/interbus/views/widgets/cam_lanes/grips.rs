@@ -1,4 +1,4 @@
-//! What can be taken hold of in the lanes: edges, cams, and the room for new ones.
+//! The handles in the lanes: edges, cams, and the room for new ones.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
@@ -125,8 +125,8 @@ impl Lanes<'_> {
         event
     }
 
-    /// Where an edge is taken hold of, and where it is drawn. What is not to be seen stands at the end of its lane, for
-    /// the keyboard alone.
+    /// Returns the grab area of an edge, and where it is drawn. An invisible edge is at the end of its lane, for the
+    /// keyboard only.
     fn grip(&self, cam: Cam, lane: &Lane, edge: Edge) -> Option<(Rect, f32)> {
         let chart = self.model.chart;
         let at = self.model.chart.edge(lane.cam, edge)?.min(chart.range);
@@ -153,7 +153,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// What has the keyboard is to be seen.
+    /// Scrolls to the element with the keyboard focus.
     fn follow(&self, response: &Response, stretch: Stretch) -> Option<CamEvent> {
         let (view, range) = (self.place.view, self.model.chart.range);
         let (first, last) = (f64::from(stretch.first), f64::from(stretch.last) + 1.0);
@@ -167,7 +167,7 @@ impl Lanes<'_> {
         self.ui.input(|input| [ArrowLeft, ArrowRight].into_iter().any(|key| input.key_released(key)))
     }
 
-    /// How far the lines of the grid are apart at least, in steps.
+    /// Returns the least distance of the lines of the grid, in steps.
     fn apart(&self) -> f64 {
         self.snap().apart.unwrap_or(1.0)
     }

@@ -1,4 +1,4 @@
-//! What stands before a lane: whether its cam works, its number and name, the lamp of its output.
+//! The head of a lane: whether its cam is active, its number and name, the indicator of its output.
 
 use egui::accesskit::Role;
 use egui::text::{LayoutJob, TextWrapping};
@@ -30,7 +30,7 @@ impl Lanes<'_> {
         event
     }
 
-    /// Whether the cam works.
+    /// Draws the switch of the cam.
     pub(super) fn switch(&self, lane: &Lane) -> Option<CamEvent> {
         let (ui, head) = (self.ui, self.place.head_of(lane.cam));
         let can = self.model.movable && (lane.edges.is_some() || lane.on);

@@ -9,14 +9,14 @@ use crate::devices::interbus::state::cams::{Hold, Lane, Tick, ticks, words};
 use crate::devices::interbus::views::widgets::cam_chart::{Drag, ink};
 use crate::ui::widgets::{focus_ring, hatch};
 
-/// How far numbers of a ruler are apart at least, in points.
+/// Least distance of the numbers of a ruler, in points.
 const APART: f64 = 64.0;
 /// Width of what is hatched at the end of the range.
 const BEYOND: f32 = 14.0;
 /// Less wide nothing looks hollow.
 const NARROW: f32 = 6.0;
 
-/// How an edge is.
+/// The state of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
     pub(super) active: bool,
@@ -136,7 +136,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// Where the encoder is: a line through all lanes, under a mark in the ruler.
+    /// Draws the position of the encoder: a line through all lanes, under a mark in the ruler.
     fn position(&self) {
         let Some(position) = self.model.position.filter(|position| *position < self.model.chart.range) else { return };
         let place = self.place;
@@ -151,7 +151,7 @@ impl Lanes<'_> {
         painter.add(Shape::convex_polygon(mark, colour, Stroke::NONE));
     }
 
-    /// Where something that is dragged would come to.
+    /// Draws the target of a drag.
     fn goal(&self, drag: &Drag) {
         let Some(to) = drag.to else { return };
         let (theme, place) = (self.theme, self.place);

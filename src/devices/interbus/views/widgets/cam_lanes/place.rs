@@ -1,4 +1,4 @@
-//! Where everything is in the lanes of cams.
+//! The layout of the lanes of cams.
 
 use egui::{Rect, Vec2, pos2};
 
@@ -13,13 +13,13 @@ const HEAD: f32 = 208.0;
 const HEAD_PART: f32 = 0.34;
 /// Room behind the lanes for half a number of the ruler.
 const BEHIND: f32 = 16.0;
-/// How thick an edge is to take hold of.
+/// Width of the grab area of an edge.
 const GRIP: f32 = 9.0;
 
 /// Heads at the left, the part of the range that is to be seen at the right.
 #[derive(Clone, Debug)]
 pub(super) struct PlotArea {
-    /// What stands before the lanes.
+    /// Area of the heads.
     pub(super) head: Rect,
     /// The lanes.
     pub(super) plot: Rect,
@@ -31,7 +31,7 @@ pub(super) struct PlotArea {
 }
 
 impl PlotArea {
-    /// What all of it takes.
+    /// Returns the size of all lanes.
     pub(super) fn size(width: f32, units: bool) -> Vec2 {
         let rulers = if units { 2.0 * RULER } else { RULER };
         Vec2::new(width, rulers + Program::CAMS as f32 * LANE)
@@ -57,7 +57,7 @@ impl PlotArea {
         self.view.span() / f64::from(self.plot.width().max(1.0))
     }
 
-    /// Where a position begins.
+    /// Returns the x coordinate of a position.
     pub(super) fn x(&self, position: f64) -> f32 {
         let part = self.view.part(position).clamp(-1e4, 1e4);
         self.plot.left() + part as f32 * self.plot.width()
@@ -74,7 +74,7 @@ impl PlotArea {
         Rect::from_min_size(pos2(self.plot.left(), top), Vec2::new(self.plot.width(), LANE))
     }
 
-    /// What stands before it.
+    /// Returns the area of the head.
     pub(super) fn head_of(&self, cam: CamNumber) -> Rect {
         let lane = self.lane(cam);
         Rect::from_x_y_ranges(self.head.x_range(), lane.y_range())
@@ -91,7 +91,8 @@ impl PlotArea {
         Some(bar.shrink2(Vec2::new(0.0, 5.0)).intersect(self.plot.expand2(Vec2::new(GRIP, 0.0))))
     }
 
-    /// Where an edge is taken hold of: inside its cam where that is wide enough, so that two edges that meet are two.
+    /// Returns the grab area of an edge: inside its cam if that is wide enough, so that two edges that meet can be told
+    /// apart.
     pub(super) fn grip(&self, cam: CamNumber, x: f32, is_start: bool, width: f32) -> Rect {
         let inside = (width / 2.0).clamp(1.0, GRIP - 2.0);
         let (left, right) = if is_start { (x - GRIP + inside, x + inside) } else { (x - inside, x + GRIP - inside) };

@@ -1,4 +1,4 @@
-//! What can be taken hold of in a bit strip, with pointer and keyboard.
+//! The handles of a bit strip, for pointer and keyboard.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Id, Key, Modifiers, Rect, Response, Sense, Ui, Vec2, WidgetInfo};
@@ -7,7 +7,7 @@ use super::rows::Rows;
 use super::{Drag, StripContext, StripEvent, keep_arrows, paint};
 use crate::devices::ssi::state::strip::{self, Handle, Strip};
 
-/// How far beside its edge a handle is taken hold of that belongs to the field there, and how wide that is.
+/// Offset and width of the grab area of a handle beside its edge.
 const BESIDE: f32 = 5.0;
 const WIDTH: f32 = 9.0;
 
@@ -58,12 +58,12 @@ fn id(base: Id, handle: Handle) -> Id {
     base.with("handle").with(handle)
 }
 
-/// Whether something is dragged still.
+/// Returns whether something is still being dragged.
 pub(super) fn is_dragged(ui: &Ui, base: Id, drag: Drag) -> bool {
     ui.ctx().is_being_dragged(id(base, drag.handle))
 }
 
-/// Where something can be taken hold of.
+/// Returns the grab area of a handle.
 fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let clock = strip.clock(handle)?;
     if matches!(handle, Handle::Error(_) | Handle::Parity) {
@@ -97,7 +97,7 @@ pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     Some(rows.edge(clock, begins, clocks))
 }
 
-/// Where the tab of a boundary is drawn, from its edge on.
+/// Returns the offset of a boundary's tab from its edge.
 pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
     side(handle) * if is_second(strip, handle) { WIDTH - 1.0 } else { BESIDE * 0.6 }
 }

@@ -15,10 +15,10 @@ use crate::ui::{Theme, controls};
 
 /// A name and where it is.
 pub(super) struct Tag {
-    /// Which of the strip's fields it is of.
+    /// Index of its field in the strip.
     pub(super) field: usize,
     line: usize,
-    /// Which line of names.
+    /// Line of the name.
     level: usize,
     /// From the first cell of its line.
     left: f32,
@@ -44,13 +44,13 @@ struct Narrow {
     alone: bool,
     /// It begins at its line instead of ending there.
     begins: bool,
-    /// Where the cells end.
+    /// Right end of the cells.
     room: f32,
     galley: Arc<Galley>,
 }
 
 impl Narrow {
-    /// Where it is beside those that have their place.
+    /// Moves it to a free place beside the names already placed.
     fn placed(self, tags: &[Tag]) -> Tag {
         let width = self.galley.size().x;
         let middle = self.x - width / 2.0;
@@ -177,7 +177,7 @@ pub(super) fn tags(
     (tags, levels)
 }
 
-/// What is told of a position, as a verdict.
+/// Returns the verdict of a meaning for the position.
 pub(super) const fn verdict(meaning: Meaning) -> Verdict {
     match meaning {
         Meaning::Invalid => Verdict::Fault,

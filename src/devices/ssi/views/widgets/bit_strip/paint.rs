@@ -87,7 +87,7 @@ impl StripContext<'_> {
     }
 }
 
-/// How a handle is.
+/// The state of a handle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Grip {
     pub(super) active: bool,
@@ -140,7 +140,7 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: O
     }
 }
 
-/// Where it would go, in words beside it.
+/// Draws the target of a drag in words beside it.
 fn ghost(view: &StripContext<'_>, handle: Handle) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };

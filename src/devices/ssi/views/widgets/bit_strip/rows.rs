@@ -1,4 +1,4 @@
-//! Where the cells of a bit strip are: on one line where there is room, else on lines of whole bytes.
+//! The layout of the cells of a bit strip: on one line if there is room, else on lines of whole bytes.
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
@@ -26,7 +26,7 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// So many clocks in so much room.
+    /// Lays out this many clocks in this width.
     pub(super) fn new(room: f32, clocks: u8) -> Self {
         let room = (room - 2.0 * MARGIN).max(0.0);
         let count = f32::from(clocks.max(1));
@@ -43,7 +43,7 @@ impl Rows {
         Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() }
     }
 
-    /// Where the first cell of each line begins.
+    /// Returns the left edge of each line.
     pub(super) fn left(&self) -> f32 {
         self.origin.x
     }
@@ -65,12 +65,12 @@ impl Rows {
         self
     }
 
-    /// How wide the cells are together.
+    /// Returns the width of the cells together.
     pub(super) fn width(&self, clocks: u8) -> f32 {
         f32::from(clocks.min(self.columns)) * self.cell
     }
 
-    /// What all of it takes.
+    /// Returns the size of the whole strip.
     pub(super) fn size(&self, clocks: u8) -> Vec2 {
         Vec2::new(self.width(clocks) + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
     }

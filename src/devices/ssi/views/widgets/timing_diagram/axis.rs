@@ -25,7 +25,7 @@ impl Axis {
         Axis { pieces: pieces.to_vec(), left: room.min, scale }
     }
 
-    /// Where a time is; in the middle of a break where it is left out, and at the ends what is beyond them.
+    /// Returns the x coordinate of a time; the middle of a break if it is omitted, and the ends for times beyond them.
     pub(super) fn x(&self, at: f64) -> f32 {
         let mut left = self.left;
         for (number, piece) in self.pieces.iter().enumerate() {

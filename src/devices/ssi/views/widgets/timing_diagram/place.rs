@@ -3,13 +3,13 @@
 /// A moment's words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flag {
-    /// Where its line is.
+    /// Position of its line.
     pub(super) x: f32,
-    /// How wide its words are.
+    /// Width of its words.
     pub(super) width: f32,
 }
 
-/// Where words are: on which line, 0 the lowest, and from where.
+/// Placement of words: their line, 0 the lowest, and their left edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Put {
     pub(super) level: usize,
@@ -70,9 +70,9 @@ fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
 /// A time's line and words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bar {
-    /// Where it begins and ends.
+    /// Start and end.
     pub(super) ends: (f32, f32),
-    /// How wide its words are.
+    /// Width of its words.
     pub(super) width: f32,
 }
 
