@@ -1,4 +1,4 @@
-//! The kinds of devices that this program knows: the one file that names them all, a line each.
+//! List of every device kind in the program, one line each. No other file names them all.
 
 mod kind;
 
@@ -10,7 +10,7 @@ use crate::buses::bridge::sim::Attachable;
 use crate::buses::ethernet_ip::commands::EthernetIpDecoder;
 use crate::signals;
 
-/// The kinds of devices, in the order of the navigation and of the help.
+/// Device kinds, in the order of the navigation and the help.
 pub const KINDS: &[Kind] = &[
     crate::devices::hiperface::KIND,
     crate::devices::biss::KIND,
@@ -19,7 +19,7 @@ pub const KINDS: &[Kind] = &[
     crate::devices::hiperdrive::KIND,
 ];
 
-/// Returns the program with all of them.
+/// Returns the program with all device kinds.
 pub fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| {

@@ -9,30 +9,24 @@ use crate::ui::{DeviceView, TabViews, ToolView};
 /// A kind of device: its pages, through which its state and its profiles are known, and its commands.
 #[derive(Clone, Copy)]
 pub struct Kind {
-    /// Its pages.
     pub view: &'static dyn DeviceView,
-    /// Its part of the command line.
     pub commands: &'static dyn DeviceCommands,
-    /// Its virtual device on the virtual adapter; `None` for a kind that is reached without an adapter. The adapter asks the
-    /// program's own list (`kinds::at_adapter`): a kind from outside is not on it.
+    /// Virtual device on the virtual adapter; `None` for a kind that is reached without an adapter.
+    /// The adapter uses the program's own list (`kinds::at_adapter`): a kind from outside is not on it.
     pub at_adapter: Option<&'static dyn Attachable>,
 }
 
 /// A tab that needs no device.
 #[derive(Clone, Copy)]
 pub struct ToolTab {
-    /// Its pages.
     pub view: &'static dyn ToolView,
 }
 
 /// The kinds of devices and the tools, as the studio, the window and the command line take them.
 #[derive(Clone, Copy)]
 pub struct Program {
-    /// For the studio.
     pub studio: Kinds,
-    /// For the window.
     pub tabs: TabViews,
-    /// For the command line.
     pub commands: Commands,
 }
 

@@ -144,7 +144,7 @@ fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
     assert!(screen.shows("Program 1: cams 6, 7 are outside the measuring range, which ends at 2999."));
     assert!(!screen.shows("Program 1: cam 7"));
     screen.act(Action::SetLanguage(Language::German));
-    assert!(screen.shows("Programm 1: Nocken 6, 7 liegen jenseits des Messbereichs (bis 2999)."));
+    assert!(screen.shows("Programm 1: Nocken 6, 7 liegen außerhalb des Messbereichs (bis 2999)."));
     screen.check_language();
 }
 

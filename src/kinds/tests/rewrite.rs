@@ -3,7 +3,6 @@
 use super::program;
 use crate::profile::{Carried, Document};
 
-/// The ready-made profiles, by their kinds.
 fn ready_made() -> Vec<(&'static str, String)> {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("profiles");
     let mut found = Vec::new();
@@ -16,7 +15,7 @@ fn ready_made() -> Vec<(&'static str, String)> {
     found
 }
 
-/// A profile of this kind as a person writes it, with comments.
+/// Returns a commented profile of this kind, as a user writes it.
 fn commented(kind: &str) -> String {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures/commented");
     std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()

@@ -1,39 +1,39 @@
-//! The control word (STW, reference 3). A host says what it wants and gets the word for it: reserved bits and the bits of a
-//! jog step, which a stop may not end, are in none of those.
+//! The control word (STW, reference 3), built from the action a host requests. No word built here contains a reserved
+//! bit or a jog bit; a stop does not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 
-/// A control word in which no reserved bit is set.
+/// Control word without reserved bits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ControlWord(u16);
 
-/// A bit of the control word that means something. Bits 1, 2, 11 and 13 to 15 have to be 0.
+/// Defined bit of the control word. Bits 1, 2, 11 and 13 to 15 must be 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum ControlBit {
-    /// On.
+    /// Switches the drive on.
     On = 0,
-    /// Operation is enabled.
+    /// Enables operation.
     Enable = 3,
     /// Positioning: no stop. Speed mode: clockwise.
     NoStop = 4,
     /// Positioning: no pause. Speed mode: endless, past the end of the range.
     NoPause = 5,
-    /// Positioning: a job begins where it differs from status bit 12. Speed mode: the drive runs while it is set.
+    /// Positioning: a job starts where this bit differs from status bit 12. Speed mode: the drive runs while it is set.
     Start = 6,
-    /// A fault is acknowledged when it falls.
+    /// Acknowledges a fault on its falling edge.
     Acknowledge = 7,
-    /// A step forward.
+    /// One jog step forward.
     JogOne = 8,
-    /// A step back.
+    /// One jog step backward.
     JogTwo = 9,
-    /// The control asks for the drive.
+    /// Requests control of the drive.
     Control = 10,
     /// Speed mode instead of positioning.
     SpeedMode = 12,
 }
 
-/// The drive's direction in speed mode.
+/// Direction of rotation in speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// Bit 4 is set.
@@ -42,37 +42,37 @@ pub enum Direction {
     Counterclockwise,
 }
 
-/// Where a run in speed mode ends by itself.
+/// End of a run in speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RunEnd {
-    /// At the end of the range.
+    /// The run ends at the end of the range.
     RangeEnd,
-    /// Nowhere: it ignores the limits. For experts, and only with factory limits and scaling.
+    /// The run ignores the limits and never ends by itself. For experts, and only with factory limits and scaling.
     Endless,
 }
 
-/// Motion that begins with a word.
+/// Motion that a control word starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Begins {
-    /// To the target.
+    /// A move to the target.
     Job,
-    /// In speed mode.
+    /// A run in speed mode.
     Run,
-    /// By the step of jog 1.
+    /// A step of jog 1.
     JogOne,
-    /// By the step of jog 2.
+    /// A step of jog 2.
     JogTwo,
 }
 
-/// A word with reserved bits. It must not be sent.
+/// Error for a word with reserved bits. It must not be sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("control word {word:04X} has reserved bits set ({}), which must be 0", bits(*word & RESERVED))]
 pub struct Refused {
-    /// As it was given.
+    /// The rejected word.
     pub word: u16,
 }
 
-/// Bits 1, 2, 11, 13, 14 and 15. Unlike PROFIdrive, where 1 and 2 have to be set (reference 8.2).
+/// Bits 1, 2, 11, 13, 14 and 15. Unlike PROFIdrive, where 1 and 2 must be set (reference 8.2).
 const RESERVED: u16 = 0xE806;
 
 fn bits(word: u16) -> String {
@@ -81,7 +81,7 @@ fn bits(word: u16) -> String {
 }
 
 impl ControlBit {
-    /// All of them, the lowest first.
+    /// All bits, lowest first.
     pub const ALL: [ControlBit; 10] = [
         ControlBit::On,
         ControlBit::Enable,
@@ -95,12 +95,12 @@ impl ControlBit {
         ControlBit::SpeedMode,
     ];
 
-    /// Its number in the word.
+    /// Returns the bit number in the word.
     pub const fn number(self) -> u8 {
         self as u8
     }
 
-    /// What it says when it is set. Bits 4 to 6 mean something else in speed mode.
+    /// Returns the meaning of the set bit. Bits 4 to 6 have another meaning in speed mode.
     pub const fn name(self, speed_mode: bool) -> &'static str {
         match (self, speed_mode) {
             (ControlBit::On, _) => "on",
@@ -125,43 +125,44 @@ impl ControlBit {
 }
 
 impl ControlWord {
-    /// 0000h: the drive is left alone.
+    /// 0000h: no control is requested.
     pub const OFF: ControlWord = ControlWord(0);
-    /// 0400h: ready. What speed mode is left through: below operational the drive forgets the job that clearing bit 12 would
-    /// start.
+    /// 0400h: ready. Speed mode is left through this word: below operational the drive discards the job that clearing
+    /// bit 12 would start.
     pub const READY: ControlWord = ControlWord::OFF.with(ControlBit::Control);
     /// 0401h: operational.
     pub const OPERATIONAL: ControlWord = ControlWord::READY.with(ControlBit::On);
     /// 0409h: enabled.
     pub const ENABLED: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Enable);
-    /// 0481h: before an acknowledgement, which comes with [`OPERATIONAL`](Self::OPERATIONAL). Bit 0 stays, so that its
-    /// falling edge is left for the switch-on lock.
+    /// 0481h: sent before an acknowledgement, which follows with [`OPERATIONAL`](Self::OPERATIONAL). Bit 0 stays set,
+    /// so that its falling edge remains available for the switch-on lock.
     pub const ACKNOWLEDGE: ControlWord = ControlWord::OPERATIONAL.with(ControlBit::Acknowledge);
 
-    /// A word as it came.
+    /// Parses a received word.
     ///
     /// # Errors
-    /// [`Refused`] with reserved bits.
+    /// Returns [`Refused`] if a reserved bit is set.
     pub const fn parse(word: u16) -> Result<Self, Refused> {
         if word & RESERVED == 0 { Ok(ControlWord(word)) } else { Err(Refused { word }) }
     }
 
-    /// The word.
+    /// Returns the raw word.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// Ready for a job, and none begins: 0439h or 0479h, with bit 6 as the drive has acknowledged it.
+    /// Returns the word that is ready for a job but starts none: 0439h or 0479h, with bit 6 as acknowledged by the
+    /// drive.
     pub const fn holding(status: StatusWord) -> Self {
         ControlWord::positioning(status.has(StatusBit::SetpointAcknowledged))
     }
 
-    /// A job begins: bit 6 is the opposite of what the drive has acknowledged.
+    /// Returns the word that starts a job: bit 6 is the opposite of what the drive has acknowledged.
     pub const fn starting(status: StatusWord) -> Self {
         ControlWord::positioning(!status.has(StatusBit::SetpointAcknowledged))
     }
 
-    /// Speed mode, standing: 1409h or 1419h, endless 1429h or 1439h.
+    /// Returns the speed mode word at standstill: 1409h or 1419h, endless 1429h or 1439h.
     pub const fn speed_mode(direction: Direction, end: RunEnd) -> Self {
         let word = ControlWord::ENABLED.with(ControlBit::SpeedMode);
         let word = match direction {
@@ -174,45 +175,45 @@ impl ControlWord {
         }
     }
 
-    /// Speed mode, running: 1449h or 1459h, endless 1469h or 1479h. The drive has to have seen
+    /// Returns the speed mode word that runs: 1449h or 1459h, endless 1469h or 1479h. The drive must have received
     /// [`speed_mode`](Self::speed_mode) before.
     pub const fn running(direction: Direction, end: RunEnd) -> Self {
         ControlWord::speed_mode(direction, end).with(ControlBit::Start)
     }
 
-    /// The mode's stop: in speed mode bit 6 falls; positioning, bit 4 falls and the job is gone. Torque stays on. Bits of jog
-    /// steps are taken away in both.
+    /// Returns this word with the stop of its mode: speed mode clears bit 6; positioning clears bit 4 and discards the
+    /// job. Torque stays on. Jog bits are cleared in both modes.
     pub const fn stopped(self) -> Self {
         let word = self.without(ControlBit::JogOne).without(ControlBit::JogTwo);
         if self.has(ControlBit::SpeedMode) { word.without(ControlBit::Start) } else { word.without(ControlBit::NoStop) }
     }
 
-    /// Positioning: the job is kept and goes on with [`resumed`](Self::resumed). In speed mode, where bit 5 is another, the
-    /// same word.
+    /// Returns this word with the job paused; [`resumed`](Self::resumed) continues it. In speed mode, where bit 5 has
+    /// another meaning, returns the same word.
     pub const fn paused(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.without(ControlBit::NoPause) }
     }
 
-    /// A paused job goes on. In speed mode the same word.
+    /// Returns this word with a paused job resumed. In speed mode, returns the same word.
     pub const fn resumed(self) -> Self {
         if self.has(ControlBit::SpeedMode) { self } else { self.with(ControlBit::NoPause) }
     }
 
-    /// Whether a bit is set.
+    /// Returns whether a bit is set.
     pub const fn has(self, bit: ControlBit) -> bool {
         self.0 & bit.mask() != 0
     }
 
-    /// The bits that are set, with their numbers and what they say, the lowest first.
+    /// Returns the set bits with their numbers and meanings, lowest first.
     pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
         let speed_mode = self.has(ControlBit::SpeedMode);
         let set = ControlBit::ALL.into_iter().filter(move |bit| self.has(*bit));
         set.map(move |bit| (bit.number(), bit.name(speed_mode)))
     }
 
-    /// What motion begins when this word follows `before` in a drive that says `status` and has operation enabled. The start
-    /// of a job is a difference of levels, not an edge (reference 8.10): clearing bit 12 after a run begins one to a stale
-    /// target.
+    /// Returns the motion that starts when this word follows `before`, for a drive that reports `status` and has
+    /// operation enabled. A job starts on a difference of levels, not on an edge (reference 8.10): clearing bit 12
+    /// after a run starts one to a stale target.
     pub fn begins(self, before: ControlWord, status: StatusWord) -> Option<Begins> {
         let rises = |bit: ControlBit| self.has(bit) && !before.has(bit);
         let acknowledged = status.has(StatusBit::SetpointAcknowledged);
@@ -235,7 +236,8 @@ impl ControlWord {
         }
     }
 
-    /// Whatever the drive says, also where it says it late: with this word nothing begins, and what moves comes to stand.
+    /// Returns whether this word starts no motion and brings a moving drive to a standstill, whatever status the drive
+    /// reports and however late.
     pub const fn is_standing(self) -> bool {
         let jogs = self.has(ControlBit::JogOne) || self.has(ControlBit::JogTwo);
         let moves = if self.has(ControlBit::SpeedMode) {

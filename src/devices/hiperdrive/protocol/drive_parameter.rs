@@ -1,26 +1,26 @@
-//! The numbers of drive 1's parameters that are more than a row of the table: rules and the virtual drive ask for them.
+//! Numbers of those parameters of drive 1 that the rules and the virtual drive use by name.
 
 use std::ops::RangeInclusive;
 
-/// The bus asks for the drive.
+/// Drive is requested by the bus.
 pub const REQUESTED: u16 = 152;
-/// The position's scale.
+/// Numerator of the position scale.
 pub const NUMERATOR: u16 = 154;
-/// What it is divided by.
+/// Denominator of the position scale.
 pub const DENOMINATOR: u16 = 156;
-/// The lower limit.
+/// Lower limit.
 pub const LOWER: u16 = 158;
-/// The upper limit.
+/// Upper limit.
 pub const UPPER: u16 = 160;
-/// The speed's scale.
+/// Numerator of the speed scale.
 pub const SPEED_NUMERATOR: u16 = 162;
-/// What it is divided by.
+/// Denominator of the speed scale.
 pub const SPEED_DENOMINATOR: u16 = 164;
-/// The greatest speed.
+/// Maximum speed.
 pub const MAXIMUM_SPEED: u16 = 166;
-/// What the greatest speed may be, in tenths of rpm.
+/// Allowed values of the maximum speed, in tenths of rpm.
 pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
-/// The place where the drive stands gets this position.
+/// Position assigned to the place where the drive stands.
 pub const REFERENCE: u16 = 198;
-/// The drive is reset.
+/// Resets the drive.
 pub const RESET: u16 = 199;

@@ -1,22 +1,22 @@
-//! Errors that a drive keeps (parameters 108 to 115, the newest first; reference 4). Names are the manual's; causes and
-//! remedies are derived where it has none (`D`).
+//! Errors that a drive stores (parameters 108 to 115, newest first; reference 4). Names are the manual's; causes and
+//! remedies are derived where it gives none (`D`).
 
 use std::fmt;
 
-/// An error. Codes that are not known are kept.
+/// Error code. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorCode(u16);
 
-/// A row of the table.
+/// Row of the error table.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorCodeRow {
-    /// Which one.
+    /// Code of the error.
     pub code: ErrorCode,
-    /// As the manual calls it.
+    /// Name in the manual.
     pub name: &'static str,
-    /// What brings it about.
+    /// Cause of the error.
     pub cause: &'static str,
-    /// What to do before it is acknowledged.
+    /// Remedy before the error is acknowledged.
     pub remedy: &'static str,
 }
 
@@ -24,7 +24,7 @@ const fn row(code: ErrorCode, name: &'static str, cause: &'static str, remedy: &
     ErrorCodeRow { code, name, cause, remedy }
 }
 
-/// All of them. Numbers are written as the manual does: 8200 to 8603, hexadecimal digits (`U`).
+/// All known errors. Numbers are written as in the manual: 8200 to 8603, hexadecimal digits (`U`).
 pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     row(
         ErrorCode::OVER_CURRENT,
@@ -125,52 +125,52 @@ pub const ERROR_CODES: [ErrorCodeRow; 16] = [
 ];
 
 impl ErrorCode {
-    /// Nothing.
+    /// No error.
     pub const NONE: ErrorCode = ErrorCode(0);
-    /// Of the current.
+    /// Overcurrent.
     pub const OVER_CURRENT: ErrorCode = ErrorCode(0x8200);
-    /// Of the supply.
+    /// Supply voltage too low.
     pub const UNDER_VOLTAGE: ErrorCode = ErrorCode(0x8201);
-    /// Of the temperature.
+    /// Temperature too high.
     pub const OVER_TEMPERATURE: ErrorCode = ErrorCode(0x8202);
-    /// Too slow.
+    /// Following error: the drive is too slow.
     pub const FOLLOWING: ErrorCode = ErrorCode(0x8203);
-    /// Held while it turns back.
+    /// Blocked while turning backward.
     pub const BLOCK_REVERSE: ErrorCode = ErrorCode(0x8300);
-    /// Held while it turns forward.
+    /// Blocked while turning forward.
     pub const BLOCK_FORWARD: ErrorCode = ErrorCode(0x8301);
-    /// Below the range.
+    /// Position below the range.
     pub const LOWER_LIMIT: ErrorCode = ErrorCode(0x8304);
-    /// Above the range.
+    /// Position above the range.
     pub const UPPER_LIMIT: ErrorCode = ErrorCode(0x8305);
-    /// Of the control.
+    /// Control loop error.
     pub const CONTROL_LOOP: ErrorCode = ErrorCode(0x8401);
-    /// Of what is stored.
+    /// Error of the stored data.
     pub const EEPROM: ErrorCode = ErrorCode(0x8410);
-    /// A motion that cannot begin.
+    /// Motion that cannot start.
     pub const START_IMPOSSIBLE: ErrorCode = ErrorCode(0x8500);
-    /// Of a parameter.
+    /// Invalid parameter value.
     pub const INVALID_VALUE: ErrorCode = ErrorCode(0x8501);
-    /// Of the sensor.
+    /// Sensor error.
     pub const SINCOS: ErrorCode = ErrorCode(0x8502);
-    /// Of a target.
+    /// Invalid target.
     pub const INVALID_TARGET: ErrorCode = ErrorCode(0x8503);
-    /// The drive has heard nothing.
+    /// Timeout: the drive has received nothing.
     pub const CONNECTION_TIMEOUT: ErrorCode = ErrorCode(0x8601);
-    /// The drive was not heard.
+    /// No reply from the drive over RS-485.
     pub const RS485: ErrorCode = ErrorCode(0x8603);
 
-    /// Any number is a code.
+    /// Creates a code from any number.
     pub const fn new(code: u16) -> Self {
         ErrorCode(code)
     }
 
-    /// Its number.
+    /// Returns the number.
     pub const fn code(self) -> u16 {
         self.0
     }
 
-    /// Its row; `None` for what is not known, and for no error.
+    /// Returns the table row; `None` for an unknown code and for no error.
     pub fn row(self) -> Option<&'static ErrorCodeRow> {
         ERROR_CODES.iter().find(|row| row.code == self)
     }

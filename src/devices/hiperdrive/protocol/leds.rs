@@ -1,9 +1,9 @@
-//! What is lit at a hub, an adapter and their network plug (reference 1). Remedies are derived (`D`).
+//! LEDs of a hub, of an adapter and of their network ports (reference 1). Remedies are derived (`D`).
 
-/// A lamp RS485 of two colours.
+/// State of an RS485 LED with two colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DriveLight {
-    /// Dark.
+    /// Off.
     Off,
     /// Green.
     Green,
@@ -11,37 +11,37 @@ pub enum DriveLight {
     Red,
     /// Red and green at once.
     RedGreen,
-    /// Green, twice a second.
+    /// Green, flashing twice a second.
     GreenFlashing,
-    /// Red and green at once, twice a second.
+    /// Red and green at once, flashing twice a second.
     RedGreenFlashing,
     /// Red, green, red, five times a second.
     Alternating,
 }
 
-/// What a lamp RS485 is about.
+/// Drive or drives that an RS485 LED stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LedSubject {
     /// The drive of a bus adapter, which has no switch S3.
     Adapter,
     /// All drives of a hub: its switch S3 is at 0.
     Drives,
-    /// The drive of a hub at whose number S3 is. From the bus none moves then.
+    /// The drive of a hub whose number is set on S3. No drive moves from the bus then.
     Drive,
 }
 
-/// What the lamp RS485 says, and what to do.
+/// Meaning and remedy of a state of the RS485 LED.
 #[derive(Clone, Copy, Debug)]
 pub struct LedRow {
-    /// What is lit.
+    /// State of the LED.
     pub light: DriveLight,
-    /// What it says, as the manual has it.
+    /// Meaning in the manual.
     pub meaning: &'static str,
-    /// What to do.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
-/// The lamps of the network.
+/// Network LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BusLamp {
     /// MS.
@@ -50,40 +50,40 @@ pub enum BusLamp {
     Network,
 }
 
-/// What such a lamp shows.
+/// State of a network LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BusLight {
-    /// Dark.
+    /// Off.
     Off,
     /// Green.
     Green,
-    /// Green, on and off.
+    /// Green, flashing.
     GreenFlashing,
     /// Red.
     Red,
-    /// Red, on and off.
+    /// Red, flashing.
     RedFlashing,
     /// Green, red, green.
     Alternating,
 }
 
-/// What a lamp of the network says, and what to do.
+/// Meaning and remedy of a state of a network LED.
 #[derive(Clone, Copy, Debug)]
 pub struct BusLedRow {
-    /// Which lamp.
+    /// The LED.
     pub lamp: BusLamp,
-    /// What it shows.
+    /// State of the LED.
     pub light: BusLight,
-    /// What it says, as ODVA has it for all devices.
+    /// Meaning that ODVA defines for all devices.
     pub meaning: &'static str,
-    /// What to do.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
-/// What the two lamps of a network port show.
+/// State of the two LEDs of a network port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PortLight {
-    /// Both are dark.
+    /// Both are off.
     Off,
     /// Green.
     Link,
@@ -91,14 +91,14 @@ pub enum PortLight {
     Active,
 }
 
-/// What the lamps of a network port say, and what to do.
+/// Meaning and remedy of a state of the port LEDs.
 #[derive(Clone, Copy, Debug)]
 pub struct PortLedRow {
-    /// What they show.
+    /// State of both LEDs.
     pub light: PortLight,
-    /// What they say, as the manual has it.
+    /// Meaning in the manual.
     pub meaning: &'static str,
-    /// What to do.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
@@ -114,7 +114,7 @@ const fn bus(lamp: BusLamp, light: BusLight, meaning: &'static str, remedy: &'st
     BusLedRow { lamp, light, meaning, remedy }
 }
 
-/// RS485 of a bus adapter (manual 4.4).
+/// RS485 LED of a bus adapter (manual 4.4).
 const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
     drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
@@ -137,7 +137,7 @@ const ADAPTER_LEDS: [LedRow; 7] = [
     drive(DriveLight::Green, "the drive has no error", "no action needed"),
 ];
 
-/// RS485 of a hub with switch S3 at 0: about all drives (manual 3.3).
+/// RS485 LED of a hub with switch S3 at 0, for all drives (manual 3.3).
 const DRIVES_LEDS: [LedRow; 7] = [
     drive(DriveLight::Off, "no supply", "check the control supply and its fuse"),
     drive(DriveLight::Alternating, "presence test", "wait until it has finished"),
@@ -168,7 +168,7 @@ const DRIVES_LEDS: [LedRow; 7] = [
     ),
 ];
 
-/// RS485 of a hub with switch S3 at a drive's number: about that drive (manual 3.3).
+/// RS485 LED of a hub with switch S3 at a drive's number, for that drive (manual 3.3).
 const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLight::Off, "the drive is neither connected nor requested", "to use the drive, plug it in"),
     drive(DriveLight::Red, "communication error", "check the drive's cable, then write 0 to its parameter 197"),
@@ -176,14 +176,14 @@ const DRIVE_LEDS: [LedRow; 4] = [
     drive(DriveLight::Green, "the drive has no error", "turn S3 back to 0, or the bus cannot move the drive"),
 ];
 
-/// Both lamps of a port P1 or P2.
+/// States of the two LEDs of port P1 or P2.
 pub const PORT_LEDS: [PortLedRow; 3] = [
     port(PortLight::Off, "no network link", "check the cable and the device at its other end"),
     port(PortLight::Link, "network link, no data traffic", "no action needed"),
     port(PortLight::Active, "network link, data traffic", "no action needed"),
 ];
 
-/// MS and NS.
+/// States of MS and NS.
 pub const BUS_LEDS: [BusLedRow; 12] = [
     bus(BusLamp::Module, BusLight::Off, "no supply", "check the control supply and its fuse"),
     bus(BusLamp::Module, BusLight::Green, "the device is operating", "no action needed"),
@@ -215,7 +215,7 @@ pub const BUS_LEDS: [BusLedRow; 12] = [
 ];
 
 impl LedSubject {
-    /// What a lamp RS485 may show, and what it says.
+    /// Returns all states of the RS485 LED with their meanings.
     pub const fn rows(self) -> &'static [LedRow] {
         match self {
             LedSubject::Adapter => &ADAPTER_LEDS,
@@ -224,14 +224,14 @@ impl LedSubject {
         }
     }
 
-    /// What it says; `None` for what the manual does not have.
+    /// Returns the row of a state; `None` if the manual has none.
     pub fn row(self, light: DriveLight) -> Option<&'static LedRow> {
         self.rows().iter().find(|row| row.light == light)
     }
 }
 
 impl BusLamp {
-    /// As it is printed beside the lamp.
+    /// Returns the label printed beside the LED.
     pub const fn name(self) -> &'static str {
         match self {
             BusLamp::Module => "MS",
@@ -239,7 +239,7 @@ impl BusLamp {
         }
     }
 
-    /// What it says.
+    /// Returns the row of a state.
     pub fn row(self, light: BusLight) -> Option<&'static BusLedRow> {
         BUS_LEDS.iter().find(|row| row.lamp == self && row.light == light)
     }

@@ -1,8 +1,8 @@
-//! HIPERDRIVE: small drives of halstrup-walcher, one behind an EtherNet/IP adapter or up to eight behind a hub. Control and
-//! status words, the state machine, process data, parameter words, parameters, scaling, switches and lamps.
+//! HIPERDRIVE: small drives of halstrup-walcher, one behind an EtherNet/IP adapter or up to eight behind a hub. Control
+//! and status words, the state machine, process data, parameter words, parameters, scaling, switches and LEDs.
 //!
-//! Source: the drive's manual 004 ("the manual" below; the project's reference of it where a section is named so). `D` is
-//! derived, `U` is left open by the manual; where it contradicts itself, reference 8 says what is taken.
+//! Source: the drive's manual 004 ("the manual" below; the project's reference of it where a section is named so). `D`
+//! is derived, `U` is left open by the manual; where it contradicts itself, reference 8 states the interpretation used.
 
 #![warn(missing_docs)]
 
@@ -25,11 +25,11 @@ mod variant;
 #[cfg(test)]
 mod vectors;
 
-/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+/// Identifier of this kind of device on the command line, in profiles and in stored files.
 pub const KIND: &str = "hiperdrive";
-/// Halstrup-Walcher in ODVA's list of makers.
+/// Vendor ID of halstrup-walcher in ODVA's list.
 pub const VENDOR: u16 = 1010;
-/// Assemblies of the cyclic connection: configuration, to the drives, back from them.
+/// Assemblies of the cyclic connection: configuration, output to the drives, input from them.
 pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 
 pub use control_word::{Begins, ControlBit, ControlWord, Direction, Refused, RunEnd};

@@ -1,4 +1,4 @@
-//! How parameters are numbered, where CIP has them, and what a row of their table says (reference 4 and 7).
+//! Parameter numbers, their CIP addresses, and the rows of the parameter table (reference 4 and 7).
 
 use std::fmt;
 use std::time::Duration;
@@ -8,185 +8,185 @@ use super::scaling::{Family, PositionScale};
 use super::travel::{Reach, Travel};
 use super::value::Kind;
 
-/// A drive of a hub: 1 to 8. An adapter has drive 1 alone.
+/// Number of a drive: 1 to 8 at a hub. An adapter has only drive 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct DriveNumber(u8);
 
-/// A parameter's own number: up to 99 of the device, 100 to 199 of drive 1, 200 to 299 of drive 2, and so on to 899. The
-/// manual's text says n · 100 where it is (n − 1) · 100 (reference 8.3).
+/// Number of a parameter: up to 99 for the device, 100 to 199 for drive 1, 200 to 299 for drive 2, and so on to 899.
+/// The manual's text says n · 100 instead of (n − 1) · 100 (reference 8.3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ParameterNumber(u16);
 
-/// A row of the table.
+/// Row of the parameter table.
 #[derive(Clone, Copy, Debug)]
 pub struct ParameterRow {
-    /// Its number, of drive 1 where it is a drive's.
+    /// Number; for a drive parameter, the one of drive 1.
     pub number: u16,
-    /// What it is.
+    /// Name of the parameter.
     pub name: &'static str,
-    /// Of its number; empty where it has none.
+    /// Unit; empty if it has none.
     pub unit: &'static str,
-    /// What its value is.
+    /// Type of the value.
     pub kind: Kind,
-    /// What may be done with it.
+    /// Allowed access.
     pub access: Access,
-    /// It survives the supply, after a save where it was written.
+    /// If set, the value survives a power cycle; a written value must be saved first.
     pub saved: bool,
-    /// The adapter or hub holds it, and not a drive.
+    /// If set, the adapter or hub stores it, not a drive.
     pub(super) kept_by_device: bool,
-    /// What it may be.
+    /// Allowed values.
     pub range: Range,
-    /// How far from 0 it may be in turns of the drive, beside its range; `None` where turns do not bound it.
+    /// Limit from 0 in turns of the drive, in addition to the range; `None` if turns do not limit it.
     pub reach: Option<Reach>,
-    /// What it is from the factory.
+    /// Factory value.
     pub factory: Factory,
-    /// Values that take the device long when they are set; of all others a reply takes as long as of a read.
+    /// Values that take the device long to set; a reply to any other takes as long as to a read.
     pub slow: &'static [SlowSet],
 }
 
-/// A value whose set is answered when it is done, and how long that may take.
+/// Value whose reply arrives only when the device has applied it, with the maximum time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlowSet {
-    /// What is written.
+    /// Written value.
     pub value: i64,
-    /// With an adapter.
+    /// Maximum time with an adapter.
     pub adapter: Duration,
-    /// With a hub.
+    /// Maximum time with a hub.
     pub hub: Duration,
 }
 
-/// What may be done with a parameter.
+/// Access to a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Access {
-    /// It is read.
+    /// Read only.
     Read,
-    /// It is read and written.
+    /// Read and write.
     ReadWrite,
-    /// It is written: reading it says nothing.
+    /// Write only: a read returns nothing useful.
     Write,
 }
 
-/// What a parameter may be.
+/// Allowed values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Range {
-    /// Whatever its kind holds.
+    /// Any value of its type.
     Any,
     /// Between two numbers, both included.
     Within(i64, i64),
-    /// Between two numbers, or a further one that means something of its own.
+    /// Between two numbers, or one further number with a special meaning.
     WithinOr(i64, i64, i64),
-    /// One of these, the least first.
+    /// One of these, smallest first.
     OneOf(&'static [i64]),
 }
 
-/// What a parameter is from the factory.
+/// Factory value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Factory {
-    /// Nothing: it is measured, or says what the device is.
+    /// None: it is measured or identifies the device.
     None,
     /// A number.
     Number(i64),
-    /// One number with an adapter, another with a hub.
+    /// Different numbers for an adapter and for a hub.
     Topology {
-        /// Of a single drive.
+        /// With a single drive.
         adapter: i64,
-        /// Of each drive of a hub.
+        /// For each drive of a hub.
         hub: i64,
     },
-    /// So many times the drive's turns either way: −1 or 1.
+    /// The drive's number of turns either way, times −1 or 1.
     Turns(i32),
-    /// The drive finds it out.
+    /// Determined by the drive.
     Automatic,
 }
 
-/// A number beyond what a parameter may be.
+/// Error for a number outside the allowed values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub struct OutOfRange {
-    /// The parameter's own number.
+    /// Number of the parameter.
     pub number: ParameterNumber,
-    /// What it is.
+    /// Name of the parameter.
     pub name: &'static str,
-    /// As given.
+    /// Rejected value.
     pub value: i64,
-    /// What it may be; never [`Range::Any`].
+    /// Allowed values; never [`Range::Any`].
     pub range: Range,
 }
 
-/// The class of parameters of the device; of drive 1 it is the next one.
+/// CIP class of the device parameters; drive 1 has the next one.
 const CLASS: u16 = 0x64;
 
 impl DriveNumber {
-    /// The first.
+    /// First drive.
     pub const FIRST: DriveNumber = DriveNumber(1);
 
-    /// `None` beyond 1 to 8.
+    /// Creates a drive number; `None` outside 1 to 8.
     pub const fn new(number: u8) -> Option<Self> {
         if 1 <= number && number <= 8 { Some(DriveNumber(number)) } else { None }
     }
 
-    /// Its number.
+    /// Returns the number.
     pub const fn get(self) -> u8 {
         self.0
     }
 
-    /// All that a topology has a place for.
+    /// Returns all drives that a topology has a place for.
     pub fn of(topology: Topology) -> impl Iterator<Item = DriveNumber> {
         (1..=topology.drives()).map(DriveNumber)
     }
 }
 
 impl ParameterRow {
-    /// It is kept by the adapter or hub itself: 47 = −1 and −2 change these, and no others (manual, 47).
+    /// Returns whether the adapter or hub stores it: 47 = −1 and −2 change these parameters and no others (manual, 47).
     pub const fn is_kept_by_device(&self) -> bool {
         self.saved && self.kept_by_device
     }
 }
 
 impl ParameterNumber {
-    /// The parameter with which everything is saved, reset or led back.
+    /// Parameter that saves, resets or restores all parameters.
     pub const SAVE: ParameterNumber = ParameterNumber(47);
 
-    /// `None` for 0 and above 899.
+    /// Creates a parameter number; `None` for 0 and above 899.
     pub const fn new(number: u16) -> Option<Self> {
         if 1 <= number && number <= 899 { Some(ParameterNumber(number)) } else { None }
     }
 
-    /// A number of drive 1 as it is of another drive; `None` where it is the device's, or no drive 1's.
+    /// Converts a number of drive 1 to that of another drive; `None` if it is not a parameter of drive 1.
     pub const fn of_drive(number: u16, drive: DriveNumber) -> Option<Self> {
         if 100 <= number && number <= 199 { Some(ParameterNumber(number + 100 * (drive.0 as u16 - 1))) } else { None }
     }
 
-    /// Its own number.
+    /// Returns the number.
     pub const fn get(self) -> u16 {
         self.0
     }
 
-    /// Whose it is; `None` for the device's.
+    /// Returns the drive it belongs to; `None` for a device parameter.
     pub const fn drive(self) -> Option<DriveNumber> {
         DriveNumber::new((self.0 / 100) as u8)
     }
 
-    /// The number of the same parameter of drive 1, or of the device.
+    /// Returns the number of the same parameter of drive 1, or of the device.
     pub const fn base(self) -> u16 {
         if self.0 < 100 { self.0 } else { 100 + self.0 % 100 }
     }
 
-    /// Its row; `None` where the manual has none.
+    /// Returns the table row; `None` if the manual has none.
     pub fn row(self) -> Option<&'static ParameterRow> {
         super::parameters::PARAMETERS.iter().find(|row| row.number == self.base())
     }
 
-    /// The class in which CIP has it.
+    /// Returns the CIP class that contains the parameter.
     pub const fn class(self) -> u16 {
         CLASS + self.0 / 100
     }
 
-    /// The attribute of instance 1 of its class.
+    /// Returns its attribute of instance 1 of that class.
     pub const fn attribute(self) -> u16 {
         self.base()
     }
 
-    /// By class and attribute; `None` for what is no parameter's.
+    /// Finds a number by class and attribute; `None` if they address no parameter.
     pub fn of_attribute(class: u16, attribute: u16) -> Option<Self> {
         match class.checked_sub(CLASS)? {
             0 if attribute < 100 => ParameterNumber::new(attribute),
@@ -202,8 +202,8 @@ impl fmt::Display for ParameterNumber {
 }
 
 impl ParameterRow {
-    /// What it may be, with the limits of its kind where there are no others, and no more turns than the drive has as far as
-    /// those are known; `None` for texts.
+    /// Returns the allowed values, with the limits of the type if there are no others, and limited to the drive's turns
+    /// as far as those are known; `None` for texts.
     pub fn allowed(&self, travel: Travel) -> Option<Range> {
         let (low, high) = self.kind.limits()?;
         Some(match (self.range, self.reach.and_then(|reach| travel.steps(reach))) {
@@ -213,24 +213,24 @@ impl ParameterRow {
         })
     }
 
-    /// That it may be this number. What depends on other parameters the drive checks itself: 160 is above 158, position,
-    /// target and 198 lie between them.
+    /// Checks that the parameter may have this number. The drive itself checks what depends on other parameters: 160 is
+    /// above 158; position, target and 198 lie between them.
     ///
     /// # Errors
-    /// [`OutOfRange`] with what it may be. A text may be no number.
+    /// Returns [`OutOfRange`] with the allowed values. A text accepts no number.
     pub fn check(&self, number: ParameterNumber, value: i64, travel: Travel) -> Result<i64, OutOfRange> {
         let range = self.allowed(travel).unwrap_or(Range::OneOf(&[]));
         if range.holds(value) { Ok(value) } else { Err(OutOfRange { number, name: self.name, value, range }) }
     }
 
-    /// How long the device may take to answer when this value is set; `None` where that is no longer than any other reply. As
-    /// long as with a hub where it is not known which device it is.
+    /// Returns how long the device may take to answer when this value is set; `None` if no longer than for any other
+    /// reply. If the topology is unknown, the time of a hub applies.
     pub fn takes(&self, value: i64, topology: Option<Topology>) -> Option<Duration> {
         let slow = self.slow.iter().find(|slow| slow.value == value)?;
         Some(if topology == Some(Topology::Adapter) { slow.adapter } else { slow.hub })
     }
 
-    /// What it is from the factory, with factory scaling; `None` where nothing is said, or the drive finds it out.
+    /// Returns the factory value with factory scaling; `None` if the manual gives none or the drive determines it.
     pub fn factory_value(&self, topology: Topology, family: Family) -> Option<i64> {
         match self.factory {
             Factory::None | Factory::Automatic => None,
@@ -242,7 +242,7 @@ impl ParameterRow {
 }
 
 impl Range {
-    /// Whether a number is in it.
+    /// Returns whether the range contains a number.
     pub fn holds(self, value: i64) -> bool {
         match self {
             Range::Any => true,

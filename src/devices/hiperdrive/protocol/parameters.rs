@@ -1,4 +1,4 @@
-//! All parameters, of the device and of drive 1 (reference 4). Names are ours: the manual's are German.
+//! All parameters of the device and of drive 1 (reference 4). The names are the program's: the manual's are German.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
 use super::travel::Reach;
 use super::value::Kind;
 
-/// Something that is only read.
+/// Builds a row that is read-only.
 const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -> ParameterRow {
     ParameterRow {
         number,
@@ -32,60 +32,60 @@ const fn read(number: u16, name: &'static str, kind: Kind, unit: &'static str) -
 }
 
 impl ParameterRow {
-    /// It can be written, and is gone without supply.
+    /// Makes it writable; the value is lost without supply.
     const fn written(self, range: Range, factory: Factory) -> Self {
         ParameterRow { access: Access::ReadWrite, range, factory, ..self }
     }
 
-    /// It is a drive's, and kept by the adapter or hub (manual, 152: sections 3.4 and 4.5; 190: its own row).
+    /// Marks a drive parameter that the adapter or hub stores (manual, 152: sections 3.4 and 4.5; 190: its own row).
     const fn in_device(self) -> Self {
         ParameterRow { kept_by_device: true, ..self }
     }
 
-    /// It can be written, and is kept by a save.
+    /// Makes it writable; a save stores the value.
     const fn kept(self, range: Range, factory: Factory) -> Self {
         ParameterRow { saved: true, ..self.written(range, factory) }
     }
 
-    /// It is no more turns than the drive has.
+    /// Limits it to the turns of the drive.
     const fn reaching(self, reach: Reach) -> Self {
         ParameterRow { reach: Some(reach), ..self }
     }
 
-    /// Some of its values take long.
+    /// Adds values that take long to set.
     const fn slow(self, slow: &'static [SlowSet]) -> Self {
         ParameterRow { slow, ..self }
     }
 }
 
-/// A store in the EEPROM takes so long at most (manual 6.2, parameter 47): so does that of the TCP/IP object, which is stored
-/// with each change (5).
+/// Maximum time of a store in the EEPROM (manual 6.2, parameter 47), also of the TCP/IP object, which is stored with
+/// each change (5).
 pub const STORES: Duration = Duration::from_millis(200);
-/// A reset of a drive: as −4 of an adapter, which has one.
+/// Maximum time to reset one drive: as −4 of an adapter, which has one.
 const DRIVE_RESETS: Duration = Duration::from_secs(2);
-/// A reset of all drives of a hub.
+/// Maximum time to reset all drives of a hub.
 const HUB_RESETS: Duration = Duration::from_secs(8);
 
-/// A save.
 const fn stores(value: i64) -> SlowSet {
     SlowSet { value, adapter: STORES, hub: STORES }
 }
 
-/// Something with all drives.
+/// Builds a value that affects all drives.
 const fn all_drives(value: i64) -> SlowSet {
     SlowSet { value, adapter: DRIVE_RESETS, hub: HUB_RESETS }
 }
 
-/// A reset of one drive.
+/// Builds a value that resets one drive.
 const fn one_drive(value: i64) -> SlowSet {
     SlowSet { value, adapter: DRIVE_RESETS, hub: DRIVE_RESETS }
 }
 
-/// Parameter 47. Of −3, −2 and −1 the manual says nothing (`D`: they hand all parameters to all drives over RS-485; as −4).
+/// Parameter 47. The manual gives no time for −3, −2 and −1 (`D`: as −4, since they send all parameters to all drives
+/// over RS-485).
 const SAVE_AND_RESET: &[SlowSet] = &[all_drives(-4), all_drives(-3), all_drives(-2), all_drives(-1), stores(1)];
-/// Parameter 152: 0 → 1 resets the drive (`D`: how long that takes).
+/// Parameter 152: 0 → 1 resets the drive (`D`: the time it takes).
 const REQUEST: &[SlowSet] = &[one_drive(1)];
-/// Parameter 199 (`D`: how long that takes).
+/// Parameter 199 (`D`: the time it takes).
 const RESET_DRIVE: &[SlowSet] = &[one_drive(0), one_drive(1)];
 
 const fn text(number: u16, name: &'static str, unit: &'static str) -> ParameterRow {
@@ -112,7 +112,7 @@ const fn within(range: RangeInclusive<u16>) -> Range {
     Within(*range.start() as i64, *range.end() as i64)
 }
 
-/// All of them, by number. That 11 and 119 have a sign is assumed (`U`): the manual has their bits alone.
+/// All parameters, by number. That 11 and 119 are signed is assumed (`U`): the manual gives only their number of bits.
 pub const PARAMETERS: &[ParameterRow] = &[
     read(9, "control supply", U16, "0.1 V"),
     read(11, "device temperature", I16, "°C"),

@@ -1,67 +1,67 @@
-//! Parameter words in the process data: a request is repeated until its reply has come (reference 6).
+//! Parameter words in the process data: a request is repeated until its reply has arrived (reference 6).
 
 use std::fmt;
 
 use super::process_data::ByteOrder;
 
-/// Eight bytes, either way.
+/// Parameter words: eight bytes in either direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Pkw {
-    /// PKE: what is asked or answered (bits 15 to 12), SPM (bit 11), the parameter's number.
+    /// PKE: task or answer (bits 15 to 12), SPM (bit 11) and the parameter number.
     pub pke: u16,
     /// IND: the element of an array.
     pub ind: u16,
-    /// PWE: the value; of a word the lower half.
+    /// PWE: the value; a word uses the lower half.
     pub pwe: u32,
 }
 
-/// What is asked: bits 15 to 12 of PKE.
+/// Task of a request: bits 15 to 12 of PKE.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Task {
-    /// Nothing.
+    /// No task.
     None = 0,
-    /// A parameter is read.
+    /// Reads a parameter.
     Read = 1,
-    /// A word is written.
+    /// Writes a word.
     WriteWord = 2,
-    /// A double word is written.
+    /// Writes a double word.
     WriteDouble = 3,
-    /// An element of an array is read: four characters of a text.
+    /// Reads an element of an array: four characters of a text.
     ReadElement = 6,
-    /// A word of an array is written.
+    /// Writes a word of an array.
     WriteElementWord = 7,
-    /// A double word of an array is written.
+    /// Writes a double word of an array.
     WriteElementDouble = 8,
-    /// How many elements it has.
+    /// Reads the number of elements.
     Count = 9,
 }
 
-/// What comes back. The manual's text names the numbers of requests for it (reference 8.4).
+/// Answer in a reply. The manual's text gives the numbers of requests for it (reference 8.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Answer {
-    /// 0: nothing was asked.
+    /// 0: there was no request.
     None,
-    /// 1, and 4 of an array.
+    /// 1, or 4 for an array.
     Word(u16),
-    /// 2, and 5 of an array.
+    /// 2, or 5 for an array.
     Double(u32),
-    /// 6.
+    /// 6: the number of elements.
     Elements(u32),
-    /// 7.
+    /// 7: the request was refused.
     Refused(PkwError),
-    /// Another number.
+    /// Any other number.
     Unknown,
 }
 
-/// Why a request was refused. Codes that are not known are kept.
+/// Reason for a refused request. Unknown codes are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PkwError(u32);
 
 const NUMBER: u16 = 0x07FF;
 
 impl Task {
-    /// All of them.
+    /// All tasks.
     pub const ALL: [Task; 8] = [
         Task::None,
         Task::Read,
@@ -73,12 +73,12 @@ impl Task {
         Task::Count,
     ];
 
-    /// Its number.
+    /// Returns the task number.
     pub const fn number(self) -> u8 {
         self as u8
     }
 
-    /// What it asks for.
+    /// Returns the task name.
     pub const fn name(self) -> &'static str {
         match self {
             Task::None => "nothing",
@@ -92,7 +92,7 @@ impl Task {
         }
     }
 
-    /// Whether an answer may be one to this. A value may come as a word or a double word where it is read.
+    /// Returns whether an answer can belong to this task. A read may return a word or a double word.
     const fn takes(self, answer: u8) -> bool {
         match self {
             Task::None => answer == 0,
@@ -108,18 +108,18 @@ impl Task {
 }
 
 impl Pkw {
-    /// A request about a parameter, of which 11 bits are sent; of a word the lower 16 bits of the value.
+    /// Builds a request for a parameter, with 11 bits of its number; a word uses the lower 16 bits of the value.
     pub const fn request(task: Task, number: u16, element: u16, value: u32) -> Self {
         Pkw { pke: (task.number() as u16) << 12 | number & NUMBER, ind: element, pwe: value }
     }
 
-    /// Reads eight bytes.
+    /// Parses eight bytes.
     pub const fn parse(bytes: [u8; 8], order: ByteOrder) -> Self {
         let [k0, k1, i0, i1, value @ ..] = bytes;
         Pkw { pke: order.u16([k0, k1]), ind: order.u16([i0, i1]), pwe: order.u32(value) }
     }
 
-    /// Its bytes.
+    /// Returns the bytes.
     pub const fn emit(self, order: ByteOrder) -> [u8; 8] {
         let [k0, k1] = order.of_u16(self.pke);
         let [i0, i1] = order.of_u16(self.ind);
@@ -127,17 +127,17 @@ impl Pkw {
         [k0, k1, i0, i1, a, b, c, d]
     }
 
-    /// The parameter it is about.
+    /// Returns the parameter number.
     pub const fn number(self) -> u16 {
         self.pke & NUMBER
     }
 
-    /// What a request asks for; `None` for a number that there is not.
+    /// Returns the task of a request; `None` for an undefined number.
     pub fn task(self) -> Option<Task> {
         Task::ALL.into_iter().find(|task| task.number() == self.code())
     }
 
-    /// What a reply says.
+    /// Returns the answer of a reply.
     pub const fn answer(self) -> Answer {
         match self.code() {
             0 => Answer::None,
@@ -149,8 +149,8 @@ impl Pkw {
         }
     }
 
-    /// The answer in this reply, where it is one to that request. Until then the request is repeated; before the same one is
-    /// made again, [`Task::None`] has to be made and answered.
+    /// Returns the answer if this reply belongs to that request. Until then the request is repeated; before the same
+    /// request is sent again, [`Task::None`] must be sent and answered.
     pub fn answer_to(self, request: Pkw) -> Option<Answer> {
         let task = request.task()?;
         let same = task == Task::None || self.number() == request.number();
@@ -163,34 +163,34 @@ impl Pkw {
 }
 
 impl PkwError {
-    /// 0: there is no such parameter.
+    /// 0: no such parameter.
     pub const NO_PARAMETER: PkwError = PkwError(0);
-    /// 1: it can only be read.
+    /// 1: read-only parameter.
     pub const READ_ONLY: PkwError = PkwError(1);
-    /// 2: beyond its limits.
+    /// 2: value outside the limits.
     pub const RANGE: PkwError = PkwError(2);
-    /// 3: the text or array ends before.
+    /// 3: element beyond the end of the text or array.
     pub const NO_ELEMENT: PkwError = PkwError(3);
-    /// 4: it has no elements.
+    /// 4: parameter without elements.
     pub const NO_ARRAY: PkwError = PkwError(4);
-    /// 5: a word where it is a double word, or the other way; a text.
+    /// 5: word instead of a double word or vice versa; a text.
     pub const TYPE: PkwError = PkwError(5);
-    /// 17: not in this state.
+    /// 17: not possible in this state.
     pub const STATE: PkwError = PkwError(17);
-    /// 18: whatever else.
+    /// 18: any other reason.
     pub const OTHER: PkwError = PkwError(18);
 
-    /// Any number is a code.
+    /// Creates an error from any code.
     pub const fn new(code: u32) -> Self {
         PkwError(code)
     }
 
-    /// Its number.
+    /// Returns the code.
     pub const fn code(self) -> u32 {
         self.0
     }
 
-    /// What it says.
+    /// Returns the meaning of the code.
     pub const fn meaning(self) -> &'static str {
         match self.0 {
             0 => "no such parameter",

@@ -1,118 +1,118 @@
-//! Process data: what goes to the drives with every packet, and what comes back (reference 2).
+//! Process data: the cyclic output to the drives and the input from them (reference 2).
 
 use super::control_word::{ControlWord, Refused};
 use super::pkw::Pkw;
 use super::status_word::StatusWord;
 use crate::parameter::Words;
 
-/// Which byte of a number comes first. The manual does not say it (reference 8.11): the low one, unless a device is seen to
-/// do otherwise.
+/// Byte order of numbers. The manual does not define it (reference 8.11): little-endian unless a device is observed to
+/// differ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ByteOrder {
-    /// As everywhere in CIP.
+    /// Low byte first, as everywhere in CIP.
     #[default]
     Little,
-    /// The high byte first.
+    /// High byte first.
     Big,
 }
 
 impl ByteOrder {
-    /// As links spell it.
+    /// Spelling in link URLs.
     pub const WORDS: Words<ByteOrder> = Words(&[("little", ByteOrder::Little), ("big", ByteOrder::Big)]);
 }
 
-/// What stands behind an IP address.
+/// Device at an IP address and the number of its drives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Topology {
-    /// One drive.
+    /// Adapter with one drive.
     Adapter,
-    /// Up to four.
+    /// Hub with up to four drives.
     Hub4,
-    /// Up to eight.
+    /// Hub with up to eight drives.
     Hub8,
 }
 
-/// What process data look like.
+/// Layout of the process data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Layout {
-    /// How many drives have a place.
+    /// Topology, which gives the number of drive places.
     pub topology: Topology,
-    /// Eight bytes of parameter words behind the drives.
+    /// If set, eight bytes of parameter words follow the drives.
     pub pkw: bool,
-    /// Of every number.
+    /// Byte order of every number.
     pub order: ByteOrder,
 }
 
-/// A percentage of a parameter's value: 0 to 100.
+/// Percentage of a parameter's value: 0 to 100.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Percent(u8);
 
-/// What a host wants of a drive.
+/// Setpoint of a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Setpoint {
-    /// STW.
+    /// Control word (STW).
     pub control: ControlWord,
-    /// Of the greatest speed (parameter 166). With 0 nothing begins.
+    /// Speed as a percentage of the maximum speed (parameter 166). With 0 no motion starts.
     pub speed: Percent,
-    /// Of the nominal torque, in steps of 25 %. With 0 nothing begins.
+    /// Torque as a percentage of the nominal torque, in steps of 25 %. With 0 no motion starts.
     pub torque: Percent,
-    /// In steps as scaled.
+    /// Target in scaled steps.
     pub target: i32,
 }
 
-/// What a drive is sent: a set-point, or anything else.
+/// Output data of a drive: a setpoint or any other bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutData {
-    /// STW.
+    /// Control word (STW).
     pub control: u16,
-    /// Percent.
+    /// Speed in percent.
     pub speed: u8,
-    /// Percent.
+    /// Torque in percent.
     pub torque: u8,
-    /// In steps as scaled.
+    /// Target in scaled steps.
     pub target: i32,
 }
 
-/// What a drive says.
+/// Input data of a drive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Actual {
-    /// ZSW.
+    /// Status word (ZSW).
     pub status: StatusWord,
-    /// As parameters 162 and 164 scale it: tenths of rpm from the factory.
+    /// Speed as scaled by parameters 162 and 164: tenths of rpm with factory settings.
     pub speed: i16,
-    /// In steps as scaled.
+    /// Position in scaled steps.
     pub position: i32,
 }
 
-/// All that goes to the drives.
+/// Output image for all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutImage {
-    /// As many as the layout has.
+    /// Drives, as many as the layout has.
     pub drives: Vec<OutData>,
-    /// Where the layout has it.
+    /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
 
-/// All that comes back.
+/// Input image of all drives.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InImage {
-    /// As many as the layout has.
+    /// Drives, as many as the layout has.
     pub drives: Vec<Actual>,
-    /// Where the layout has it.
+    /// Parameter words, if the layout has them.
     pub pkw: Option<Pkw>,
 }
 
-/// Bytes that are no image of a layout.
+/// Error for bytes that do not fit a layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{got} bytes of process data where {expected} were expected")]
 pub struct ImageError {
-    /// The layout's.
+    /// Length of the layout.
     pub expected: usize,
-    /// How many there were.
+    /// Actual length.
     pub got: usize,
 }
 
-/// Bytes of a drive, and of the parameter words.
+/// Bytes of one drive, and of the parameter words.
 const PLACE: usize = 8;
 
 impl ByteOrder {
@@ -146,10 +146,10 @@ impl ByteOrder {
 }
 
 impl Topology {
-    /// All of them.
+    /// All topologies.
     pub const ALL: [Topology; 3] = [Topology::Adapter, Topology::Hub4, Topology::Hub8];
 
-    /// Places for drives.
+    /// Returns the number of drive places.
     pub const fn drives(self) -> u8 {
         match self {
             Topology::Adapter => 1,
@@ -158,7 +158,7 @@ impl Topology {
         }
     }
 
-    /// As parameter 13 spells it.
+    /// Returns the spelling of parameter 13.
     pub const fn category(self) -> &'static str {
         match self {
             Topology::Adapter => "HIPERDRIVE SINGLE",
@@ -167,19 +167,19 @@ impl Topology {
         }
     }
 
-    /// By what parameter 13 says.
+    /// Finds a topology by the value of parameter 13.
     pub fn of_category(category: &str) -> Option<Self> {
         Topology::ALL.into_iter().find(|topology| topology.category() == category.trim())
     }
 }
 
 impl Layout {
-    /// Bytes each way: 8 a drive, 8 of parameter words.
+    /// Returns the bytes in each direction: 8 per drive, 8 of parameter words.
     pub const fn length(self) -> usize {
         PLACE * (self.topology.drives() as usize + self.pkw as usize)
     }
 
-    /// Every layout that has so many bytes, in the order that is assumed.
+    /// Returns every layout of that length, in the order in which they are assumed.
     pub fn of_length(length: usize) -> impl Iterator<Item = Layout> {
         let all = Topology::ALL
             .into_iter()
@@ -187,7 +187,7 @@ impl Layout {
         all.filter(move |layout| layout.length() == length)
     }
 
-    /// The places of the drives, and the parameter words.
+    /// Splits bytes into the places of the drives and the parameter words.
     fn places(self, bytes: &[u8]) -> Result<(Vec<[u8; PLACE]>, Option<Pkw>), ImageError> {
         let (places, rest) = bytes.as_chunks::<PLACE>();
         if !rest.is_empty() || bytes.len() != self.length() {
@@ -199,7 +199,7 @@ impl Layout {
         }
     }
 
-    /// The image of places; those that are missing are zero, those that are too many are left off.
+    /// Builds an image from places; missing ones are zero, surplus ones are dropped.
     fn image(self, places: impl Iterator<Item = [u8; PLACE]>, pkw: Option<Pkw>) -> Vec<u8> {
         let drives = usize::from(self.topology.drives());
         let words = self.pkw.then(|| pkw.unwrap_or_default().emit(self.order));
@@ -208,25 +208,25 @@ impl Layout {
 }
 
 impl Percent {
-    /// Nothing of it.
+    /// 0 %.
     pub const NONE: Percent = Percent(0);
-    /// All of it.
+    /// 100 %.
     pub const FULL: Percent = Percent(100);
 
-    /// `None` above 100.
+    /// Creates a percentage; `None` above 100.
     pub const fn new(percent: u8) -> Option<Self> {
         if percent <= 100 { Some(Percent(percent)) } else { None }
     }
 
-    /// Its number.
+    /// Returns the number.
     pub const fn get(self) -> u8 {
         self.0
     }
 }
 
 impl Setpoint {
-    /// What follows speed mode and opens every connection: ready, nothing to move with, and the target where the drive
-    /// stands, so that no stale one is left.
+    /// Returns the setpoint that follows speed mode and starts every connection: ready, no speed and no torque, and the
+    /// target at the actual position, so that no stale target remains.
     pub const fn standing(actual: Actual) -> Self {
         let none = Percent::NONE;
         Setpoint { control: ControlWord::READY, speed: none, torque: none, target: actual.position }
@@ -241,10 +241,10 @@ impl From<Setpoint> for OutData {
 }
 
 impl OutData {
-    /// The control word in it.
+    /// Returns the control word.
     ///
     /// # Errors
-    /// [`Refused`] with reserved bits.
+    /// Returns [`Refused`] if a reserved bit is set.
     pub const fn control(&self) -> Result<ControlWord, Refused> {
         ControlWord::parse(self.control)
     }
@@ -280,34 +280,34 @@ impl Actual {
 }
 
 impl OutImage {
-    /// Reads an image.
+    /// Parses an image.
     ///
     /// # Errors
-    /// [`ImageError`] where the length is not the layout's.
+    /// Returns [`ImageError`] if the length is not the layout's.
     pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ImageError> {
         let (places, pkw) = layout.places(bytes)?;
         let drives = places.into_iter().map(|place| OutData::parse(place, layout.order)).collect();
         Ok(OutImage { drives, pkw })
     }
 
-    /// Its bytes. Drives that are missing are left alone (zero); those that have no place are left off.
+    /// Returns the bytes. Missing drives are zero, which does not control them; drives without a place are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }
 }
 
 impl InImage {
-    /// Reads an image.
+    /// Parses an image.
     ///
     /// # Errors
-    /// [`ImageError`] where the length is not the layout's.
+    /// Returns [`ImageError`] if the length is not the layout's.
     pub fn parse(bytes: &[u8], layout: Layout) -> Result<Self, ImageError> {
         let (places, pkw) = layout.places(bytes)?;
         let drives = places.into_iter().map(|place| Actual::parse(place, layout.order)).collect();
         Ok(InImage { drives, pkw })
     }
 
-    /// Its bytes. Drives that are missing are zero; those that have no place are left off.
+    /// Returns the bytes. Missing drives are zero; drives without a place are dropped.
     pub fn emit(&self, layout: Layout) -> Vec<u8> {
         layout.image(self.drives.iter().map(|drive| drive.emit(layout.order)), self.pkw)
     }

@@ -1,14 +1,14 @@
-//! Words that lead a drive somewhere, one after the other (reference 3, `D`).
+//! Sequences of control words that bring a drive into a state (reference 3, `D`).
 
 use super::control_word::ControlWord;
 use super::status_word::{StatusBit, StatusWord};
 
-/// A word, and what the drive has to say before the next one.
+/// Control word and the status required before the next one.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// What is sent.
+    /// Word to send.
     pub word: ControlWord,
-    /// Bits with what they have to be.
+    /// Status bits with their required values.
     pub until: &'static [(StatusBit, bool)],
 }
 
@@ -20,11 +20,11 @@ const READY: Step = step(ControlWord::READY, &[(StatusBit::Ready, true), (Status
 const OPERATIONAL: Step = step(ControlWord::OPERATIONAL, &[(StatusBit::Operational, true)]);
 const ENABLED: Step = step(ControlWord::ENABLED, &[(StatusBit::OperationEnabled, true)]);
 
-/// From nothing to enabled. [`ControlWord::holding`] follows.
+/// From off to enabled. [`ControlWord::holding`] follows.
 pub const ENABLE: [Step; 4] = [step(ControlWord::OFF, &[]), READY, OPERATIONAL, ENABLED];
 
-/// From a fault to enabled. Bit 0 stays set over the acknowledgement, so that its falling edge is left for the lock.
-/// [`ControlWord::holding`] follows.
+/// From a fault to enabled. Bit 0 stays set during the acknowledgement, so that its falling edge remains available for
+/// the lock. [`ControlWord::holding`] follows.
 pub const ACKNOWLEDGE: [Step; 5] = [
     step(ControlWord::ACKNOWLEDGE, &[]),
     step(ControlWord::OPERATIONAL, &[(StatusBit::Fault, false), (StatusBit::SwitchOnLock, true)]),
@@ -33,11 +33,11 @@ pub const ACKNOWLEDGE: [Step; 5] = [
     ENABLED,
 ];
 
-/// Out of the lock where bit 0 has fallen before: there has to be something to fall.
+/// Out of the lock if bit 0 is already clear: it is set first, since the lock needs its falling edge.
 pub const UNLOCK: [Step; 2] = [step(ControlWord::OPERATIONAL, &[]), READY];
 
 impl Step {
-    /// The drive is where this step leads.
+    /// Returns whether the drive has reached the state of this step.
     pub fn is_done(&self, status: StatusWord) -> bool {
         self.until.iter().all(|(bit, set)| status.has(*bit) == *set)
     }

@@ -1,27 +1,28 @@
-//! Steps, turns, millimetres and rpm: how parameters 154 to 164 scale what is sent (reference 5).
+//! Conversion between steps, turns, millimetres and rpm by parameters 154 to 164 (reference 5).
 
-/// Steps as they are sent ↔ turns: 256 · numerator / denominator steps a turn (the manual's formula 8.4 is garbled).
+/// Conversion between transmitted steps and turns: 256 · numerator / denominator steps per turn (the manual's formula
+/// 8.4 is garbled).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PositionScale {
     numerator: u16,
     denominator: u16,
 }
 
-/// Speed as it is sent ↔ rpm: numerator / denominator for 1 rpm.
+/// Conversion between transmitted speed and rpm: numerator / denominator per 1 rpm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SpeedScale {
     numerator: u16,
     denominator: u16,
 }
 
-/// A length, exact to the nanometre.
+/// Length, exact to the nanometre.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Length {
-    /// How many.
+    /// Number of nanometres.
     pub nanometres: u64,
 }
 
-/// How far a drive turns either way.
+/// Drive family, which determines the turns either way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Family {
     /// HDA30, HDA45; HRA (`U`).
@@ -32,7 +33,7 @@ pub enum Family {
     Pse441,
 }
 
-/// Why a scale cannot be.
+/// Reason why a scale is impossible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScaleError {
     /// A numerator or denominator is 0.
@@ -46,26 +47,26 @@ pub enum ScaleError {
         "the pitch is {steps} steps, which needs {numerator}/{denominator}; both may be up to 65535: choose another step"
     )]
     TooFine {
-        /// Steps a turn, rounded.
+        /// Steps per turn, rounded.
         steps: u64,
-        /// In lowest terms.
+        /// Numerator in lowest terms.
         numerator: u64,
-        /// In lowest terms.
+        /// Denominator in lowest terms.
         denominator: u64,
     },
 }
 
-/// Steps a turn with a scale of 1/1.
+/// Steps per turn with a scale of 1/1.
 const UNIT: i64 = 256;
 
 impl PositionScale {
-    /// 256/1: 65536 steps a turn.
+    /// 256/1: 65536 steps per turn.
     pub const FACTORY: PositionScale = PositionScale { numerator: 256, denominator: 1 };
 
-    /// Of parameters 154 and 156.
+    /// Creates a scale from parameters 154 and 156.
     ///
     /// # Errors
-    /// [`ScaleError::Zero`].
+    /// Returns [`ScaleError::Zero`] if either is 0.
     pub const fn new(numerator: u16, denominator: u16) -> Result<Self, ScaleError> {
         match (numerator, denominator) {
             (0, _) | (_, 0) => Err(ScaleError::Zero),
@@ -73,11 +74,11 @@ impl PositionScale {
         }
     }
 
-    /// The scale with which a step is a certain length on a spindle of this pitch. Where a turn has whole steps, numerator is
-    /// their number and denominator 256, if that is possible.
+    /// Returns the scale that gives a step this length on a spindle of this pitch. If a turn has whole steps, the
+    /// numerator is their number and the denominator 256, where possible.
     ///
     /// # Errors
-    /// [`ScaleError`] where either is 0, or no scale has exactly this step.
+    /// Returns [`ScaleError`] if either length is 0, or no scale gives exactly this step.
     pub fn for_spindle(pitch: Length, step: Length) -> Result<Self, ScaleError> {
         let (pitch, step) = (pitch.nanometres, step.nanometres);
         if pitch == 0 || step == 0 {
@@ -87,50 +88,50 @@ impl PositionScale {
             Some(PositionScale { numerator: numerator.try_into().ok()?, denominator: denominator.try_into().ok()? })
         };
         let whole = pitch.is_multiple_of(step).then(|| exact(pitch / step, UNIT.unsigned_abs())).flatten();
-        // Steps a turn are pitch / step, and the scale is a 256th of them.
+        // Steps per turn are pitch / step, and the scale is 1/256 of them.
         let divisor = gcd(pitch, step.saturating_mul(UNIT.unsigned_abs()));
         let (numerator, denominator) = (pitch / divisor, step.saturating_mul(UNIT.unsigned_abs()) / divisor);
         let steps = pitch.saturating_add(step / 2) / step;
         whole.or_else(|| exact(numerator, denominator)).ok_or(ScaleError::TooFine { steps, numerator, denominator })
     }
 
-    /// Parameter 154.
+    /// Returns parameter 154.
     pub const fn numerator(self) -> u16 {
         self.numerator
     }
 
-    /// Parameter 156.
+    /// Returns parameter 156.
     pub const fn denominator(self) -> u16 {
         self.denominator
     }
 
-    /// Steps a turn; not always a whole number.
+    /// Returns the steps per turn; not always a whole number.
     pub fn steps_per_turn(self) -> f64 {
         256.0 * f64::from(self.numerator) / f64::from(self.denominator)
     }
 
-    /// Steps of so many degrees, rounded up, at least 1.
+    /// Converts degrees to steps, rounded up, at least 1.
     pub fn steps_of_degrees(self, degrees: f64) -> u32 {
-        // A cast of a float saturates.
+        // The float cast saturates.
         (self.steps_per_turn() * degrees / 360.0).ceil().max(1.0) as u32
     }
 
-    /// Steps of so many turns, rounded towards 0; `None` where they do not fit into 32 bits.
+    /// Converts turns to steps, rounded towards 0; `None` if they do not fit into 32 bits.
     pub fn steps_of_turns(self, turns: i32) -> Option<i32> {
         i32::try_from(self.whole_steps(turns)).ok()
     }
 
-    /// Steps of so many turns, rounded towards 0, whether they fit into 32 bits or not.
+    /// Converts turns to steps, rounded towards 0, without a 32-bit limit.
     pub fn whole_steps(self, turns: i32) -> i64 {
         i64::from(turns) * UNIT * i64::from(self.numerator) / i64::from(self.denominator)
     }
 
-    /// Turns of so many steps.
+    /// Converts steps to turns.
     pub fn turns(self, steps: i32) -> f64 {
         f64::from(steps) / self.steps_per_turn()
     }
 
-    /// Millimetres of so many steps on a spindle of this pitch.
+    /// Converts steps to millimetres on a spindle of this pitch.
     pub fn millimetres(self, steps: i32, pitch: Length) -> f64 {
         self.turns(steps) * pitch.nanometres as f64 / 1e6
     }
@@ -140,10 +141,10 @@ impl SpeedScale {
     /// 10/1: tenths of rpm.
     pub const FACTORY: SpeedScale = SpeedScale { numerator: 10, denominator: 1 };
 
-    /// Of parameters 162 and 164.
+    /// Creates a scale from parameters 162 and 164.
     ///
     /// # Errors
-    /// [`ScaleError::Zero`].
+    /// Returns [`ScaleError::Zero`] if either is 0.
     pub const fn new(numerator: u16, denominator: u16) -> Result<Self, ScaleError> {
         match (numerator, denominator) {
             (0, _) | (_, 0) => Err(ScaleError::Zero),
@@ -151,20 +152,20 @@ impl SpeedScale {
         }
     }
 
-    /// What a speed is in rpm.
+    /// Converts a transmitted speed to rpm.
     pub fn rpm(self, speed: i16) -> f64 {
         f64::from(speed) * f64::from(self.denominator) / f64::from(self.numerator)
     }
 
-    /// As it is sent: the nearest number that fits into 16 bits.
+    /// Converts rpm to the transmitted speed: the nearest number that fits into 16 bits.
     pub fn speed(self, rpm: f64) -> i16 {
-        // A cast of a float saturates.
+        // The float cast saturates.
         (rpm * f64::from(self.numerator) / f64::from(self.denominator)).round() as i16
     }
 }
 
 impl Family {
-    /// Turns either way, at most.
+    /// Returns the maximum turns either way.
     pub const fn most_turns(self) -> i32 {
         match self {
             Family::Short => 512,
@@ -173,7 +174,7 @@ impl Family {
         }
     }
 
-    /// Turns either way, as parameters 158 and 160 come from the factory.
+    /// Returns the turns either way that parameters 158 and 160 have as factory values.
     pub const fn factory_turns(self) -> i32 {
         match self {
             Family::Short => 511,
@@ -183,12 +184,13 @@ impl Family {
     }
 }
 
-/// Whole turns and steps within the turn, of a position with 65536 steps a turn. −1 step is turn −1.
+/// Splits a position with 65536 steps per turn into whole turns and steps within the turn. −1 step is in turn −1.
 pub const fn turns(position: i32) -> (i16, u16) {
     ((position >> 16) as i16, position as u16)
 }
 
-/// What parameter 198 becomes: the nearest multiple of 64, the farther one from 0 of two (`U`); `None` beyond 32 bits.
+/// Rounds to the value that parameter 198 takes: the nearest multiple of 64, away from 0 in a tie (`U`); `None` beyond
+/// 32 bits.
 pub fn nearest_reference(position: i32) -> Option<i32> {
     const GRAIN: i64 = 64;
     let position = i64::from(position);
@@ -196,7 +198,7 @@ pub fn nearest_reference(position: i32) -> Option<i32> {
     i32::try_from(rounded).ok()
 }
 
-/// Percent of torque as the drive takes it: the next 25 % above.
+/// Returns the torque percentage that the drive applies: rounded up to a multiple of 25 %.
 pub const fn effective_torque(percent: u8) -> u8 {
     percent.div_ceil(25).saturating_mul(25)
 }

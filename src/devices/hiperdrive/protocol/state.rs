@@ -1,29 +1,30 @@
-//! The drive's states and what leads from one to another (reference 3, reconstructed from the manual's 6.4 and 6.5, `D`).
+//! States of the drive and the transitions between them (reference 3, reconstructed from the manual's 6.4 and 6.5,
+//! `D`).
 
 use std::fmt;
 
 use super::control_word::{ControlBit, ControlWord};
 
-/// A state, as the status word tells it.
+/// State according to the status word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum State {
-    /// Nobody has asked for the drive.
+    /// Control of the drive is not requested.
     NotReady,
-    /// The control has.
+    /// Control is requested.
     Ready,
-    /// It is on.
+    /// The drive is on.
     Operational,
-    /// It may move.
+    /// The drive may move.
     Enabled,
-    /// It moves.
+    /// The drive moves.
     Moving,
-    /// Something went wrong.
+    /// A fault occurred.
     Fault,
     /// A fault was acknowledged.
     Locked,
 }
 
-/// What leads from a state to another.
+/// Event that causes a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Trigger {
     /// A bit of the control word is set.
@@ -32,26 +33,26 @@ pub enum Trigger {
     Clear(ControlBit),
     /// A bit falls while another one is set, or clear.
     Falls(ControlBit, Option<(ControlBit, bool)>),
-    /// A job or a run begins.
+    /// A job or a run starts.
     Starts,
     /// The motion has ended.
     Ends,
-    /// Something went wrong, or a connection was lost.
+    /// A fault occurred, or a connection was lost.
     Fails,
 }
 
-/// A row of the table.
+/// Row of the transition table.
 #[derive(Clone, Copy, Debug)]
 pub struct Transition {
-    /// From any of these.
+    /// States in which it applies.
     pub from: &'static [State],
-    /// By this.
+    /// Event that causes it.
     pub trigger: Trigger,
-    /// To this.
+    /// Resulting state.
     pub to: State,
-    /// The word that does it, where a word alone does.
+    /// Word that causes it, if a word alone does.
     pub word: Option<ControlWord>,
-    /// The manual does not say it.
+    /// If set, the manual does not define it.
     pub assumed: bool,
 }
 
@@ -66,7 +67,7 @@ const fn assumed(from: &'static [State], trigger: Trigger, to: State, word: Cont
     Transition { from, trigger, to, word: Some(word), assumed: true }
 }
 
-/// All of them. Of several that apply the first one counts.
+/// All transitions. The first one that applies takes effect.
 pub const TRANSITIONS: [Transition; 14] = [
     row(&[NotReady], Set(ControlBit::Control), Ready, Some(ControlWord::READY)),
     row(&[Ready, Operational, Enabled, Moving], Clear(ControlBit::Control), NotReady, Some(ControlWord::OFF)),
@@ -88,7 +89,7 @@ impl State {
     /// All states.
     pub const ALL: [State; 7] = [NotReady, Ready, Operational, Enabled, Moving, Fault, Locked];
 
-    /// What it is called.
+    /// Returns the name.
     pub const fn name(self) -> &'static str {
         match self {
             NotReady => "not ready",
@@ -101,12 +102,13 @@ impl State {
         }
     }
 
-    /// What may follow it.
+    /// Returns the transitions from this state.
     pub fn transitions(self) -> impl Iterator<Item = &'static Transition> {
         TRANSITIONS.iter().filter(move |row| row.from.contains(&self))
     }
 
-    /// The state behind this one when the word `now` follows `before`: one step at most. Motion is not the word's alone.
+    /// Returns the state after the word `now` follows `before`: at most one step. Motion does not depend on the word
+    /// alone.
     pub fn after(self, before: ControlWord, now: ControlWord) -> State {
         let applies = |trigger: Trigger| match trigger {
             Set(bit) => now.has(bit),
@@ -120,12 +122,12 @@ impl State {
         self.transitions().find(|row| applies(row.trigger)).map_or(self, |row| row.to)
     }
 
-    /// The state behind this one by something that is no word.
+    /// Returns the state after an event that is not a control word.
     pub fn by(self, trigger: Trigger) -> State {
         self.transitions().find(|row| row.trigger == trigger).map_or(self, |row| row.to)
     }
 
-    /// The drive's own keys move it in this state.
+    /// Returns whether the drive's own keys move it in this state.
     pub const fn obeys_keys(self) -> bool {
         matches!(self, NotReady | Ready | Fault | Locked)
     }

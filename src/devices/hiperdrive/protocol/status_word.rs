@@ -2,51 +2,51 @@
 
 use super::state::State;
 
-/// What a drive says of itself. Any word is one.
+/// Status word of a drive. Every 16-bit value is valid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct StatusWord(u16);
 
-/// A bit of the status word.
+/// Bit of the status word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum StatusBit {
-    /// The control has asked for the drive.
+    /// Control of the drive is requested.
     Ready = 0,
-    /// It is on.
+    /// The drive is on.
     Operational = 1,
-    /// It may move.
+    /// The drive may move.
     OperationEnabled = 2,
-    /// A fault since it was operational.
+    /// A fault occurred since the drive was operational.
     Fault = 3,
-    /// The drive was found or asked for.
+    /// The drive was detected or requested.
     NoOff2 = 4,
-    /// As bit 4.
+    /// Same as bit 4.
     NoOff3 = 5,
-    /// Locked after a fault or a fall of control bit 0.
+    /// Locked after a fault or a falling edge of control bit 0.
     SwitchOnLock = 6,
-    /// A fault, whatever the state.
+    /// Fault in any state.
     Warning = 7,
-    /// The manual says of it both that it is set by a following error and that it is cleared by one (reference 8.1): error
-    /// 8203 and bit 3 tell that.
+    /// The manual states both that a following error sets it and that one clears it (reference 8.1): use error 8203 and
+    /// bit 3 instead.
     NoFollowingError = 8,
-    /// As bit 4.
+    /// Same as bit 4.
     ControlRequested = 9,
-    /// A move has arrived.
+    /// A move has reached its target.
     TargetReached = 10,
-    /// As bit 4.
+    /// Same as bit 4.
     ReferenceSet = 11,
     /// Control bit 6 of the last job.
     SetpointAcknowledged = 12,
-    /// Nothing moves.
+    /// The drive stands still.
     StandingStill = 13,
     /// The current was too high.
     OverCurrent = 14,
-    /// Outside the range.
+    /// The position is outside the range.
     PositionLimit = 15,
 }
 
 impl StatusBit {
-    /// All of them, the lowest first.
+    /// All bits, lowest first.
     pub const ALL: [StatusBit; 16] = [
         StatusBit::Ready,
         StatusBit::Operational,
@@ -66,12 +66,12 @@ impl StatusBit {
         StatusBit::PositionLimit,
     ];
 
-    /// Its number in the word.
+    /// Returns the bit number in the word.
     pub const fn number(self) -> u8 {
         self as u8
     }
 
-    /// What it says when it is set.
+    /// Returns the meaning of the set bit.
     pub const fn name(self) -> &'static str {
         match self {
             StatusBit::Ready => "ready to switch on",
@@ -95,47 +95,48 @@ impl StatusBit {
 }
 
 impl StatusWord {
-    /// 0A30h: a drive that was found; it does not stand still.
+    /// 0A30h: a drive that was detected and does not stand still.
     pub const FOUND: StatusWord = StatusWord(0x0A30);
 
-    /// A word as it came.
+    /// Creates a status word from a received value.
     pub const fn new(word: u16) -> Self {
         StatusWord(word)
     }
 
-    /// The word.
+    /// Returns the raw word.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// Whether a bit is set.
+    /// Returns whether a bit is set.
     pub const fn has(self, bit: StatusBit) -> bool {
         self.0 >> bit as u8 & 1 == 1
     }
 
-    /// The same with a bit set or cleared.
+    /// Returns this word with a bit set or cleared.
     pub const fn with(self, bit: StatusBit, set: bool) -> Self {
         let mask = 1 << bit as u8;
         StatusWord(if set { self.0 | mask } else { self.0 & !mask })
     }
 
-    /// The bits that are set, the lowest first.
+    /// Returns the set bits, lowest first.
     pub fn set(self) -> impl Iterator<Item = StatusBit> {
         StatusBit::ALL.into_iter().filter(move |bit| self.has(*bit))
     }
 
-    /// The drive is there: it was found or asked for.
+    /// Returns whether the drive is present: it was detected or requested.
     pub const fn is_present(self) -> bool {
         self.has(StatusBit::NoOff2)
     }
 
-    /// Bits 4, 5, 9 and 11 rise and fall together: a word with some of them alone is none of a drive.
+    /// Returns whether the word can come from a drive: bits 4, 5, 9 and 11 rise and fall together.
     pub const fn is_plausible(self) -> bool {
         let found = self.0 & StatusWord::FOUND.0;
         found == 0 || found == StatusWord::FOUND.0
     }
 
-    /// In which state the drive is. A fault goes before the lock, the lock before the rest (`D`; bits 0 to 2 of a fault `U`).
+    /// Returns the state of the drive. A fault takes precedence over the lock, the lock over the rest (`D`; bits 0 to 2
+    /// of a fault `U`).
     pub const fn state(self) -> State {
         use StatusBit::{Fault, OperationEnabled, Operational, Ready, StandingStill, SwitchOnLock};
         if self.has(Fault) {

@@ -1,15 +1,16 @@
-//! The address switches S1 and S2, read when the device is switched on (reference 1). S3 chooses what the lamp RS485 is about.
+//! The address switches S1 and S2, read when the device is switched on (reference 1). S3 selects the drive that the
+//! RS485 LED stands for.
 
 use core::net::Ipv4Addr;
 
-/// Where the two switches say that the IP address comes from.
+/// Source of the IP address that the two switches select.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSwitch {
-    /// 0: as the TCP/IP object says (class F5h, attribute 3): stored, BOOTP or, from the factory, DHCP.
+    /// 0: from the TCP/IP object (class F5h, attribute 3): stored, BOOTP or, as the factory setting, DHCP.
     Object,
     /// 1 to 96: 192.168.1.n with the mask 255.255.255.0 and no gateway.
     Fixed(Ipv4Addr),
-    /// 97: as it is stored. Turned to 97 while it runs, the device also stores its present address.
+    /// 97: the stored address. Turned to 97 at runtime, the device also stores its present address.
     Stored,
     /// 98.
     Bootp,
@@ -18,7 +19,7 @@ pub enum AddressSwitch {
 }
 
 impl AddressSwitch {
-    /// By the two digits; `None` above 99.
+    /// Parses the two digits; `None` above 99.
     pub const fn parse(number: u8) -> Option<Self> {
         let source = match number {
             0 => AddressSwitch::Object,
@@ -31,7 +32,7 @@ impl AddressSwitch {
         Some(source)
     }
 
-    /// The two digits.
+    /// Returns the two digits.
     pub const fn number(self) -> u8 {
         match self {
             AddressSwitch::Object => 0,

@@ -1,52 +1,52 @@
-//! Values of parameters as CIP carries them: numbers of their type's length, texts (reference 7).
+//! Parameter values in CIP: numbers of their type's length, and texts (reference 7).
 
-/// What a parameter's value is.
+/// Type of a parameter value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// 8 bits without a sign.
+    /// Unsigned, 8 bits.
     U8,
-    /// 8 bits with a sign.
+    /// Signed, 8 bits.
     I8,
-    /// 16 bits without a sign.
+    /// Unsigned, 16 bits.
     U16,
-    /// 16 bits with a sign.
+    /// Signed, 16 bits.
     I16,
-    /// 32 bits without a sign.
+    /// Unsigned, 32 bits.
     U32,
-    /// 32 bits with a sign.
+    /// Signed, 32 bits.
     I32,
-    /// ASCII.
+    /// ASCII text.
     Text,
 }
 
-/// A value.
+/// Parameter value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Value {
-    /// Of any kind but text.
+    /// Number of any numeric kind.
     Number(i64),
-    /// Of that.
+    /// Value of [`Kind::Text`].
     Text(String),
 }
 
-/// Why data and values do not fit together.
+/// Reason why data or a value do not match a kind.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
-    /// Another length than the kind has.
+    /// The length is not that of the kind.
     #[error("a value of {got} bytes where {expected} were expected")]
     Length {
-        /// The kind's.
+        /// Length of the kind.
         expected: usize,
-        /// How many there were.
+        /// Actual length.
         got: usize,
     },
-    /// A number that the kind cannot hold.
+    /// The kind cannot represent the number.
     #[error("{number} is not within {low} to {high}")]
     Number {
-        /// As given.
+        /// Rejected number.
         number: i64,
-        /// The least.
+        /// Minimum.
         low: i64,
-        /// The greatest.
+        /// Maximum.
         high: i64,
     },
     /// A number for a parameter that is a text.
@@ -58,7 +58,7 @@ pub enum ValueError {
 }
 
 impl Kind {
-    /// Bytes of a number; `None` for texts.
+    /// Returns the bytes of a number; `None` for texts.
     pub const fn length(self) -> Option<usize> {
         match self {
             Kind::U8 | Kind::I8 => Some(1),
@@ -68,7 +68,7 @@ impl Kind {
         }
     }
 
-    /// The least and the greatest number; `None` for texts.
+    /// Returns the minimum and maximum; `None` for texts.
     pub fn limits(self) -> Option<(i64, i64)> {
         let limits = match self {
             Kind::U8 => (0, u8::MAX.into()),
@@ -82,11 +82,11 @@ impl Kind {
         Some(limits)
     }
 
-    /// Reads a value. A text may come as characters alone or with its length before them (`U`); zeros and blanks at its end
-    /// fall away, and what is no ASCII is a question mark.
+    /// Parses a value. A text may be characters only or preceded by its length (`U`); trailing zeros and blanks are
+    /// removed, and a non-ASCII byte becomes a question mark.
     ///
     /// # Errors
-    /// [`ValueError::Length`] of a number.
+    /// Returns [`ValueError::Length`] if a number has the wrong length.
     pub fn parse(self, data: &[u8]) -> Result<Value, ValueError> {
         let wrong = |expected| ValueError::Length { expected, got: data.len() };
         let number = match self {
@@ -101,10 +101,10 @@ impl Kind {
         number.map(Value::Number)
     }
 
-    /// The data of a value.
+    /// Encodes a value.
     ///
     /// # Errors
-    /// [`ValueError`] where it is not of this kind.
+    /// Returns [`ValueError`] if the value is not of this kind.
     pub fn emit(self, value: &Value) -> Result<Vec<u8>, ValueError> {
         let (number, length, (low, high)) = match (value, self.length(), self.limits()) {
             (Value::Number(number), Some(length), Some(limits)) => (*number, length, limits),
@@ -121,7 +121,7 @@ impl Kind {
     }
 }
 
-/// What a nominal datum says (parameters 126 to 129): a number, of tenths where an `A` stands before it (manual 6.2).
+/// Parses a nominal value (parameters 126 to 129): a number, in tenths if preceded by an `A` (manual 6.2).
 pub fn nominal(text: &str) -> Option<f64> {
     let (digits, by) = text.strip_prefix('A').map_or((text, 1.0), |tenths| (tenths, 10.0));
     digits.parse::<u32>().ok().map(|number| f64::from(number) / by)

@@ -1,19 +1,19 @@
-//! Which drive it is (parameter 120, reference 4).
+//! Variants of a drive (parameter 120, reference 4).
 
 use super::scaling::Family;
 
-/// A drive's variant. Numbers that are not known are kept.
+/// Variant of a drive. Unknown numbers are preserved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant(u16);
 
-/// A row of the table.
+/// Row of the variant table.
 #[derive(Clone, Copy, Debug)]
 pub struct VariantRow {
-    /// Which one.
+    /// Variant of the row.
     pub variant: Variant,
-    /// As it is sold.
+    /// Product name.
     pub name: &'static str,
-    /// How far it turns (of HRA `U`).
+    /// Family, which determines the travel (of HRA `U`).
     pub family: Family,
 }
 
@@ -21,7 +21,7 @@ const fn row(number: u16, name: &'static str, family: Family) -> VariantRow {
     VariantRow { variant: Variant(number), name, family }
 }
 
-/// All of them.
+/// All known variants.
 pub const VARIANTS: [VariantRow; 13] = [
     row(1, "HRA25A", Family::Short),
     row(2, "HRA25B", Family::Short),
@@ -41,20 +41,20 @@ pub const VARIANTS: [VariantRow; 13] = [
 impl Variant {
     /// 0: no drive.
     pub const NONE: Variant = Variant(0);
-    /// FFFFh: one that is in no table.
+    /// FFFFh: a variant that is in no table.
     pub const OTHER: Variant = Variant(0xFFFF);
 
-    /// Any number is a variant.
+    /// Creates a variant from any number.
     pub const fn new(number: u16) -> Self {
         Variant(number)
     }
 
-    /// Its number.
+    /// Returns the number.
     pub const fn number(self) -> u16 {
         self.0
     }
 
-    /// Its row; `None` for no drive and for what is not known.
+    /// Returns the table row; `None` for no drive and for an unknown variant.
     pub fn row(self) -> Option<&'static VariantRow> {
         VARIANTS.iter().find(|row| row.variant == self)
     }

@@ -1,5 +1,5 @@
-//! Words and process data of the reference, both ways; what must not be sent; anything else. Parameters and scaling stand
-//! beside.
+//! Tests of words and process data against the reference: both directions, forbidden words and arbitrary input. Tests
+//! of parameters and scaling are in the submodules.
 
 use proptest::prelude::*;
 
@@ -27,7 +27,7 @@ fn status(word: u16) -> StatusWord {
     StatusWord::new(word)
 }
 
-/// Reference 3: every word has its name, and every name its word.
+/// Reference 3.
 #[test]
 fn the_published_control_words() {
     use Direction::{Clockwise, Counterclockwise};
@@ -38,7 +38,7 @@ fn the_published_control_words() {
         (0x0401, ControlWord::OPERATIONAL),
         (0x0409, ControlWord::ENABLED),
         (0x0481, ControlWord::ACKNOWLEDGE),
-        // ZSW12 is clear in 2A37 and set in 3E37: hold with the same, start with the other.
+        // ZSW12 is clear in 2A37 and set in 3E37: an equal bit 6 holds, the opposite starts.
         (0x0439, ControlWord::holding(status(0x2A37))),
         (0x0479, ControlWord::starting(status(0x2A37))),
         (0x0479, ControlWord::holding(status(0x3E37))),
@@ -70,11 +70,10 @@ fn reserved_bits_are_refused() {
     let refused = ControlWord::parse(0x047F).unwrap_err();
     assert_eq!(refused.to_string(), "control word 047F has reserved bits set (1, 2), which must be 0");
     let legal = (0..=u16::MAX).filter(|word| ControlWord::parse(*word).is_ok()).count();
-    // Ten bits are left.
     assert_eq!(legal, 1 << 10);
 }
 
-/// A stop is another bit in each mode; it ends no jog step, which is why its word has none.
+/// The word of a stop clears the jog bits, since a stop ends no jog step.
 #[test]
 fn a_stop_is_the_modes_own() {
     for (before, stopped) in [
@@ -93,8 +92,8 @@ fn a_stop_is_the_modes_own() {
     assert_eq!((word(0x1459).paused().word(), word(0x1419).resumed().word()), (0x1459, 0x1419));
 }
 
-/// Reference 3 and 8.10: the start of a job is a difference of levels, of a run an edge, and neither begins while anything
-/// is missing.
+/// Reference 3 and 8.10: a job starts on a difference of levels, a run on an edge, and neither while a condition is
+/// missing.
 #[test]
 fn what_begins_with_a_word() {
     let cases = [
@@ -134,14 +133,14 @@ fn the_published_status_words() {
         (0x3E37, State::Enabled),
         (0x2AB8, State::Fault),
         (0x2A70, State::Locked),
-        // A fault goes before everything, the lock before the rest.
+        // A fault takes precedence over everything, the lock over the rest.
         (0x2AFF, State::Fault),
         (0x2A77, State::Locked),
     ];
     for (word, state) in cases {
         assert_eq!(status(word).state(), state, "{word:04X}");
     }
-    // Bits 4, 5, 9, 11 of a drive that was found; 13 while it stands.
+    // Bits 4, 5, 9, 11 of a drive that was detected; 13 at standstill.
     let standing = StatusWord::FOUND.with(S::StandingStill, true);
     assert_eq!((standing.word(), standing.is_present()), (0x2A30, true));
     let set: Vec<u8> = standing.set().map(StatusBit::number).collect();
@@ -154,7 +153,7 @@ fn the_published_status_words() {
     assert!(moving && done);
 }
 
-/// Reference 3, row by row.
+/// Reference 3.
 #[test]
 fn the_state_machine() {
     use State::{Enabled, Fault, Locked, Moving, NotReady, Operational, Ready};
@@ -181,7 +180,7 @@ fn the_state_machine() {
         (Locked, 0x0401, 0x0401, Locked),
         (Locked, 0x0401, 0x0400, Ready),
         (Locked, 0x0401, 0x0000, NotReady),
-        // Bit 0 has fallen before: nothing is left to fall.
+        // Bit 0 is already clear: there is no falling edge.
         (Locked, 0x0400, 0x0400, Locked),
     ];
     for (from, before, now, to) in cases {
@@ -200,7 +199,7 @@ fn the_state_machine() {
     }
     let keys: Vec<State> = State::ALL.into_iter().filter(|state| state.obeys_keys()).collect();
     assert_eq!(keys, [NotReady, Ready, Fault, Locked]);
-    // The word of a row does what the row says, from the word with which its state is kept.
+    // The word of a row has the effect of the row, starting from the word that keeps its state.
     for (state, kept) in
         [(NotReady, 0), (Ready, 0x400), (Operational, 0x401), (Enabled, 0x409), (Fault, 0x481), (Locked, 0x401)]
     {
@@ -211,7 +210,7 @@ fn the_state_machine() {
     }
 }
 
-/// What a drive says in a state, as reference 3 has it.
+/// Returns the status word of a state in reference 3.
 fn said_in(state: State) -> StatusWord {
     let word = match state {
         State::NotReady => 0x2A30,
@@ -225,7 +224,7 @@ fn said_in(state: State) -> StatusWord {
     status(word)
 }
 
-/// Each recipe leads where it says, its words as reference 3 has them, and no step is done before its word.
+/// Words as in reference 3; no step is done before its word.
 #[test]
 fn the_recipes_lead_where_they_say() {
     let walk = |steps: &[Step], mut before: ControlWord, mut state: State| {
@@ -275,7 +274,7 @@ fn the_published_process_data_to_a_drive() {
         assert_eq!(hex(&with.emit(SINGLE)), format!("{text} {zeros}"));
         assert_eq!(with.drives[0].control(), Ok(setpoint.control));
     }
-    // Where a drive stands, nothing begins: 0400, 0 %, 100000 = 186A0h.
+    // 0400, 0 %, 100000 = 186A0h.
     let actual = Actual { status: status(0x3E37), speed: 0, position: 100_000 };
     let image = OutImage { drives: vec![Setpoint::standing(actual).into()], pkw: None };
     assert_eq!(hex(&image.emit(BARE)), "00 04 00 00 A0 86 01 00");
@@ -294,7 +293,7 @@ fn the_published_process_data_from_a_drive() {
     let cases = [
         ("37 1A 20 03 A0 86 01 00", 0x1A37, 800, 100_000),
         ("37 3E 00 00 00 80 02 00", 0x3E37, 0, 163_840),
-        // By hand: −1.5 rpm = −15 = FFF1h, −1 step.
+        // Calculated by hand: −1.5 rpm = −15 = FFF1h, −1 step.
         ("37 1A F1 FF FF FF FF FF", 0x1A37, -15, -1),
     ];
     for (text, word, speed, position) in cases {
@@ -306,7 +305,8 @@ fn the_published_process_data_from_a_drive() {
     assert_eq!(turns(actual.position), (1, 34_464));
 }
 
-/// Reference 2: 16 and 8 bytes of an adapter, 40 and 72 of the hubs, 8 less without parameter words, which stand at 32 and 64.
+/// Reference 2: 16 and 8 bytes for an adapter, 40 and 72 for the hubs, 8 less without parameter words, which are at 32
+/// and 64.
 #[test]
 fn the_published_lengths() {
     let layout = |topology, pkw| Layout { topology, pkw, order: ByteOrder::Little };
@@ -320,7 +320,7 @@ fn the_published_lengths() {
         assert_eq!(Topology::of_category(topology.category()), Some(topology));
     }
     assert_eq!(Layout::of_length(24).count(), 0);
-    // Drive 3 of a hub at 16, the parameter words behind the drives; what is not given is zero.
+    // Drive 3 of a hub at 16, the parameter words after the drives; unset values are zero.
     for (topology, at) in [(four, 32), (eight, 64)] {
         let drives = vec![OutData::default(), OutData::default(), OutData { target: -1, ..OutData::default() }];
         let request = Pkw::request(Task::Read, 166, 0, 0);

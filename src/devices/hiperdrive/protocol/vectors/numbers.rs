@@ -1,4 +1,4 @@
-//! Parameter words, parameters, scaling, tables: as the reference has them.
+//! Tests of parameter words, parameters, scaling and tables against the reference.
 
 use proptest::prelude::*;
 
@@ -41,7 +41,7 @@ fn the_published_parameter_words() {
         ("9E 20 00 00 00 00 01 FE", 1, Answer::Double(0xFE01_0000)),
         ("9E 70 00 00 02 00 00 00", 1, Answer::Refused(PkwError::RANGE)),
         ("A6 10 00 00 C8 00 00 00", 2, Answer::Word(200)),
-        // "HDA3": the bytes as they come (U).
+        // "HDA3": the bytes in the order received (U).
         ("79 50 00 00 48 44 41 33", 6, Answer::Double(0x3341_4448)),
         ("79 60 00 00 02 00 00 00", 7, Answer::Elements(2)),
     ];
@@ -56,7 +56,7 @@ fn the_published_parameter_words() {
     assert_eq!(hex(&big.emit(ByteOrder::Big)), "10 A6 00 00 00 00 01 5E");
 }
 
-/// A request is repeated until its own reply has come: not one of another parameter, nor of another task.
+/// A reply for another parameter or another task is no answer.
 #[test]
 fn what_answers_a_request() {
     let read = Pkw::request(Task::Read, 166, 0, 0);
@@ -104,12 +104,12 @@ fn where_cip_has_parameters() {
     assert_eq!(DriveNumber::of(Topology::Hub4).map(DriveNumber::get).collect::<Vec<_>>(), [1, 2, 3, 4]);
 }
 
-/// Reference 4, what it says of every kind of row.
+/// Reference 4.
 #[test]
 fn the_table_of_parameters() {
     assert!(PARAMETERS.is_sorted_by(|one, other| one.number < other.number));
     let numbers: Vec<u16> = PARAMETERS.iter().map(|row| row.number).collect();
-    // 9 of the device that are read, 10 registers, 47; 101 to 129; 22 from 152 to 199.
+    // 9 read-only parameters of the device, 10 registers, 47; 101 to 129; 22 from 152 to 199.
     let device = numbers.iter().filter(|number| **number < 100).count();
     let drive = numbers.iter().filter(|number| **number >= 100).count();
     assert_eq!((device, drive), (9 + 10 + 1, 29 + 22));
@@ -121,7 +121,7 @@ fn the_table_of_parameters() {
     assert_eq!((row(166).kind, row(166).unit, row(166).factory), (Kind::U16, "0.1 rpm", Factory::Number(350)));
     assert_eq!((row(199).access, row(47).access, row(42).saved), (Access::Write, Access::ReadWrite, true));
     assert_eq!((row(807).number, number(25).row().is_none(), number(148).row().is_none()), (107, true, true));
-    // From the factory: 511 and 16000 turns of 65536 steps.
+    // Factory values: 511 and 16000 turns of 65536 steps.
     let factory = |own, topology, family| row(own).factory_value(topology, family);
     use Topology::{Adapter, Hub8};
     assert_eq!(factory(158, Adapter, Family::Short), Some(-33_488_896));
@@ -195,7 +195,7 @@ fn values_have_the_length_of_their_kind() {
     assert_eq!(Kind::Text.parse(&[]), Ok(Value::Text(String::new())));
 }
 
-/// Manual 6.2, 126 to 129: a string, to be divided by 10 where an "A" stands before it.
+/// Manual 6.2, 126 to 129: a string, divided by 10 if preceded by an "A".
 #[test]
 fn nominal_data_may_be_tenths() {
     for (text, number) in
@@ -214,7 +214,7 @@ fn steps_turns_and_spindles() {
         assert_eq!(scale.steps_per_turn(), f64::from(steps));
         assert_eq!(scale.turns(-steps), -1.0);
     }
-    // A degree of 65536 steps a turn is 182.04 of them, of 400 it is 1.11; 5 degrees of those are 5.6.
+    // One degree is 182.04 steps at 65536 steps per turn and 1.11 at 400; 5 degrees at 400 are 5.6.
     for (numerator, denominator, degrees, steps) in
         [(256, 1, 1.0, 183), (400, 256, 1.0, 2), (400, 256, 5.0, 6), (20, 256, 1.0, 1), (65_535, 1, 1e12, u32::MAX)]
     {
@@ -229,7 +229,7 @@ fn steps_turns_and_spindles() {
     }
     // 1 mm / 0.03 mm = 100/3 steps = 256 · 25/192.
     assert_eq!(scale(100, 3).map(factors), Ok((25, 192)));
-    // 4 mm in steps of 1 nm are 4000000, the 256th of which is 15625/1.
+    // 4 mm in steps of 1 nm are 4000000, 1/256 of which is 15625/1.
     let nanometre = Length { nanometres: 1 };
     assert_eq!(PositionScale::for_spindle(millimetres(400), nanometre).map(factors), Ok((15_625, 1)));
     assert_eq!(
@@ -240,7 +240,7 @@ fn steps_turns_and_spindles() {
     assert_eq!((PositionScale::new(0, 1), PositionScale::new(1, 0)), (Err(ScaleError::Zero), Err(ScaleError::Zero)));
     let four = scale(400, 1).unwrap();
     assert!((four.millimetres(150, millimetres(400)) - 1.5).abs() < 1e-12);
-    // Limits as steps, and that they are others after a change of scale: 33488896 / 400 = 83722.24 turns.
+    // Limits in steps, which change with the scale: 33488896 / 400 = 83722.24 turns.
     for (turns, steps) in [(512, 33_554_432), (-511, -33_488_896), (16_000, 1_048_576_000), (127, 8_323_072)] {
         assert_eq!(PositionScale::FACTORY.steps_of_turns(turns), Some(steps));
     }
@@ -285,7 +285,7 @@ fn the_tables_of_errors_variants_lamps_and_switches() {
     let twins =
         |row: &BusLedRow| BUS_LEDS.iter().filter(|other| (other.lamp, other.light) == (row.lamp, row.light)).count();
     assert!(BUS_LEDS.iter().all(|row| twins(row) == 1));
-    // Manual 3.3 and 4.4: seven lights of a hub's drives together and of an adapter's drive, four of one drive of a hub.
+    // Manual 3.3 and 4.4: seven states for all drives of a hub and for an adapter's drive, four for one drive of a hub.
     for (subject, lights) in [(LedSubject::Adapter, 7), (LedSubject::Drives, 7), (LedSubject::Drive, 4)] {
         let rows = subject.rows();
         let is_own = |row: &LedRow| rows.iter().filter(|other| other.light == row.light).count() == 1;

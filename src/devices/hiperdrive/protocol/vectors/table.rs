@@ -1,5 +1,5 @@
-//! Issue 21.10: the table of parameters against the manual's, which was typed anew by hand (`hiperdrive_parameters.txt`), row
-//! by row; and what the turns of a family make of it.
+//! Issue 21.10: compares the parameter table, row by row, with a second transcription of the manual's
+//! (`hiperdrive_parameters.txt`), and the limits that result from the turns of a family.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -8,7 +8,7 @@ use super::super::*;
 
 const FILE: &str = include_str!("../../../../../tests/vectors/hiperdrive_parameters.txt");
 
-/// A row as it was typed: number, then range, saved, factory, access, unit, bits, answered.
+/// Row of the transcription: number, then range, saved, factory, access, unit, bits, answered.
 struct Typed<'t> {
     number: u16,
     bits: &'t str,
@@ -20,7 +20,7 @@ struct Typed<'t> {
     answered: &'t str,
 }
 
-/// A family's turns: the way (9.2), and of each number the range and the factory value.
+/// Turns of a family: the travel (9.2), and for each number the range and the factory value.
 struct Turns {
     way: i64,
     rows: BTreeMap<u16, (i64, i64, i64)>,
@@ -90,7 +90,8 @@ fn numbers(text: &str) -> Vec<i64> {
     text.split(',').map(|own| own.trim().parse().unwrap()).collect()
 }
 
-/// What the manual allows, number by number: the limits, one beyond each, and what lies in between of a list.
+/// Returns values that the manual allows and values that it does not: the limits, one beyond each, and the gaps of a
+/// list.
 fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
     let all = || match typed.bits {
         "32" => (0, 4_294_967_295),
@@ -100,9 +101,9 @@ fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
     };
     let between = |(low, high): (i64, i64)| (vec![low, low + 1, high - 1, high], vec![low - 1, high + 1]);
     match typed.range {
-        // Of a drive whose turns and scale are not known, the bits bound them.
+        // If turns and scale are not known, only the bits set the limit.
         "*" | "turns" | "way" => between(all()),
-        // One number alone: 0…0.
+        // A single number: 0…0.
         "0…0" => (vec![0], vec![-1, 1]),
         range => match (range.split_once('…'), range) {
             (Some((low, rest)), _) => {
@@ -125,7 +126,7 @@ fn probe(typed: &Typed<'_>) -> (Vec<i64>, Vec<i64>) {
     }
 }
 
-/// Issue 21.10: type, access, unit, saved, factory value and what may be written, of every row; and no row more or less.
+/// Issue 21.10: type, access, unit, saved, factory value and allowed values of every row; no row more or less.
 #[test]
 fn every_row_is_the_manuals() {
     let typed = typed();
@@ -173,7 +174,7 @@ fn every_row_is_the_manuals() {
     }
 }
 
-/// Issue 21.8: what takes long when it is set, and nothing else does.
+/// Issue 21.8: only the listed values take long to set.
 #[test]
 fn every_row_is_answered_within_the_manuals_time() {
     for typed in typed() {
@@ -198,8 +199,8 @@ fn every_row_is_answered_within_the_manuals_time() {
     }
 }
 
-/// Issue 21.10: of each family, in steps of each scale. Turns · 256 · numerator / denominator, towards 0, and no more than
-/// 32 bits.
+/// Issue 21.10: for each family, in steps of each scale. Turns · 256 · numerator / denominator, rounded towards 0,
+/// within 32 bits.
 #[test]
 fn limits_are_the_familys_turns_in_the_unit_of_the_scale() {
     let names = [("HDA 30, HDA 45", Family::Short), ("HDA 70", Family::Long), ("PSE441", Family::Pse441)];
@@ -232,13 +233,13 @@ fn limits_are_the_familys_turns_in_the_unit_of_the_scale() {
             for topology in [Topology::Adapter, Topology::Hub8] {
                 for (own, (.., factory)) in &rows {
                     let row = ParameterNumber::new(*own).unwrap().row().unwrap();
-                    // From the factory a turn has 65536 steps (8.4).
+                    // With factory settings a turn has 65536 steps (8.4).
                     assert_eq!(row.factory_value(topology, family), Some(factory * 65_536), "{own} of {name}");
                 }
             }
         }
     }
-    // What is not known bounds nothing but its bits.
+    // Unknown turns or scale leave only the limit of the bits.
     let number = ParameterNumber::new(158).unwrap();
     let all = Range::Within(-2_147_483_648, 2_147_483_647);
     for (family, scale) in [(None, PositionScale::new(400, 256).ok()), (Some(Family::Short), None)] {
