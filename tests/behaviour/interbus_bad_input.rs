@@ -79,7 +79,7 @@ fn what_is_out_of_range_names_both_limits() {
 fn an_encoder_that_refuses_is_told_with_its_word_and_led_back() {
     let bench = Bench::new();
     for (word, words) in
-        [("82000000", "within the limits"), ("84000000", "does not know"), ("98000004", "beyond the measuring range")]
+        [("82000000", "within the limits"), ("84000000", "does not know"), ("98000004", "outside the measuring range")]
     {
         let Some(encoder) = bench.gateway(&["--steps=3600", "--error", &format!("1:{word}")]) else { return };
         let ran = ask(&bench, &encoder, &["write", "interbus", "preset", "7", "--yes"]);

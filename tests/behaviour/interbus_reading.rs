@@ -68,7 +68,11 @@ fn every_item_is_read_by_its_name() {
     ];
     for (item, value, unit) in cases {
         let ran = ask(&bench, &encoder, &["read", "interbus", item]);
-        assert_eq!(ran.err.contains("Reading a cam program selects it"), item.contains("cam") || item == "shift", "{ran:?}");
+        assert_eq!(
+            ran.err.contains("Reading a cam program selects it"),
+            item.contains("cam") || item == "shift",
+            "{ran:?}"
+        );
         let told = ran.json();
         assert_eq!((&told["item"], &told["value"]), (&json!(item), &value), "{told}");
         assert_eq!(told.get("unit").and_then(Value::as_str), unit, "{told}");
