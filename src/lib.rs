@@ -25,7 +25,7 @@ pub mod link;
 pub mod sim;
 pub mod store;
 
-// what is saved, and what numbers and samples mean; no I/O
+// profiles, plans and the analysis of samples; no I/O
 pub mod analysis;
 pub mod bits;
 pub mod expected;

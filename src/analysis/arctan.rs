@@ -1,5 +1,5 @@
 //! The position inside one signal period from a pair of sine and cosine values: exactly, and by the table of one octant
-//! as a drive's interrupt routine reckons it. Follows SICK 8010701, interpolation of the process data channel; the
+//! as a drive's interrupt routine computes it. Follows SICK 8010701, interpolation of the process data channel; the
 //! formulae are in section 3 of the project's sine/cosine reference.
 
 use std::f64::consts::{FRAC_PI_4, TAU};

@@ -206,7 +206,7 @@ impl Coverage {
         let parts = parts.filter_map(|part| Some((part.start, sine.get(part.clone())?, cosine.get(part)?)));
         let mut seen = 0;
         for (start, sine, cosine) in parts {
-            // What is before a break may have been left out.
+            // Samples before a break may have been left out.
             let begun = breaks.partition_point(|at| *at <= start);
             let mut begins = begun > std::mem::replace(&mut seen, begun);
             for (ys, xs) in sine.chunks(BLOCK).zip(cosine.chunks(BLOCK)) {

@@ -108,7 +108,7 @@ pub(super) fn read_document(path: PathBuf, store: &Store, kinds: Kinds) -> Actio
         Err(error) => (String::new(), Err(error)),
     };
     let file = ProfileFile { key: file_key(&path), path, text };
-    // Where there is no profile, nobody waits for the tables.
+    // Without a profile, the tables are not awaited.
     let kind = result.as_ref().ok().and_then(|document| kinds.of_profile(document.body.kind()));
     let open = kind.map(|kind| kind.read_tables(store));
     Action::Done(Done::Read { file, result, open })

@@ -69,7 +69,7 @@ impl Log {
 
     /// Adds a notice; it stands in the window until another comes or it is dismissed.
     pub fn add(&mut self, notice: Notice) {
-        // What went well is read in passing; it does not push away what somebody has to read.
+        // Good news does not push away notices that need attention.
         if notice.severity >= Severity::Warning
             || self.standing.as_ref().is_none_or(|old| old.severity <= Severity::Good)
         {

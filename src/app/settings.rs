@@ -99,7 +99,7 @@ impl Settings {
             size: entry!(size: Option<(u32, u32)>, usual.size),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
-                // Limits that nobody has confirmed stay so, whatever else is broken.
+                // Unconfirmed limits stay so, whatever else is broken.
                 entry!(drives: BTreeMap<String, LocksAlone>, BTreeMap::new())
                     .into_iter()
                     .map(|(device, locks)| (device, locks.into()))

@@ -80,7 +80,7 @@ impl SettingsStore {
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
-        // Handed over from hand to hand: what nobody takes any more goes into the mailbox.
+        // Handed over directly: a message without a receiver goes into the mailbox.
         let (sender, receiver) = bounded(0);
         let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
             if let Err(late) = sender.send(read(path, kinds)) {
@@ -292,7 +292,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
             None => (None, true),
         };
         let aside = if is_whole { None } else { put_aside(path)? };
-        // Where the file is gone, nothing of it was changed by anybody.
+        // If the file is gone, no one has changed it.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
         Ok((text, SettingsWritten { settings: Box::new(merged), aside }))

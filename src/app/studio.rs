@@ -373,7 +373,7 @@ impl Studio {
         if self.decline() || self.diverged.take().is_some() {
             return;
         }
-        // Watching is no work: whoever closes a dialog, or has drives in hand, goes on seeing them.
+        // Watching is no work: drives stay visible while a dialog closes, or while they are under control.
         if self.works() {
             self.stop();
             return;

@@ -60,7 +60,7 @@ impl Tasks {
 impl Mailbox {
     /// Hands an action over and wakes the window.
     pub fn send(&self, action: Action) {
-        // The studio is gone: nobody waits for it any more.
+        // The studio is gone: no one waits for the action.
         let _ = self.sender.send(action);
         self.wake();
     }

@@ -218,7 +218,7 @@ impl Catalogue {
     }
 
     fn rows(&self) -> &BTreeMap<String, Row> {
-        // That it parses is tested; without it every text would be its own name.
+        // That it parses is tested; otherwise every text would show its own name.
         self.rows.get_or_init(|| ron::from_str(self.source).unwrap_or_default())
     }
 }

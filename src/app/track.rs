@@ -114,7 +114,7 @@ impl Columns {
     fn push(&mut self, time: Time, steps: i64, rates: Rates, flags: Flags) {
         self.times.push(time);
         self.steps.push(steps);
-        // What is not known is no number, which breaks the line and counts nowhere.
+        // An unknown value is NaN, which breaks the line and counts nowhere.
         self.speed.push(rates.speed.unwrap_or(f64::NAN));
         self.acceleration.push(rates.acceleration.unwrap_or(f64::NAN));
         self.flags.push(flags);

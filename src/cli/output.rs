@@ -94,7 +94,7 @@ pub(crate) fn count(number: usize, noun: &str) -> String {
 pub(super) fn say_usage(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
-        // When help cannot be printed there is nobody to tell.
+        // If help cannot be printed, that cannot be reported either.
         let _ = error.print();
         return;
     }

@@ -73,12 +73,12 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
     let profile = load(output, file)?;
     let kind = output.commands().device(profile.kind())?;
     let device = kind.present(common, output, Some(&profile))?;
-    // What is compared may be of two devices: that is allowed, and has to be known.
+    // Comparing two devices is allowed, but is reported.
     if let Some(words) = kind.other_device(&profile, &device) {
         output.remark(&words);
     }
     let comparison = profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))?;
-    // What only the device has is not the profile's business.
+    // Items that only the device has do not concern the profile.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
 }

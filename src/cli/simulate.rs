@@ -225,7 +225,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
             .and_then(|()| listener.local_addr())
             .map_err(cannot)
             .and_then(|at| device.ready(&at.to_string()));
-        // Nobody is left waiting for the end of a program that has not begun.
+        // No one waits for the end of a program that has not begun.
         begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
             let Ok((client, peer)) = listener.accept() else {
@@ -236,7 +236,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
                 None => attend(device, client, ended),
                 Some(mut own) => {
                     let attended = move || attend(&mut own, client, ended);
-                    // Where there is no thread for it, the client finds its connection closed.
+                    // Without a thread for it, the client finds its connection closed.
                     let _ = std::thread::Builder::new().spawn_scoped(scope, attended);
                 }
             }

@@ -1,4 +1,4 @@
-//! What a kind of device and a tool hand over, and the program that is made of them.
+//! Kinds of devices and tools, and the program made of them.
 
 use crate::app::{DeviceKind, Kinds, ToolKind};
 use crate::buses::bridge::sim::Attachable;

@@ -22,7 +22,7 @@ pub trait Datagrams: Send {
         Ok(())
     }
 
-    /// Sends one packet. Nobody says whether it arrives.
+    /// Sends one packet. Delivery is not confirmed.
     ///
     /// # Errors
     /// When there is no way to the target.
@@ -50,7 +50,7 @@ pub trait Shout: Send {
     /// Asks all.
     ///
     /// # Errors
-    /// When nobody at all can be asked.
+    /// Returns an error if no request can be sent at all.
     fn shout(&mut self, packet: &[u8]) -> Result<(), LinkError>;
 
     /// Waits for a packet until `until` and puts it into `into`, replacing the content. Returns the sender, or `None`

@@ -126,7 +126,7 @@ impl<'a> SerialLine<'a> {
     pub(crate) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         self.start()?;
         let mut stray = Vec::new();
-        // Looks at least once: what came while nobody listened is no part of the next reply.
+        // Looks at least once: bytes that arrived while no one listened do not belong to the next reply.
         loop {
             self.ctx.wire.receive(state.quiet_until.max(self.now()), &mut stray)?;
             if stray.is_empty() {
@@ -209,7 +209,7 @@ impl<'a> SerialLine<'a> {
     /// # Errors
     /// See [`LineError`].
     pub(crate) fn hear_late(&mut self, state: &mut LineState, tries: u32, quiet: Duration) -> Result<(), LineError> {
-        // Who is known to be silent for long is asked often.
+        // A device known to be silent for long is asked often.
         let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
         let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
         let end = self.now() + patience;

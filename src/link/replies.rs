@@ -23,7 +23,7 @@ impl Replies {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
         self.0.sum.fetch_add(took, Ordering::Relaxed);
         self.0.longest.fetch_max(took, Ordering::Relaxed);
-        // The last: whoever sees it counted finds the others.
+        // Last: a reader of the count finds the other values.
         self.0.count.fetch_add(1, Ordering::Release);
     }
 

@@ -86,8 +86,8 @@ impl SerialLink {
         let port = lines(builder).open().map_err(|error| LinkError::new(path, opening(path, &error)))?;
         let link = SerialLink { port, target: path.to_owned(), clock };
         link.warn_of_parity(format);
-        // What arrived before we came is nobody's reply; where it cannot be cleared, the first frame is found broken
-        // and asked for again.
+        // Bytes from before the opening belong to no reply; if they cannot be cleared, the first frame is damaged and
+        // requested again.
         let _ = link.port.clear(ClearBuffer::Input);
         Ok(link)
     }

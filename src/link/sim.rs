@@ -83,7 +83,7 @@ impl SimPort {
 
 impl DatagramPort for SimPort {
     fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError> {
-        // What is on its way to the one before goes to nobody.
+        // Packets in transit to the previous port are dropped.
         let port = self.next;
         self.next = self.next.checked_add(1).unwrap_or(FIRST_PORT);
         let (device, clock) = (self.device.clone(), self.clock.clone());

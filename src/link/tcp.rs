@@ -24,7 +24,7 @@ impl TcpLink {
     /// Connects to `host:port`.
     ///
     /// # Errors
-    /// [`LinkErrorKind::NotFound`] for a name that nobody knows, [`LinkErrorKind::Unreachable`] where nobody answers.
+    /// [`LinkErrorKind::NotFound`] for an unknown name, [`LinkErrorKind::Unreachable`] without an answer.
     pub fn connect(target: &str, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let fail = |kind| LinkError::new(target, kind);
         let addresses = target.to_socket_addrs().map_err(|_| fail(LinkErrorKind::NotFound))?;

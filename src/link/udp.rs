@@ -115,7 +115,7 @@ impl Packets {
             let mut buffer = [0; LONGEST];
             while !hears.load(Ordering::Relaxed) {
                 match socket.recv_from(&mut buffer) {
-                    // What others send is dropped, and so is what nobody takes.
+                    // Packets of other senders are dropped, and so are those without a receiver.
                     Ok((count, SocketAddr::V4(sent_by))) if *sent_by.ip() == from => {
                         let _ = sender.try_send(buffer.iter().take(count).copied().collect());
                     }
@@ -227,7 +227,7 @@ fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
         let fields: Vec<&str> = line.split_whitespace().collect();
         let &[_, network, "00000000", _, _, _, _, mask, ..] = fields.as_slice() else { continue };
         let (Some(network), Some(mask)) = (address(network), address(mask)) else { continue };
-        // A network of one has nobody to ask, and the network of all is asked anyway.
+        // A network of one has no other members, and the network of all is asked anyway.
         if mask != 0 && mask != u32::MAX {
             found.push(Ipv4Addr::from(network | !mask));
         }

@@ -20,8 +20,8 @@ use std::net::SocketAddrV4;
 
 use crate::units::{CharacterFormat, Moment};
 
-/// A virtual device at the far end of a serial line. Whoever owns it (a link in this process, a pseudo-terminal, a TCP
-/// server) hands over bytes and asks for bytes; moments never run backwards, one that does is taken as the latest known.
+/// A virtual device at the far end of a serial line. Its owner (a link in this process, a pseudo-terminal, a TCP
+/// server) passes bytes in and requests bytes; moments never run backwards, an earlier one counts as the latest known.
 pub trait ByteDevice: Send {
     /// The host has handed these bytes to its UART at `now`; they travel one character time each, after what is still
     /// travelling.

@@ -16,7 +16,7 @@ use super::files::{create_folder, write_new};
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
-/// Backups of one device in the same second. Whoever asks for more is a loop gone wrong.
+/// Most backups of one device in the same second. More are the sign of a runaway loop.
 const MOST_IN_A_SECOND: u32 = 1000;
 
 /// The folder of backups.
@@ -81,7 +81,7 @@ impl Backups {
     }
 
     fn folder_of(&self, device: &str, serial_number: &str) -> PathBuf {
-        // `device` is a word of the program's own, but a path out of the folder is none whoever makes it.
+        // `device` is one of the program's own words, but a path out of the folder is invalid from any source.
         self.0.join(safe_name(device, Case::Kept)).join(safe_name(serial_number, Case::Told))
     }
 }

@@ -57,7 +57,7 @@ impl Drafts {
     /// # Errors
     /// Where no file can be made to lock.
     pub fn claim(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
-        // Beside the drafts: whoever lists those finds nothing else.
+        // Beside the drafts, so that listing those finds nothing else.
         let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
         create_folder(&folder)?;
         let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));

@@ -69,7 +69,7 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let beside = lock_of(path);
     let began = Instant::now();
     loop {
-        // Whoever reads of it knows the file, not the one beside it.
+        // The message names the file that the user knows, not the one beside it.
         let tried = FileLock::try_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
         match tried {
             Some(lock) => return Ok(lock),

@@ -53,7 +53,7 @@ pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()
     let permissions = match fs::metadata(path) {
         Ok(target) if target.is_dir() => return Err(failed(FileProblem::IsFolder)),
         Ok(target) if !target.is_file() => return Err(failed(FileProblem::NotAFile)),
-        // Renaming would not mind, but whoever protected the file does.
+        // Renaming would ignore the protection of the file.
         Ok(target) if target.permissions().readonly() => return Err(failed(FileProblem::WriteProtected)),
         Ok(target) => Some(target.permissions()),
         Err(_) => None,
@@ -143,7 +143,7 @@ fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     let (path, content) = (path.to_owned(), content.to_vec());
     thread::spawn(move || {
         let result = OpenOptions::new().write(true).open(path).and_then(|mut file| file.write_all(&content));
-        // Whoever waited may have gone.
+        // The receiver may be gone.
         let _ = sender.send(result);
     });
     written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
@@ -155,7 +155,7 @@ fn through_links(path: &Path) -> io::Result<PathBuf> {
     const MOST: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST {
-        // What cannot be read as a link is none; what else may be wrong with it shows when it is written.
+        // A target that cannot be read as a link is not one; other errors show when it is written.
         let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }

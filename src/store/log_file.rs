@@ -89,7 +89,7 @@ fn write_all(mut file: impl Write, orders: &Receiver<Order>, dropped: &AtomicU64
     for order in orders {
         match order {
             Order::Line(line) => {
-                // What the disk refuses is missing until it takes something again.
+                // Lines that the disk refuses are missing until it accepts some again.
                 if file.write_all(&line).is_err() {
                     dropped.fetch_add(1, Ordering::Relaxed);
                     continue;
@@ -232,7 +232,7 @@ mod tests {
         for number in 0..10 {
             log.add(format!("line {number}\n").as_bytes());
         }
-        // Dropped, the lock holds nobody back any more.
+        // Dropped, the lock blocks no one.
         drop(release);
         log.wait();
         let text = String::from_utf8(written.lock().unwrap().clone()).unwrap();

@@ -87,7 +87,7 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
-        // Entries below it are the same ones without it: whoever types in one goes on typing.
+        // Entries below it keep their ids without it, so that typing continues.
         None => ui.skip_ahead_auto_ids(1),
     }
 }
@@ -202,7 +202,7 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
-        // A menu is drawn without borders, in which nobody would see a box that is not ticked.
+        // A menu is drawn without borders, in which an unticked box would be invisible.
         ui.set_style(ui.ctx().global_style());
         content(ui);
     });

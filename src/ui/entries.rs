@@ -86,7 +86,7 @@ pub fn settled_entry(
     if response.has_focus() {
         *draft = Some((text, problem));
     } else if response.lost_focus() {
-        // What stood there before is right, whatever was typed in between.
+        // The earlier text is valid, whatever was typed in between.
         if text != shown
             && let Err(why) = take(&text)
         {

@@ -193,7 +193,7 @@ fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
 /// STOP ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide; while one moves
 /// by this window it counts when it is pressed, not when it is let go, and ends nothing but motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    // What somebody else moves cannot be stopped from here: that is no reason to let a job run on.
+    // Motion by another master cannot be stopped from here: that is no reason to let a job run on.
     let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
@@ -214,7 +214,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     let pressed = goes_down(ui, &response);
     let clicked = name(response, active, &word).clicked();
     if clicked || pressed && by_hand {
-        // What is shown of a drive goes on while it is stopped, and so does all else that runs.
+        // The display of a drive continues while it is stopped, and so does everything else that runs.
         let motion = means_motion(ui.ctx(), by_hand, pressed_at(ui, pressed));
         actions.push(if motion { Action::StopMotion } else { Action::Stop });
     }

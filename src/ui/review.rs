@@ -44,7 +44,7 @@ fn content(
         }
         Stage::Nothing => {
             ui.horizontal(|ui| {
-                // What was answered with *leave* differs still.
+                // Entries answered with *leave* still differ.
                 let (icon, colour, words) = if sheet.questions.is_empty() {
                     (icons::CHECK_CIRCLE, theme.palette.good, "review.nothing")
                 } else {
@@ -153,7 +153,7 @@ fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done
                     ui.separator();
                 }
                 let is_done = done.is_some_and(|done| at < done);
-                // What was read back is no longer what is only meant to be.
+                // A value read back is no longer merely intended.
                 let ink = if is_done { palette.good } else { palette.staged };
                 let (icon, colour) =
                     if is_done { (icons::CHECK, palette.good) } else { (icons::PENCIL_SIMPLE, palette.muted) };

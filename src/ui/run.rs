@@ -20,7 +20,7 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
     let store = Store::for_user().map_err(|error| explain::store(&error).terminal())?;
     let log = LogFile::begin(&store.log_path());
     let look = ThemeData::built_in().map_err(|why| format!("assets/theme.ron: {why}"))?;
-    // The window exists only after the studio: until then nobody has to be woken.
+    // The window exists only after the studio: until then there is nothing to wake.
     let context: Arc<OnceLock<egui::Context>> = Arc::default();
     let waker = context.clone();
     let wake: Wake = Arc::new(move || {

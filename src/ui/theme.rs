@@ -168,7 +168,7 @@ impl Theme {
         let corner = CornerRadius::same(4);
         let text = Color32::from(palette.text);
         let line = Color32::from(palette.line);
-        // What can be pressed or ticked stands out from the lines between things.
+        // Controls that can be pressed or ticked stand out from separators.
         let edge = Color32::from(palette.muted).gamma_multiply(0.6);
         let accent = Color32::from(palette.accent);
         let widgets = &mut visuals.widgets;

@@ -61,7 +61,7 @@ impl Window {
         header::stop_over_ui(&ctx, &theme, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
-            // What they change is to be seen.
+            // Their effect has to be drawn.
             ctx.request_repaint();
         }
         for action in actions {
@@ -210,7 +210,7 @@ impl Window {
         let covered = self.is_covered() || self.views.help;
         surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_under_way() });
         if covered || !ctx.input(|input| input.focused) {
-            // Nobody sees what is held, or the key that holds it will not be heard when it is lifted. This picture shows
+            // The held button is not visible, or the release of its key will not be reported. This picture shows
             // it already: an action would ask for another one each time.
             self.studio.act(Action::LetGo);
         }
@@ -261,7 +261,7 @@ impl Window {
         let goes_down = stop_debounce::escape_goes_down(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
         if !is_pressed && goes_down && moves {
-            // With Ctrl or Alt it closes nothing, and stops all the same.
+            // With Ctrl or Alt it closes nothing, but still stops.
             stop_debounce::means_motion(ctx, true, ctx.input(|input| input.time));
             actions.push(Action::StopMotion);
         }

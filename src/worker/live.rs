@@ -143,7 +143,7 @@ impl<W: Clone + PartialEq> Watches<W> {
         list.entries = entries;
         list.number += 1;
         drop(list);
-        // What is asked for at the moment may be wished no longer.
+        // The running request may no longer be wanted.
         self.live.interrupt_sample();
         self.live.wake();
     }

@@ -1,11 +1,11 @@
-//! The background I/O worker: one thread a session, one job at a time, live wishes to be sampled and
-//! watched while there is none, and a stop that overtakes everything.
+//! The background I/O worker: one thread a session, one job at a time, sampling and watching while there is none, and a
+//! stop that overtakes everything.
 //!
-//! Nothing here knows a protocol: a [`Device`] brings its jobs, its results and its errors as types of its own, so that a
-//! session with one kind of device cannot be asked for another's.
+//! Nothing here knows a protocol: a [`Device`] has its own types of jobs, results and errors, so that a session with one
+//! kind of device cannot receive the jobs of another.
 //!
-//! Events about a job are never lost. Progress is coalesced: while nobody reads, only the newest is kept. Nobody waits
-//! for anybody: a full channel is a state of the worker, not a pause of the line.
+//! Events about a job are never lost. Progress is coalesced: while events are not read, only the newest
+//! is kept. Neither side waits for the other: a full channel is a state of the worker, not a pause of the line.
 
 #![warn(missing_docs)]
 
@@ -324,7 +324,7 @@ impl<D: Device> Worker<D> {
     /// `patience`; returns true when the thread has ended and the wire is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
-        // The thread ends when nobody can order any more.
+        // The thread ends when no more orders can arrive.
         self.orders = bounded(0).0;
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }

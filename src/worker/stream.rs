@@ -191,7 +191,7 @@ impl<S: Counted> Ring<S> {
             let count = oldest.samples.count();
             self.held -= count;
             self.lost += count as u64;
-            // Whatever is the oldest now has that before it.
+            // The new oldest batch records the loss before it.
             self.batches.front_mut().unwrap_or(&mut batch).lost += oldest.lost + count as u64;
             dropped.push(oldest);
         }

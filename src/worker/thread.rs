@@ -124,7 +124,7 @@ impl<D: Device> Bench<D> {
         self.session.set_cancel(order.cancel);
         let outbox = &mut self.outbox;
         let end = self.session.run(order.id, order.job, &mut |event| outbox.send(event));
-        // The slot is free before the last event tells so: whoever reads it may submit at once.
+        // The slot is free before the last event reports it: its reader may submit at once.
         self.busy.store(false, Ordering::SeqCst);
         self.outbox.send(end);
     }

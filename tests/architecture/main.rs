@@ -81,8 +81,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// What hangs on the virtual adapter: whoever opens one asks the list of kinds for it. It is the one thing that a device, a
-/// bus's tests and Signals ask that list for.
+/// Returns whether a path is the list of devices at the virtual adapter, which opening one requires. It is the only
+/// thing that a device, a bus's tests and Signals use of that list.
 fn is_at_adapter(path: &[String]) -> bool {
     path == ["kinds", "at_adapter"]
 }
@@ -127,7 +127,7 @@ fn no_two_folders_of_the_core_use_each_other() {
             uses.entry(own).or_default().extend(other.filter(apart));
         }
     }
-    // Whatever uses nothing that is left cannot be in a circle.
+    // A folder that uses none of the remaining ones cannot be in a circle.
     while let Some(last) = uses.iter().find(|(_, used)| !used.iter().any(|own| uses.contains_key(own))) {
         let last = *last.0;
         uses.remove(last);
@@ -135,8 +135,8 @@ fn no_two_folders_of_the_core_use_each_other() {
     assert!(uses.is_empty(), "these use each other: {uses:?}");
 }
 
-/// A device is known by nobody but itself and by the list of kinds, a bus by what is on it: devices, and Signals at an
-/// adapter's inputs. Signals is known by the list alone.
+/// A device is known only by itself and by the list of kinds, a bus by its users: devices, and Signals at an adapter's
+/// inputs. Signals is known by the list alone.
 #[test]
 fn devices_and_buses_are_known_only_where_it_is_allowed() {
     for source in sources() {
@@ -297,8 +297,8 @@ fn only_the_window_draws() {
     }
 }
 
-/// What a person reads comes from the table of texts. A literal of a view may be a text's name there, or stand where
-/// nobody reads it; a word is three letters or more that are not all capitals.
+/// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a
+/// word has three letters or more that are not all capitals.
 #[test]
 fn no_view_holds_a_literal_text() {
     /// Behind these stand names for egui, for a place in a text, for the system or the compiler.

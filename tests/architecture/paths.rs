@@ -52,7 +52,7 @@ fn read<'t>(text: &'t str, before: &[String], ends: &mut Vec<Vec<String>>) -> &'
                 .trim_start()
                 .strip_prefix("as ")
                 .map_or(behind, |name| name.trim_start_matches(|c: char| c.is_alphanumeric() || c == '_'));
-            // What is no path ends the list: it stood in a macro.
+            // Anything but a path ends the list: it was in a macro.
             if behind.len() == rest.len() {
                 return behind;
             }

@@ -63,7 +63,7 @@ impl Place {
             ["devices" | "buses"] => place(Owner::Core, "lib"),
             ["signals"] => place(Owner::Signals, "lib"),
             ["devices", name] => place(Owner::Device((*name).to_owned()), "kinds"),
-            // What is no module of a device is a type that `mod.rs` hands on.
+            // Anything but a module of a device is a type that `mod.rs` re-exports.
             ["devices", name, module, ..] => {
                 place(Owner::Device((*name).to_owned()), layer_of_module(module).unwrap_or("kinds"))
             }

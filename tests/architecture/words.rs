@@ -1,6 +1,8 @@
-//! Words that must not come back into the texts of the window and the command line: docs/terms.md has those to use.
+//! Words that must not come back: into the texts of the window and the command line (docs/terms.md has those to use), and
+//! into the comments of the code.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 
 const ENGLISH: &[&str] = &[
     "nobody",
@@ -22,6 +24,9 @@ const ENGLISH: &[&str] = &[
     "talks",
     "on its desk",
 ];
+/// Words of comments, and how a doc comment must not begin: see CONTRIBUTING.md.
+const COMMENTS: &[&str] = &["nobody", "somebody", "anew", "all the same", "lately", "reckon", "mend", "lamp", "lamps"];
+const BEGINNINGS: &[&str] = &["Who ", "Where ", "That ", "Nobody ", "Somebody ", "Whoever "];
 const GERMAN: &[&str] = &["jemand", "lampe", "lampen", "leuchte", "leuchten", "verbindungsangabe"];
 
 /// Whether a text has these words as words.
@@ -62,10 +67,54 @@ fn no_text_has_a_word_that_was_given_up() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
+/// Returns the comments of a line with the marker and the text, and whether it begins a doc comment.
+fn comment(line: &str) -> Option<(bool, &str)> {
+    let text = line.trim_start().strip_prefix("//")?;
+    let is_doc = text.starts_with(['/', '!']);
+    Some((is_doc, text.trim_start_matches(['/', '!']).trim_start()))
+}
+
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let is_of_tests = path.file_stem().is_some_and(|stem| stem == "tests" || stem == "vectors");
+        match path.is_dir() {
+            _ if is_of_tests => {}
+            true => sources(&path, found),
+            false => found.extend(path.extension().is_some_and(|ending| ending == "rs").then_some(path)),
+        }
+    }
+}
+
+#[test]
+fn no_comment_has_a_word_that_was_given_up() {
+    let (mut files, mut found, mut read) = (Vec::new(), Vec::new(), 0);
+    sources(Path::new("src"), &mut files);
+    for path in files {
+        let mut goes_on = false;
+        for (number, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
+            let Some((is_doc, text)) = comment(line) else {
+                goes_on = false;
+                continue;
+            };
+            read += 1;
+            let begins = is_doc && !goes_on && BEGINNINGS.iter().any(|beginning| text.starts_with(beginning));
+            if begins || COMMENTS.iter().any(|words| has(text, words)) {
+                found.push(format!("{}:{}: {text}", path.display(), number + 1));
+            }
+            goes_on = true;
+        }
+    }
+    assert!(read > 10_000, "{read} lines of comments");
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
 #[test]
 fn a_word_is_found_as_a_word() {
     assert!(has("Nobody acknowledges.", "nobody") && has("as all the same", "all the same"));
     assert!(!has("Recommend it.", "mend") && !has("clamps", "lamps"));
+    assert_eq!(comment("    /// Who comes."), Some((true, "Who comes.")));
+    assert_eq!((comment("let x = 1;"), comment("// It is.")), (None, Some((false, "It is."))));
     let line = r#"    "x": (en: "a \"lamp\" b", de: "eine Lampe"),"#;
     assert_eq!(texts(line).collect::<Vec<_>>(), [("en", r#"a \"lamp\" b"#), ("de", "eine Lampe")]);
 }

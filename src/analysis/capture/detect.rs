@@ -135,7 +135,7 @@ impl Layout {
             columns,
             time_unit: wishes.time_unit.or(time_unit).unwrap_or_default(),
             volts_per_unit: wishes.volts_per_unit.unwrap_or(volt_unit.factor()),
-            // Who says what the time column is in does not mean sample numbers.
+            // A given unit of the time column excludes sample numbers.
             clock: clock.filter(|_| columns.time.is_some() && wishes.time_unit.is_none()),
         })
     }

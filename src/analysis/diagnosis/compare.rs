@@ -83,7 +83,7 @@ fn is_worse(finding: &Finding, before: &Diagnosis, after: &Diagnosis) -> bool {
         _ if before.amplitude_v.is_none() => return false,
         // Compared by their size.
         What::Hum { .. } | What::Interference { .. } | What::Noise { .. } => return false,
-        // What follows from those, and what the shaft did.
+        // Consequences of the others, and properties of the motion.
         What::Uncertain { .. } | What::Reversed { .. } => return false,
         // Something else may have explained it in the first.
         What::Limit(OutOfLimits::Residual(_)) => {
@@ -136,7 +136,7 @@ fn amount(what: &What) -> f64 {
         What::Spikes { count, .. } | What::LetsGo { count, .. } => count as f64,
         What::Missing { gaps, .. } => gaps as f64,
         What::Half { share, .. } => 1.0 / share,
-        // Where they are, they are: nothing makes them more.
+        // Their presence counts: there is no amount to compare.
         _ => f64::NAN,
     }
 }

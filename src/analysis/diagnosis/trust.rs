@@ -23,7 +23,7 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, What)) {
         say(Severity::Warning, What::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
     }
     if !analysis.is_followed() {
-        // What seems to turn back may be half a period too much.
+        // An apparent reversal may be half a period too much.
         say(Severity::Warning, What::Coarse { step_deg: analysis.step_deg });
     } else if analysis.coverage.reversals > 0 {
         say(Severity::Notice, What::Reversed { times: analysis.coverage.reversals });

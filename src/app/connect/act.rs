@@ -16,7 +16,7 @@ impl Studio {
                 let tab = Some(self.settings.tab).filter(|tab| kinds.of_tab(*tab).is_some());
                 let shown = || self.shown().map(|device| device.tab());
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
-                // What was used before comes first.
+                // The last used target comes first.
                 let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());
                 self.connect = Some(Connect::new(kinds, device, last));
                 self.list_ports();

@@ -203,7 +203,7 @@ pub fn untold(untold: Untold) -> Text {
 }
 
 fn hertz(text: Text, frequency_hz: f64) -> Text {
-    // What a person looks for is a round number: four digits are enough above 1 kHz.
+    // Users look for a round number: four digits are enough above 1 kHz.
     text.with_number("hertz", frequency_hz, if frequency_hz < 1_000.0 { 1 } else { 0 })
 }
 

@@ -199,7 +199,7 @@ impl Recorder {
                 Ok(()) if is_end => export.sender = None,
                 Ok(()) => {}
                 Err(TrySendError::Full(portion)) => export.next = Some(portion),
-                // Nobody takes it: the thread says why.
+                // The receiver is gone: the thread reports why.
                 Err(TrySendError::Disconnected(_)) => export.sender = None,
             }
         }
@@ -227,7 +227,7 @@ impl Recorder {
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
         for (head, history) in heads.iter_mut().zip(&histories) {
-            // What was evicted meanwhile is not there any more.
+            // Samples evicted meanwhile are gone.
             let start = history.map_or(head.end, |history| history.all().start.min(head.end));
             *lost += start.saturating_sub(head.next);
             head.next = head.next.max(start);
@@ -276,7 +276,7 @@ impl Writing {
         let mut given_up = false;
         let rows = write_by(&self.path, |file| {
             given_up = !self.write(file, wake)?;
-            // What is not whole does not replace what is there.
+            // An incomplete file does not replace the existing one.
             if given_up { Err(io::ErrorKind::Interrupted.into()) } else { Ok(()) }
         });
         let rows = match rows {
@@ -313,7 +313,7 @@ impl Writing {
             file.write_all(text.as_bytes())?;
             self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
         }
-        // Whoever handed over is gone.
+        // The sender is gone.
         Ok(false)
     }
 }

@@ -90,7 +90,7 @@ impl Watch {
     fn is_it(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
-        // Across a gap nobody has seen an edge.
+        // Across a gap no edge was observed.
         let last = self.last.filter(|_| !sample.flags.contains(Flags::BREAK));
         self.last = value;
         let level = self.level;
@@ -159,7 +159,7 @@ impl Recorder {
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
         let history = &group.history;
         let Some(oldest) = history.time(history.all().start) else { return false };
-        // What goes anyway before the picture begins is no loss to it.
+        // Samples that are evicted before the picture begins are no loss to it.
         let remains = history.oldest_after(more);
         remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
     }

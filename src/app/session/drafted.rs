@@ -123,7 +123,7 @@ pub trait Drafted: HasSession {
             }
             self.take_written(file, *saving.document, services);
         }
-        // What was told of this document until now is over.
+        // Earlier notices about this document no longer apply.
         services.log.settle(NOT_SAVED, Some(&name));
         services.log.settle_file(&saving.path);
         if self.edited().is_nothing() {

@@ -167,7 +167,7 @@ impl<E: DraftEdits> Drafting<E> {
                 services.tell(Severity::Warning, vec![Text::new("session.draft_elsewhere")], Some(name));
                 return None;
             }
-            // Nobody can keep a draft in such a folder, which is told when there is something to keep.
+            // A draft cannot be kept in such a folder, which is reported when there is something to keep.
             Err(_) => {}
         }
         self.looked = true;

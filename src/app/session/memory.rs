@@ -143,7 +143,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.is_of_another(&prepared) {
             *self.review_mut() = None;
-            // Where something is edited, the other device is told of when it was read.
+            // If something is edited, the other device was reported when it was read.
             if !self.pending().is_dirty() {
                 let serial = prepared.device(self.session().is_virtual()).serial_number;
                 let text = Text::new("session.plan_of_another").with("serial", serial);
@@ -223,7 +223,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = told::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
-        // What went well stands in the review until that is closed.
+        // A success stays in the review until that is closed.
         if severity == Severity::Good && stands {
             services.note(severity, texts, Some(&name));
         } else {

@@ -264,7 +264,7 @@ impl<D: Kind> Session<D> {
             services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
             self.phase = Phase::Lost(why);
             if let Some(opening) = &mut self.opening {
-                // What it still gives is for nobody; the next attempt waits until it is over.
+                // Its further results are dropped; the next attempt waits until it is over.
                 opening.attempt = None;
             }
         }

@@ -103,7 +103,7 @@ fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Re
     };
     let says = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
     let found = says(&text);
-    // Somebody may have changed comments alone: those are kept like any others.
+    // A change of comments only: they are kept like any others.
     if text == opened || found.is_some() && (found == says(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }

@@ -83,7 +83,7 @@ pub trait SessionEvents: HasSession {
 
     /// The same, for a kind that does more at such a time.
     fn hear(&mut self, services: &mut Services) {
-        // What was sampled before a job comes before what the job says; what was sampled after it comes the next time.
+        // Samples from before a job come before its result; later ones come the next time.
         self.take_samples_and_frames();
         while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {
             self.take(event, services);
@@ -177,7 +177,7 @@ pub trait SessionEvents: HasSession {
     /// The connection is gone; what is known and edited stays.
     fn lose(&mut self, why: Text, services: &mut Services) {
         self.line_ends();
-        // What passed at last says most about why it was the last.
+        // The last frames show best why it was the last.
         self.take_samples_and_frames();
         self.forget_asked();
         self.cut_off(EarlyEnd::Lost, std::slice::from_ref(&why), services);

@@ -101,7 +101,7 @@ impl Served {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);
         for (to, packet) in device.poll_datagrams(self.clock.now()) {
-            // What cannot be sent is lost, as on any network.
+            // A packet that cannot be sent is lost, as on any network.
             let _ = self.socket.send_to(&packet, to);
         }
         device.poll_datagrams_at().map_or(REST, |next| next.since(self.clock.now()))

@@ -104,7 +104,7 @@ impl AdapterLink {
                 // Nothing is ever sent: it ends, or hangs for ever.
                 let _ = earlier.recv_timeout(patience);
             }
-            // Whoever had the wire before gives it back first; where he does not, it cannot be opened.
+            // The previous owner of the wire returns it first; if not, the wire cannot be opened.
             for (ending, patience) in before {
                 ending.wait(patience);
             }

@@ -56,7 +56,7 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Reckons.
+    /// Calculates the circuit.
     ///
     /// # Errors
     /// The first entry that cannot be used, in words.

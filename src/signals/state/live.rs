@@ -271,7 +271,7 @@ impl Source {
                 return false;
             }
         };
-        // What runs gives its wire back first.
+        // A running source returns its wire first.
         self.stop(services);
         match link.start(self.sample_hz, self.supply.map(Family::supply), earlier, services) {
             Ok(feed) => {
@@ -334,7 +334,7 @@ impl Signals {
             SourceAction::Hold(held) => {
                 if let Some(live) = &mut self.source.live {
                     live.held = held;
-                    // What comes while it is held is not shown: the next samples do not join those before.
+                    // Samples that arrive while frozen are not shown: the next ones do not continue the previous ones.
                     self.scope.interrupt();
                 }
             }

@@ -64,7 +64,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     if started {
         ask(SourceAction::StartAdapter);
     } else if closed {
-        // What was wrong has been read.
+        // The problem has been read.
         ask(SourceAction::SetLink(source.link().to_owned()));
     }
     started || closed

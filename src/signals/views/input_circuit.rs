@@ -21,7 +21,7 @@ const HEIGHT: f32 = 220.0;
 
 /// Draws the page.
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
-    // What is drawn beside the entries is what they come to now.
+    // The drawing beside the entries shows their present result.
     let circuit = form.circuit();
     split(
         ui,

@@ -159,7 +159,7 @@ fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
         (true, SourceKind::Adapter, Some(streaming)) => {
             Some(Origin::Adapter { name: streaming.hello.name.clone(), is_virtual: source.is_virtual() })
         }
-        // Who it is will be told.
+        // The identity is not known yet.
         (true, SourceKind::Adapter, None) => None,
         (false, ..) => shown.cloned(),
     };
@@ -287,7 +287,7 @@ fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &m
     name(menu.response, true, &word);
 }
 
-/// What would be here, and what fills it.
+/// Draws an empty state, with the buttons that fill it.
 fn nothing(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     if signals.reading().is_some() {
         return;

@@ -30,7 +30,7 @@ pub(super) fn page_ui(
 ) {
     let state = signals.synchronise();
     let mut form = state.form.clone();
-    // What is drawn beside the entries is what they come to now.
+    // The drawing beside the entries shows their present result.
     let told = form.told();
     // Two rows, so that also in one column the result stands next to what it comes from.
     split(

@@ -1,4 +1,4 @@
-//! What was found out about the table that a capture comes from, beside its first lines; each can be corrected.
+//! The detected format of the table of a capture, beside its first lines; each property can be corrected.
 
 use egui::{ScrollArea, Ui};
 
@@ -10,7 +10,7 @@ use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Theme, icons};
 
-/// What is remembered of the card.
+/// The state of the card between frames.
 #[derive(Default)]
 pub(super) struct TableUiState {
     /// It is shown.

@@ -82,7 +82,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
 }
 
 fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[Slid], ask: &mut impl FnMut(SourceAction)) {
-    /// What the number behind a slider takes.
+    /// Width of the number beside a slider.
     const NUMBER: f32 = 96.0;
     let label = LABELS.min(ui.available_width() * 0.4);
     let rail = (ui.available_width() - label - NUMBER - 3.0 * theme.space.between).clamp(40.0, 220.0);

@@ -244,7 +244,7 @@ impl<'a> Model<'a> {
 }
 
 fn remainder(number: i128, whole: u64) -> u64 {
-    // What remains of a division by 64 bits fits into them.
+    // The remainder of a division by 64 bits fits into them.
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 

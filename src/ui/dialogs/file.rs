@@ -120,7 +120,7 @@ pub(in crate::ui) fn file_ui(
         let response = text_entry(ui, &mut view.path, ui.available_width(), &theme.say("file.path"), "");
         if std::mem::take(&mut view.fresh) {
             response.request_focus();
-            // What is typed replaces the name, not the folder.
+            // Typing replaces the name, not the folder.
             let name = view.path.rsplit(std::path::MAIN_SEPARATOR).next().unwrap_or_default().chars().count();
             let end = view.path.chars().count();
             let range =

@@ -56,7 +56,7 @@ pub(in crate::ui) fn live_ui(
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
-    // Also where nothing waits: the next job begins anew.
+    // Also if nothing waits: the next job starts from zero.
     let share = ui.ctx().animate_bool_with_time(id, waits, if waits { NOTICED } else { 0.0 });
     waits && share >= 1.0
 }

@@ -71,7 +71,7 @@ const SECOND: i64 = 1_000_000_000;
 pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
-    // Where labels would differ in their last digits only, they count from a round point before them.
+    // Labels that would differ in their last digits only count from a round point before them.
     let coarse =
         if step < SECOND && from.nanoseconds().abs() > 2000 * step { Some(coarse_base(from, step)) } else { None };
     let origin = coarse.unwrap_or(0);

@@ -143,7 +143,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
         let handle = Rect::from_center_size(pos2(x, layout.chart.top() + 8.0), vec2(16.0, 16.0));
         painter.rect_filled(handle, 3.0, palette.text);
         painter.text(handle.center(), Align2::CENTER_CENTER, cursor.word(), font.clone(), palette.sunken.into());
-        // Where it meets each line: the raw sample that it reads.
+        // Intersections with the lines: the raw samples that it reads.
         for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
             if let Some(line) = context.recorder.line(*line) {
                 dot(painter, context, layout, lane, line, time);

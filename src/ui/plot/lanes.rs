@@ -49,13 +49,13 @@ pub(super) struct Layout {
 #[derive(Default)]
 pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
-    /// What each of them was made of.
+    /// The inputs of each picture.
     made: Vec<(LineId, Made)>,
     /// How much room the labels of the values took.
     gutter: f32,
 }
 
-/// What a picture is made of: when it is the same, so is the picture.
+/// The inputs of a picture: if they are unchanged, so is the picture.
 #[derive(Clone, PartialEq)]
 struct Made {
     samples: Option<Stamp>,

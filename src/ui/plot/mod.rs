@@ -20,7 +20,7 @@ use super::controls::empty;
 use crate::app::recorder::{self, Recorder};
 use crate::app::{Action, RecorderOwner};
 
-/// What a plot remembers while the window is open.
+/// The state of a plot between frames.
 #[derive(Default)]
 pub struct PlotUiState {
     /// Whose plot it was.
@@ -78,7 +78,7 @@ pub fn plot_ui(
     actions: &mut Vec<Action>,
 ) {
     if view.desk.replace(desk).is_some_and(|before| before != desk) {
-        // What was being dragged and typed was another's.
+        // Drags and typed text belonged to another one.
         *view = PlotUiState { desk: view.desk, large: view.large, ..PlotUiState::default() };
     }
     let context = &mut Context { theme, recorder, desk, actions };

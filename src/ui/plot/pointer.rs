@@ -1,4 +1,4 @@
-//! What the pointer and the keyboard do on the chart.
+//! Pointer and keyboard on the chart.
 
 use egui::{EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
 
@@ -12,7 +12,7 @@ const NEAR: f32 = 6.0;
 /// A box that is smaller, in points, was a click.
 const CLICK: f32 = 5.0;
 
-/// What is being dragged.
+/// The object of a drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
     /// A cursor.
@@ -99,7 +99,7 @@ fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     }
     let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
     let part = chosen.intersect(lane.rect).height();
-    // Nobody draws along a line exactly: a flat box is about time alone, and one over the whole lane too.
+    // No one drags along a line exactly: a flat box means time only, and so does one over the whole lane.
     if part >= CLICK * 3.0 && part < lane.rect.height() * 0.9 {
         let axis = lane.axis();
         let low = axis.value(chosen.bottom().min(lane.rect.bottom()));

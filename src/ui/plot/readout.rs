@@ -98,7 +98,7 @@ fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
 }
 
-/// What the cursors tell of a line: names and values.
+/// Draws the readings of the cursors on a line: names and values.
 fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, String)> {
     let decimals = line.decimals();
     let number = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |value| theme.number(value, decimals));

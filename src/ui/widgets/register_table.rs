@@ -276,7 +276,7 @@ fn body(
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
             editor::editor_ui(&mut ui.new_child(builder), theme, id, cell, table, view, take);
         }
-        // What was refused by that stays to be seen, and gives way to the next press.
+        // A value refused by that stays visible, and gives way to the next press.
         let refused_now = view.is_refused() && !was_refused;
         if let Some(place) = view.wanted.take()
             && !refused_now
@@ -352,7 +352,7 @@ fn row(
     let in_box = response.clicked()
         && response.interact_pointer_pos().zip(boxed).is_some_and(|(pos, boxed)| boxed.contains(pos));
     if in_box || response.double_clicked() {
-        // What is being typed elsewhere is heard first.
+        // The editor elsewhere is handled first.
         view.wanted = Some(place);
     }
     let typing = view.edit.as_ref().is_some_and(|edit| edit.place == place);

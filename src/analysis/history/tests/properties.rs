@@ -96,7 +96,7 @@ fn build(kind: Kind, runs: &[Run], capacity: usize) -> (History, Model) {
             let flags =
                 if remarkable { [Flags::BAD, Flags::WARNING, Flags::BREAK][random.usize(0..3)] } else { Flags::NONE };
             let value = value(kind, run.shape, run.offset, at, &mut random);
-            // What is given to the history, which has to draw the consequences itself.
+            // The history has to draw the consequences itself.
             model.times.push(now);
             model.values.push(value);
             model.flags.push(flags);

@@ -222,7 +222,7 @@ impl Adapter<'_, '_> {
     /// [`AdapterError::Version`] among others.
     pub(crate) fn hello(&mut self) -> Result<(), Failure> {
         if self.adapter.hello.is_none() {
-            // The empty packet before it ends what the adapter may have heard of somebody else.
+            // The empty packet before it ends anything that the adapter may have received from another host.
             let answered = self.repeat(&Request::Hello, &[0])?;
             let Reply::Hello(hello) = answered.reply else {
                 return Err(AdapterError::other(Operation::Hello, &answered.reply).into());
@@ -402,7 +402,7 @@ mod tests {
         assert_eq!(clocks.moment_of(3000, at(3950), at(4010)), at(3000) + Duration::from_nanos(1_002_500));
         // A slow exchange no longer widens it.
         assert_eq!(clocks.moment_of(5000, at(5500), at(9000)), at(5000) + Duration::from_nanos(1_002_500));
-        // The adapter has started anew.
+        // The adapter has restarted.
         assert_eq!(clocks.moment_of(10, at(20_000), at(20_100)), at(20_050));
         assert_eq!(clocks.moment_of(u64::MAX, at(30_000), at(30_100)), at(30_050));
     }

@@ -6,7 +6,7 @@ use super::packet::{Packet, PacketError};
 #[derive(Clone, Debug, Default)]
 pub struct Receiver {
     bytes: Vec<u8>,
-    /// Where the search for the next 00 continues.
+    /// Start of the search for the next 00.
     searched: usize,
     /// The packet under way is too long to be one: its bytes are let go until it ends.
     overlong: bool,

@@ -23,7 +23,7 @@ impl Receiver {
     /// The next whole frame.
     ///
     /// # Errors
-    /// [`PacketError`], from then on always: where a header is wrong nobody can tell where the next one begins, and the
+    /// [`PacketError`], from then on always: after a wrong header the start of the next one is not known, and the
     /// connection has to be closed.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
         if let Some(why) = self.broken {

@@ -1,5 +1,5 @@
-//! `do`: filter, preset, and the procedures with a person at the motor. Without a terminal nobody can be asked what
-//! turns the motor; --yes then states that it does not need this encoder.
+//! `do`: filter, preset, and the procedures with a person at the motor. Without a terminal the question what turns the
+//! motor cannot be asked; --yes then states that the motor does not need this encoder.
 
 use std::path::Path;
 use std::time::Duration;
@@ -70,8 +70,8 @@ fn check_device(common: &Common, output: &Output) -> Result {
 }
 
 fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
-    // Nothing is stored by it, so that it needs no consent without a terminal; somebody who sits there may have entered
-    // what it discards.
+    // Nothing is stored by it, so it needs no consent without a terminal; a user there may have entered what it
+    // discards.
     if !act.consent.yes && can_ask() && !ask("Values that were entered and not saved will be lost. Lead back? [y/N] ") {
         return Err(Failure::Failed(vec!["Not confirmed; the encoder is left as it is.".to_owned()]));
     }
@@ -214,7 +214,7 @@ impl<'a> PresetArguments<'a> {
                 return Err(Failure::Usage(form.to_owned()));
             }
         };
-        // Whatever is no number is found before the link is opened.
+        // Invalid numbers are found before the link is opened.
         value(singleturn.unwrap_or("0"), multiturn.unwrap_or("0"))?;
         Ok(PresetArguments { singleturn, multiturn, parts })
     }

@@ -33,8 +33,8 @@ pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
     }
 }
 
-/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing. Nobody but the measurement
-/// says when a run may start: `patience` is how long that is waited for.
+/// Asks for consent where needed, and carries the plan out. An empty plan sends nothing. Only the measurement decides
+/// when a run may start: `patience` is the time limit for that.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,

@@ -55,7 +55,7 @@ mod tests {
         let mut bench = bench(biss(), virtual_adapter("rpm=3000&position=0"));
         let batches = bench.take(Duration::from_secs(5));
         let (frames, lost) = count(&batches);
-        // What was sampled last may still be on its way, or the last wait was a little longer.
+        // The last samples may still be in transit, or the last wait was a little longer.
         assert!((99_880..=100_500).contains(&frames) && lost == 0, "{frames} frames, {lost} lost");
         let begin = batches[0].time;
         assert!((0..10_000_000).contains(&begin.nanoseconds_since(Time::from_nanoseconds(3_000_000_000))), "{begin:?}");

@@ -75,10 +75,7 @@ pub enum Change {
         parts: Option<PresetParts>,
     },
     /// Procedures led by a person: one, or all of a mounting.
-    Guided {
-        run: MountingRun,
-        motor: MotorSource,
-    },
+    Guided { run: MountingRun, motor: MotorSource },
 }
 
 /// Kinds of change that differ in what completes one that was cut off.

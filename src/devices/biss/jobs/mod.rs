@@ -196,7 +196,7 @@ impl Device for Biss {
     }
 
     fn watch(&mut self, desk: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
-        // What is data, and not to be touched while the shaft turns.
+        // Determines the data areas, which must not be read while the shaft turns.
         self.know(desk)?;
         let reading = read_watched(&mut self.master(desk), *what)?;
         let refused = reading.value.is_err();

@@ -37,7 +37,7 @@ pub(super) fn prepare(
             only(plan_preset(&description, &state(&mut master, &identity, &[], tell)?, *value, *parts)?)
         }
         Change::Guided { run, motor } => {
-            // Whoever is refused is so before anything else is read.
+            // Refusals come before anything else is read.
             run.check(*motor)?;
             let areas: Vec<Area> = description.areas().to_vec();
             let banks = run.data.as_ref().map(|profile| banks_needed(profile, &areas)).unwrap_or_default();

@@ -60,7 +60,7 @@ impl<'a> Master<'a> {
     /// A master on this line, for one job: it has its patience before it.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
-        // Who knows what happened to the encoder since the last one.
+        // The encoder may have restarted since the last one.
         station.bank = None;
         Master { line: SerialLine::new(ctx), station }
     }

@@ -138,7 +138,7 @@ pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<Watc
     let description = master.station().description.clone();
     let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());
     let value = match what.addresses().find(|address| of_area(*address)) {
-        // Manual 6.5: not while the shaft turns, and nobody lets it stand for this.
+        // Manual 6.5: not while the shaft turns, and the user does not stop it for this.
         Some(address) => Err(Error::NotWatched { address }),
         None => match master.read_run(what.start(), what.count().into()) {
             Err(error) if !matches!(error, Error::NoSuchRegister { .. }) => return Err(error),

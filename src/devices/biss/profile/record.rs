@@ -234,7 +234,7 @@ impl DataImage {
     pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.only_byte() == Some(byte)).count();
-        // What memory holds that was never written, or was erased.
+        // The content of memory that was never written, or was erased.
         let most = [0x00, 0xFF].into_iter().rev().max_by_key(|byte| count(*byte));
         let empty = most.filter(|byte| is_whole && count(*byte) > 0);
         let holds = |bank: &Bank| empty.is_none() || bank.only_byte() != empty;

@@ -275,7 +275,7 @@ mod tests {
         assert_eq!(layout.parse((1 << 41) - 1), Err(FrameError::StuckHigh));
         assert_eq!(layout.parse(1 << 41), Err(FrameError::Long { bits: 41 }));
         assert_eq!(layout.parse(0x0FB), Err(FrameError::Crc { expected: 0x3A, got: 0x3B }));
-        // Where all zeros are a frame, as with a sum that is not inverted, they are one.
+        // If a frame of all zeros is valid, as with a checksum that is not inverted, it is one.
         let plain = Layout::new(0, 12, false, false, Crc::new(0x43, 0, false).ok()).unwrap();
         assert_eq!(plain.parse(0), Ok(Reading::default()));
         let bare = Layout::new(0, 12, false, false, None).unwrap();

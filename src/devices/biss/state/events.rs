@@ -168,7 +168,7 @@ impl SessionEvents for Encoder {
     }
 
     fn try_submit(&mut self, job: BissJob, services: &mut Services) -> bool {
-        // What is wanted next decides anew.
+        // The next request decides again.
         self.refusal = None;
         self.session.submit(job, services)
     }

@@ -76,7 +76,7 @@ impl Record {
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
         match self.stream {
-            // Whatever was dropped, the numbers of the frames tell how many there were.
+            // Whatever was dropped, the numbers of the frames show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
             _ => self.track.lose(dropped),
         }
@@ -152,7 +152,7 @@ impl Record {
             return;
         }
         let before = self.last.as_ref().map(Widths::from);
-        // Where nothing was read in this session, it goes on as what it was in the one before.
+        // If nothing was read in this session, the meaning of the previous one stays.
         let unknown = || self.track.meaning().cloned().unwrap_or_else(|| Meaning::of_steps(None));
         let meaning = batch.widths.or(before).map_or_else(unknown, meaning);
         self.track.add(&batch.sightings, &meaning);

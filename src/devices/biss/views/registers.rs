@@ -189,7 +189,7 @@ fn table(
         let revert = start(place).map(|start| Biss::Revert { start, count: 1 });
         actions.extend(revert.map(|revert| Action::device(encoder.session.id, revert)));
     }
-    // What comes in sight is read once by itself, when nothing else is to be done.
+    // Visible registers are read once automatically, while nothing else runs.
     let in_sight = encoder.table.groups().iter().enumerate().skip(output.groups.start).take(output.groups.len());
     let unread = |(at, own): &(usize, &Group)| !view.table.is_folded(*at) && encoder.wants(own);
     if let Some((_, own)) = in_sight.into_iter().find(unread) {

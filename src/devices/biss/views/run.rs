@@ -16,7 +16,7 @@ use crate::ui::{Theme, icons};
 
 pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
-    // What came of it is looked at when it is there.
+    // The result is opened when it is available.
     let is_over = guide.end.is_some();
     let seen = ui.scope_id().with("end");
     if is_over && !ui.data(|data| data.get_temp(seen)).unwrap_or(false) {
@@ -82,7 +82,7 @@ fn step(
     let mut step = Step { title, state, word: say(theme, word), ..Step::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
-            // What is best of the speed the gauges say, which do not come and go.
+            // The best speed is in the gauges, which do not come and go.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice(*own))).collect();
             step.note = notes.join("\n");

@@ -69,7 +69,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     }
     let told: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
     let done = show_done(output, &act.action, &operations, &spent, &[], &format!("{said}{told}"))?;
-    // What was done may have been in vain.
+    // The completed part may have been in vain.
     match action {
         HiperdriveAction::PresenceTest => present(&before, &found)?,
         HiperdriveAction::Acknowledge if !operations.is_empty() => {

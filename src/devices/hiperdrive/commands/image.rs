@@ -17,7 +17,7 @@ pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<Reading>, Stri
     let mut readings = Vec::new();
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
-        // What cannot be a status word is one only where nothing else fits.
+        // A word that cannot be a status word is one only where nothing else fits.
         let from = || from_drives(bytes, layout).filter(|_| words.is_empty() || is_of_drives(bytes, layout));
         match (to_drives(bytes, layout), known.direction) {
             (Err(why), Some(Direction::Out)) if words.is_empty() => return Err(why),

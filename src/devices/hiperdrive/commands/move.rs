@@ -56,7 +56,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
         other => return Err(unexpected(&other)),
     };
     let (permit, scale) = permit(&mut runner, &identity, drive)?;
-    // What cannot be is refused before anything was opened.
+    // An impossible target is refused before anything is opened.
     let target = within(&permit, target)?;
     permit.check(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
     if let Some((low, high)) = permit.limits {
@@ -150,7 +150,7 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
     let until = Instant::now() + patience;
     let act = motion.intend(drive, wish);
     loop {
-        // What came in between is not kept fresh: Ctrl-C has stopped the drive itself.
+        // The motion is not refreshed any more: Ctrl-C has stopped the drive itself.
         if runner.is_interrupted() {
             motion.stop();
             return Came::Interrupted;

@@ -47,7 +47,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     if (row.number, value) == (47, 0) {
         return Err(failed(&TEXTS.text("hd_cli.no_service")));
     }
-    // What the turns of the drive bound the plan looks at: with the scale of the drive both limits can be named.
+    // The plan checks the limits of the drive's turns: with its scale both limits can be named.
     if row.reach.is_none() || row.number == REFERENCE {
         row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
     }

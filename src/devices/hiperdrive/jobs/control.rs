@@ -121,7 +121,7 @@ impl Hiperdrive {
                 Ok(())
             }
             Err(error) => {
-                // What cannot be used is given back; why it cannot be used is what counts.
+                // An unusable connection is closed; the original error is the one reported.
                 if let Err(why) = self.master(desk).forward_close(&opened.close) {
                     tracing::warn!("{why}");
                 }
@@ -169,7 +169,7 @@ impl Hiperdrive {
             return;
         }
         self.remark = Some(DeviceMessage::ControlLost);
-        // It may have ended there already, or nobody answers: it ends there by itself then.
+        // It may have ended there already, or there is no answer: it then ends there by itself.
         if let Err(why) = self.give(desk) {
             tracing::warn!("{why}");
         }
@@ -194,7 +194,7 @@ impl Hiperdrive {
         }
         let ended = carry_through(self, desk, commit, tell);
         let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
-        // Who is gone is not asked again.
+        // A lost device is not asked again.
         if !lost && let Err(why) = self.read_rules(desk, identity) {
             tracing::warn!("{why}");
         }

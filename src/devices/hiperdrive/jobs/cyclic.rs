@@ -94,7 +94,7 @@ impl Cyclic {
     /// Stops the drives, switches them off and ends; what is left is to close the connection. Why it was lost, where it was.
     pub fn close(self) -> Option<CyclicLost> {
         self.wishes.end.store(true, Ordering::SeqCst);
-        // The channel ends with the thread; whoever is later than that is not waited for.
+        // The channel ends with the thread; a later end is not awaited.
         let _ = self.ended.recv_timeout(PATIENCE);
         self.lost()
     }

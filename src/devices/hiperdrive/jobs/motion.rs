@@ -300,7 +300,7 @@ impl Motion {
     }
 
     fn lock(&self) -> MutexGuard<'_, Cell> {
-        // Each change is whole: whoever panicked has left nothing half done.
+        // Each change is complete: a panic leaves nothing half done.
         self.0.cell.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -4,11 +4,11 @@
 //! | what | time |
 //! |---|---|
 //! | a request, at least, while a drive moves ([`REQUEST`]) | 60 ms |
-//! | without an answer, at most ([`PATIENCE`]), or twice what the device has taken lately | 130 ms |
+//! | without an answer, at most ([`PATIENCE`]), or twice what the device took recently | 130 ms |
 //! | together | 190 ms |
 //!
-//! What counts is for how long somebody has listened: a thread that a busy computer kept from looking cannot say that there was
-//! no answer. Beyond [`UNHEARD`] that counts as none.
+//! What counts is how long the thread has listened: a thread that a busy computer kept from listening cannot
+//! conclude that there was no answer. Beyond [`UNHEARD`] it counts as none.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -237,7 +237,7 @@ mod tests {
         watch.ask(at(0));
         watch.answer(at(300));
         watch.ask(at(1000));
-        // Nobody looks at the line: 250 ms more.
+        // The line is not read for another 250 ms.
         assert!(!watch.is_silent(at(1850)) && watch.is_silent(at(1851)));
         watch.answer(at(1900));
         watch.ask(at(7000));

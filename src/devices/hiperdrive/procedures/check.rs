@@ -322,7 +322,7 @@ fn errors(status: &DriveStatus) -> Vec<(Verdict, Finding)> {
     }
     findings.extend((*drive != 0).then_some((Verdict::Attention, Finding::DriveWord(*drive))));
     findings.extend((*motion != 0).then_some((Verdict::Attention, Finding::MotionWord(*motion))));
-    // What is in the buffer may be old: the count of faults says whether it matters.
+    // Entries of the buffer may be old: the count of faults shows whether they matter.
     let of_buffer = if *faults == 0 { Verdict::Good } else { Verdict::Attention };
     findings.extend(buffer.iter().map(|code| (of_buffer, Finding::Error(*code))));
     findings.extend((*faults != 0).then_some((Verdict::Attention, Finding::Faults(*faults))));

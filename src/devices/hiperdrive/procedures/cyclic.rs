@@ -2,11 +2,11 @@
 //! are arguments, and nothing waits here.
 //!
 //! ```text
-//! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (whoever owns a clock and a port sends them)
+//! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (sent by the owner of a clock and a port)
 //! ```
 //!
-//! Where nothing has come for three intervals, what moves stops. Where somebody has listened for as long, the connection is
-//! lost: the drives are told to stop, for as long as that takes, then to be off, and it is over. It never comes back; a person
+//! If nothing has arrived for three intervals, motion stops. After that time of uninterrupted listening, the connection is
+//! lost: the drives are stopped, for as long as that takes, then switched off, and it ends. It never comes back; the user
 //! opens another.
 
 mod connection;

@@ -5,7 +5,7 @@
 //! - a word that could begin a motion is sent only while a fresh act of a person asks for that motion. All others stand
 //!   ([`ControlWord::is_standing`]): nothing begins with them whatever the drive says, also where it says it late;
 //! - with the call that learns of a reason to stop, the word is one that stands;
-//! - an act that has ended never begins again, nor does one that nobody kept fresh before it could begin;
+//! - an act that has ended never begins again, nor does one that was not refreshed until it could begin;
 //! - a motion that leads beyond the limits, or away from its target, is stopped with the report that shows it (`watch`);
 //! - a drive that has run in speed mode is led through 0400 before anything else, which makes it forget the job that
 //!   clearing bit 12 would be; the target is where it stands whenever no job is under way.

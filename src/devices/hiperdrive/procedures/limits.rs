@@ -75,7 +75,7 @@ impl DriveLimits {
     /// Requires the parameters to be read again before the next motion begins: another master may have changed them. A
     /// running motion continues while the last reading is valid.
     pub fn doubt(&mut self, now: Moment) {
-        // Who doubts reads the clock first: of two threads the later doubt may come first.
+        // The clock is read before a doubt: of two threads the later doubt may come first.
         self.doubted = self.doubted.max(Some(now));
     }
 

@@ -159,7 +159,7 @@ impl<'a> Master<'a> {
     /// [`Error::Refused`]; the way.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = settable(number)?;
-        // What its turns bound the plan has looked at.
+        // The plan has checked the limits of its turns.
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let asked = Asked::Set(number);
@@ -297,7 +297,7 @@ impl<'a> Master<'a> {
                 ExchangeError::Status(_) => {}
             }
             let longest = within + self.station.line.margin;
-            // What is refused for its session was answered at once.
+            // A refusal for its session was answered at once.
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_ask_again(&mut self.station.line, tries, took);
             match trouble {
@@ -367,7 +367,7 @@ impl<'a> Master<'a> {
                 self.station.receiver = Receiver::default();
                 return Ok(Err(if bytes == 0 { ExchangeError::Silence } else { Damage::Cut { bytes }.into() }));
             }
-            // What sets something is heard out.
+            // Requests that set something are always awaited.
             if repeats == Repeats::Always {
                 self.line.check_cancel()?;
             }

@@ -95,7 +95,7 @@ fn read_image(
             Ok(value) => {
                 image.values.insert(number, value);
             }
-            // What is not there cannot be kept; texts are never.
+            // A missing value cannot be stored; texts never are.
             Err(Error::NoPlace { .. } | Error::Unknown(_) | Error::Value { .. } | Error::WriteOnly { .. }) => {}
             Err(error) if error.is_unsaid() => {}
             Err(error) => return Err(error),

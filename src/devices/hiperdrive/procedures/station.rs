@@ -102,7 +102,7 @@ impl Station {
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
     pub fn from_query(query: &Query, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
-        // Who serves messages at a port of their own serves cyclic data there as well.
+        // A server with its own port for messages uses it for cyclic data as well.
         let beside = tcp.filter(|port| *port != EXPLICIT_PORT).unwrap_or(IMPLICIT_PORT);
         Ok(Station { link, udp: link.udp.unwrap_or(beside), ..Station::new(margin) })
     }

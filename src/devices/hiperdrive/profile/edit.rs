@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::protocol::{
     Access, DriveNumber, ParameterNumber, PositionScale, Travel, nearest_reference,
 };
 
-/// Where drives stand, in steps as scaled (107).
+/// Positions of drives, in scaled steps (107).
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
 /// Makes a device what is wanted of it: only what differs is written, and saved where it can be. What the wanted image says
@@ -91,8 +91,8 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Lets the device do something. All that it keeps is what the plan rests upon, since nobody else can tell afterwards what it
-/// was; of an acknowledgement nothing is.
+/// Plans a service. Its base is everything that the device stores, since the old values cannot be determined
+/// afterwards; that of an acknowledgement is empty.
 pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     let values = match service {
         Service::Acknowledge(_) => BTreeMap::new(),
@@ -101,7 +101,7 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
 }
 
-/// What belongs together: the position's scale and the limits in it.
+/// The parameters that belong together: the position's scale and the limits in it.
 const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
 
 /// A parameter with another number.
@@ -149,7 +149,7 @@ impl Write {
     }
 }
 
-/// That a parameter may be written at all, and be this number.
+/// Checks that a parameter may be written, and with this value.
 fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), PlanError> {
     let item = Item(number);
     let row = number.row().ok_or(PlanError::NotRead { item })?;

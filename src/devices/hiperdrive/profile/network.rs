@@ -18,7 +18,7 @@ pub struct NetworkSettings {
 /// them says nothing. `switch` is parameter 12, where it is known.
 ///
 /// # Errors
-/// Addresses at which a device cannot be reached, and a source that nobody knows.
+/// Addresses at which a device cannot be reached, and an unknown source.
 pub fn plan_network(
     now: &NetworkSettings,
     switch: Option<i64>,

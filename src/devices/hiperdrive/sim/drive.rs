@@ -1,7 +1,7 @@
 //! A drive: what a control word does to it, how it moves, what goes wrong (reference 2 to 5).
 //!
 //! Chosen here (`U`): a word with reserved bits is ignored; with 0 % of speed or torque nothing begins and nothing is an
-//! error; a drive that is not requested (152 = 0), or that S3 is turned to, leaves "not ready" for nobody; a target beyond the
+//! error; a drive that is not requested (152 = 0), or that S3 is turned to, never leaves "not ready"; a target beyond the
 //! limits is fault 8503; a drive that is held fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one
 //! hotter than 80 °C at once (8202); a lost master is fault 8601; whoever loses operation while moving brakes as for a stop.
 

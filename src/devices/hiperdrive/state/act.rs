@@ -88,7 +88,7 @@ impl Unit {
             Motor::Resume => MotionRequest::Resume,
         };
         if let Err(why) = self.may(drive, wish) {
-            // What was under way goes on: nothing else has begun.
+            // The present act goes on: nothing else has begun.
             return self.tell_of(drive, Severity::Warning, vec![why], services);
         }
         match wish {

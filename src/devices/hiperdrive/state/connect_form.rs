@@ -162,7 +162,7 @@ impl HiperdriveForm {
         if self.big_endian {
             parameters.set(BIG_ENDIAN.0, BIG_ENDIAN.1);
         }
-        // What only a virtual device has is not taken along.
+        // Parameters of a virtual device are dropped.
         let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
         parameters.rest(&self.rest, belongs);
         parameters

@@ -88,7 +88,7 @@ impl fmt::Debug for Discover {
 /// Asks all who are in reach, and waits for a second.
 ///
 /// # Errors
-/// Nobody could be asked.
+/// The request could not be sent.
 fn ask_all() -> Result<Vec<Found>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut shout = UdpShout::to_all(EXPLICIT_PORT, clock.clone())?;

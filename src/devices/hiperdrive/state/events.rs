@@ -116,7 +116,8 @@ impl Unit {
 
     fn control_lost(&mut self, services: &mut Services) {
         self.moves.stop();
-        // What drives said last was said before, and nobody knows what has become of it; also what waits to be taken.
+        // The last data of the drives came before the loss, and their present state is not known; also what waits to be
+        // taken.
         self.take_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
@@ -210,7 +211,7 @@ impl SessionEvents for Unit {
         match output {
             HiperdriveOutput::Hello(identity) => {
                 self.session.just_connected = false;
-                // What is plugged in may be another since it was read.
+                // The plugged-in drives may have changed since.
                 if self.is_another(&identity) || self.survey.is_none() || !self.has_polled {
                     self.submit(HiperdriveJob::Survey, services);
                 }
@@ -249,15 +250,15 @@ impl SessionEvents for Unit {
                     services.log.settle(lost, Some(&self.session.name()));
                 }
                 self.poll();
-                // Somebody else may have set limits and scaling since they were read: nothing moves by the old ones. As
-                // soon as the line is free.
+                // Another master may have changed limits and scaling since they were read: nothing moves by the old
+                // ones. They are read as soon as the line is free.
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
             HiperdriveOutput::Given => {
                 self.moves.beat();
-                // Nobody looks at them any more.
+                // They are no longer read.
                 services.log.settle(RULES, Some(&self.session.name()));
-                // What was not read while somebody had it is read now.
+                // Values not read while another master was in control are read now.
                 self.looks_at_all |= self.is_stale;
             }
             HiperdriveOutput::Watched(drive) => self.watched = drive,
@@ -279,7 +280,7 @@ impl SessionEvents for Unit {
     fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
             EarlyEnd::Failed(_) => self.moves.stop(),
-            // What has to be read before a drive in hand moves is read all the same, behind whatever ended it.
+            // Values required before a controlled drive moves are read regardless of what ended the job.
             EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             EarlyEnd::Lost => {}
         }

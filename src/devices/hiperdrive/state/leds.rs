@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 pub struct Leds {
     /// It is a hub; else a bus adapter.
     pub hub: bool,
-    /// Switch S3 of a hub: 0 for all drives, else the drive that the lamp RS485 is about.
+    /// Switch S3 of a hub: 0 for all drives, else the drive that the RS485 LED shows.
     pub s3: u8,
     /// RS485.
     pub drives: DriveLight,
@@ -21,7 +21,7 @@ pub struct Leds {
     pub port: PortLight,
 }
 
-/// A lamp, or the two of a port.
+/// An LED, or the two of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lamp {
     /// RS485.
@@ -86,7 +86,7 @@ impl Leds {
         }
     }
 
-    /// Another device, or S3 elsewhere. A light that the lamp then cannot show is off.
+    /// Another device, or another setting of S3. An LED whose state is then impossible is off.
     pub fn look_at(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
         if self.subject().row(self.drives).is_none() {
@@ -94,7 +94,7 @@ impl Leds {
         }
     }
 
-    /// The lamp shows the next of what it can.
+    /// Changes an LED to its next possible state.
     pub fn click(&mut self, lamp: Lamp) {
         match lamp {
             Lamp::Drives => {

@@ -26,7 +26,7 @@ impl DeviceModel for Unit {
         self.began = Some(opened.began.clone());
         self.moves.begin(opened.aside.motion.clone());
         self.target = opened.aside.target.clone();
-        // What was read over a link before says nothing any more.
+        // Values read over an earlier link are void.
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
         let motion = opened.aside.motion.clone();
         self.session.take_line(opened, services);
@@ -86,7 +86,7 @@ impl DeviceModel for Unit {
         self.moves.stop();
         let pace = self.session.line.as_ref().and_then(LiveSession::polling).filter(|_| self.moves.is_open());
         self.session.stop(services);
-        // Whoever has the control goes on seeing the drives.
+        // Under control the drives stay visible.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
             line.poll(Some(pace));
         }

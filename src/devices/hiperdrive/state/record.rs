@@ -50,7 +50,7 @@ impl Record {
             is_warned: status.has(crate::devices::hiperdrive::protocol::StatusBit::Warning),
         };
         self.track.add(&[sighting], &meaning(ruler));
-        // A target that was recorded stays among what is watched while nobody has control.
+        // A recorded target stays among the watched values without control.
         let has_target = target.is_some() || self.track.watched().iter().any(|own| matches!(own, Beside::Target(_)));
         let mut beside = vec![Beside::Speed];
         beside.extend(has_target.then_some(Beside::Target(ruler)));

@@ -45,7 +45,7 @@ impl RemembersDrives for Unit {
             next.mark(drive.get(), 1);
         }
         for drive in before.unconfirmed.difference(&now.unconfirmed).map(|drive| drive.get()) {
-            // What was marked again elsewhere is not what a person has looked at here.
+            // A limit marked again elsewhere is not the one confirmed here.
             if kept.marks(drive) == before.kept.marks(drive) {
                 next.set_unconfirmed(drive, false);
             }

@@ -119,7 +119,7 @@ impl Unit {
             },
             Action::TakePlace => axis.take_limit(&seen),
             Action::Next => {
-                // What is typed was only looked at until now. Positions are measured on this spindle everywhere.
+                // The entries only served for a preview until now. Positions are measured on this spindle everywhere.
                 let confirms = axis.step() == Step::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
                 let pitch = axis.entries().pitch().ok().filter(|_| confirms);
                 axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen }, &when);

@@ -209,7 +209,7 @@ impl Staged {
             match value {
                 _ if !is_editable(row) => {}
                 Some(value) if is_read => {
-                    // What it may not be stands there as it was left, and is marked.
+                    // Values that are not allowed stay as they were left, and are marked.
                     wanted.values.insert(number, value);
                 }
                 Some(_) => self.waiting.push(SavedEdit(number.get(), value)),

@@ -34,7 +34,7 @@ impl Unit {
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();
-        // What the control has read may be newer than what the survey did.
+        // Values read under control may be newer than the survey.
         let differs = self.drives().into_iter().any(|drive| self.is_limited_otherwise(drive));
         (self.is_stale, self.looks_at_all) = (differs, differs);
         if !self.drives().contains(&self.drive)

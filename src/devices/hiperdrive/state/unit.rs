@@ -201,7 +201,7 @@ impl Unit {
     /// Returns the last data of a drive: from the cyclic connection, or from polling.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
-        // What was read at the beginning says nothing any more once the device is gone.
+        // Values read at the start are void once the device is gone.
         let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
         self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
@@ -235,7 +235,7 @@ impl Unit {
     /// In which state a drive is, as it says again and again; `None` for one that is not asked just now.
     pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
-        // What was said before it was asked no more is old by now.
+        // Data from before the end of polling are outdated.
         let read = self.readings.get(&drive).filter(|_| is_polled).map(|reading| reading.actual);
         self.moves.actual(drive).or(read).map(|own| own.status.state())
     }

@@ -105,7 +105,7 @@ impl Saved for Unit {
 
     fn known_body(&self) -> Option<Known> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
-        // What the device refuses is in no profile; what came broken was to be in this one.
+        // Values that the device refuses are in no profile; damaged ones should have been in this one.
         let missing: Vec<Text> = survey.wrong_lengths.iter().map(|own| explained::item(Item(own.number))).collect();
         if !missing.is_empty() {
             return Some(Err(missing));

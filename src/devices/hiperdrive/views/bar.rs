@@ -60,7 +60,7 @@ fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut V
     let response = ui.add_sized(STOP, button).on_hover_text(theme.say("hd_bar.stop_hint"));
     let pressed = goes_down(ui, &response);
     if name(response, true, &word).clicked() || pressed {
-        // What is pressed on the heels of it means the same.
+        // A press that follows closely means the same.
         means_motion(ui.ctx(), moves, pressed_at(ui, pressed));
         actions.push(Action::StopMotion);
     }

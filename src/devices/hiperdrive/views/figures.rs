@@ -100,7 +100,7 @@ fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     painter.hline(rect.x_range(), ground, Stroke::new(1.0, theme.palette.line));
     let font = FontId::monospace(theme.sizes.caption);
     let ink = theme.palette.muted.into();
-    // Where the middle is and how far the ends are.
+    // Position of the middle, and the distance of the ends.
     let first = buckets.first().map(span).unwrap_or_default();
     let last = buckets.last().map(span).unwrap_or_default();
     painter.text(pos2(rect.left(), rect.bottom()), Align2::LEFT_BOTTOM, first, font.clone(), ink);

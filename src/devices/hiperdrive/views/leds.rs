@@ -13,7 +13,7 @@ use crate::ui::controls::{card, entry, name, options, paragraph, severity};
 #[derive(Default)]
 pub(super) struct LedsUiState(Leds);
 
-/// Size of a lamp's button, and of the lamp in it.
+/// Size of an LED's button, and of the LED in it.
 const BUTTON: egui::Vec2 = vec2(248.0, 44.0);
 const RADIUS: f32 = 9.0;
 
@@ -53,7 +53,7 @@ fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
     }
 }
 
-/// A lamp, and what it says beside it.
+/// Draws an LED with its meaning.
 fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
     ui.horizontal_top(|ui| {
         lamp_ui(ui, theme, leds, lamp);

@@ -16,7 +16,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let actual = unit.actual(drive);
     let ruler = unit.ruler(drive);
     let in_measure = |steps: i32, measure: Measure| {
-        // Beyond a thousandth nobody measures.
+        // No one measures beyond a thousandth.
         let decimals = ruler.decimals(measure).min(3);
         ruler.of(steps.into(), measure).map(|value| theme.number(value, decimals))
     };
@@ -34,7 +34,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
             ui.label(badge);
         }
     });
-    // Where it has no room there it stands before the state.
+    // Without room there, it is drawn before the state.
     let is_told_below = warning.is_some();
     let Some(actual) = actual else { return };
     let state = actual.status.state();

@@ -39,7 +39,7 @@ pub(crate) enum Page {
     Parameters,
     /// From a new drive to an axis that is saved.
     Axis,
-    /// Errors, lamps, the cyclic connection.
+    /// Errors, LEDs, the cyclic connection.
     Diagnosis,
     /// Identity, and network.
     Device,

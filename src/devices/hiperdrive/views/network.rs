@@ -55,7 +55,7 @@ fn settings(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut NetworkUiState, 
             empty(ui, theme, &say(theme, "hd_net.nothing"), None);
             return;
         };
-        // What was typed beside other settings is not for these.
+        // Text entered for other settings does not apply to these.
         if view.of.as_ref() != Some(&now) {
             (view.of, view.form) = (Some(now.clone()), None);
         }

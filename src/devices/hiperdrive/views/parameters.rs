@@ -99,7 +99,7 @@ fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
             (ParameterFilter::Scale, "hd_scale.title"),
         ];
         if options(ui, &say(theme, "hd_params.show"), &mut view.shown, shown.map(|(own, id)| (own, say(theme, id)))) {
-            // What is being typed counts before other lines are shown.
+            // Typed text takes effect before other lines are shown.
             ui.memory_mut(|memory| memory.stop_text_input());
         }
     });

@@ -59,7 +59,7 @@ impl Plan {
     fn new(rect: Rect) -> Self {
         let gap = GAP.min(rect.width() / 20.0);
         let width = ((rect.width() - 4.0 * gap) / 5.0).clamp(1.0, MOST);
-        // What is left over goes between the boxes, up to a measure.
+        // Excess width goes between the boxes, up to a maximum.
         let gap = ((rect.width() - 5.0 * width) / 4.0).clamp(gap, GAP * 2.0);
         Plan { origin: rect.min, width, gap }
     }
@@ -147,7 +147,7 @@ fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxSty
 /// The lines between the boxes: there and back in the row, three into the fault, two out of the lock.
 fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
-    // What leads away from where the drive is.
+    // The arrows that lead away from the present state.
     let ink = |from: &[State]| {
         let own = present.is_some_and(|present| from.contains(&present));
         Stroke::new(if own { 1.5 } else { 1.0 }, if own { theme.palette.accent.into() } else { faint })

@@ -27,7 +27,7 @@ use crate::devices::hiperface::sim::{Bus, Config};
 use crate::profile::Body;
 use crate::units::{CharacterFormat, Moment};
 
-/// What can be done with HIPERFACE encoders.
+/// The commands for HIPERFACE encoders.
 pub(crate) struct HiperfaceCommands;
 
 impl DeviceCommands for HiperfaceCommands {

@@ -1,4 +1,4 @@
-//! What the commands about profiles do with a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
+//! The commands about profiles of a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
 
 use std::collections::BTreeMap;
 
@@ -52,7 +52,7 @@ pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>)
     Ok(Body::new(saved.profile))
 }
 
-/// That two profiles are not of the same encoder.
+/// Returns a message if two profiles are not of the same encoder.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let (profile, device) = (&profile.get::<HiperfaceProfile>()?.identity, &device.get::<HiperfaceProfile>()?.identity);
     let same = (&profile.serial_number, profile.encoder_type) == (&device.serial_number, device.encoder_type);
@@ -97,7 +97,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }
 
-/// What the command line answers about data fields whose bytes have no known meaning.
+/// Returns the answers of the command line about data fields whose bytes have no known meaning.
 fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     let mut answers = BTreeMap::new();
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {

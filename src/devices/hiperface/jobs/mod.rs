@@ -174,7 +174,7 @@ impl Device for Hiperface {
             return Some(unheard);
         }
         let line = &self.station.line;
-        // What ends in a failure is told by that.
+        // A failure reports it anyway.
         if line.is_troubled() || line.quality.troubles() == self.told_troubles {
             return None;
         }

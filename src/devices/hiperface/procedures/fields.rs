@@ -114,7 +114,7 @@ pub fn read_range(
         return read_byte(master, field, address, code);
     }
     let mut bytes = Vec::with_capacity(count);
-    // What came once and has to come again.
+    // The first reading, which has to be repeated.
     let mut first: Option<Vec<u8>> = None;
     let mut failures = 0;
     let mut in_a_row = 0;

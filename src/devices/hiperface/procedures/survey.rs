@@ -37,7 +37,7 @@ pub fn survey(
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Survey, Error> {
-    // They stay among the codes met until the survey is there: where it fails, they are told all the same.
+    // They stay among the met codes until the survey is complete: if it fails, they are reported regardless.
     master.collect_codes()?;
     let mut survey = look_around(master, types, progress, Reading::AsFarAsPossible)?;
     survey.codes = master.station().take_codes();
@@ -72,7 +72,7 @@ pub(super) fn look_around(
         Reading::Whole => read_all_fields(master, count, progress)?,
         Reading::AsFarAsPossible => read_readable_fields(master, count, &mut unreadable, progress)?,
     };
-    // Neither is needed for a restore: an encoder that refuses them is looked at all the same.
+    // Neither is needed for a restore: an encoder that refuses them is read regardless.
     let position = read_sample(master, identity.geometry);
     let position = tolerated(master, position)?.ok();
     let counter = read_counter(master);

@@ -70,7 +70,7 @@ impl Write for EncoderWrite<'_, '_> {
     /// A wish to end is heard between two operations.
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
         let sent = perform(&mut self.master, op, confirmed, range_of(self.identity.geometry));
-        // What was not sent, or refused, was not carried out; anything else may have been.
+        // A change that was not sent, or was refused, was not carried out; any other may have been.
         done.write_cycles += match &sent {
             Ok(sent) => u64::from(*sent),
             Err(cause) => u64::from(may_be_carried_out(cause)),
@@ -149,7 +149,7 @@ fn lock_again(
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
         Err(error) => return Err(error),
     };
-    // Whatever else the plan would have changed stays as it is: only the protection comes back.
+    // Whatever else the plan would have changed stays: only the protection is restored.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
     let sent = perform(master, &lock, confirmed, range)?;
     done.write_cycles += u64::from(sent);
@@ -227,7 +227,7 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
         master.station().address = to.byte();
         let moved = read_type_label(master).is_ok();
         master.station().address = before;
-        // Whoever is not there any more has to be where it was, or it is lost.
+        // An encoder that does not answer at the new address has to be at the old one, or it is lost.
         if moved { Ok(true) } else { read_type_label(master).map(|_| false) }
     })?;
     if before != BROADCAST {

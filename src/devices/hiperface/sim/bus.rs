@@ -101,7 +101,7 @@ impl Bus {
         for encoder in &mut self.encoders {
             encoder.power_cycle(self.wires.now);
         }
-        // Who is without power says nothing more.
+        // An encoder without power falls silent.
         let now = self.wires.now;
         let is_sent = |own: &Travelling| own.talker == Talker::Host || own.character.start < now;
         self.to_encoders.retain(is_sent);
@@ -127,7 +127,7 @@ impl Bus {
             let Some(format) = encoder.settings_at(start).and_then(LineSettings::format) else { continue };
             let clean = !collides && format == travelling.format;
             let byte = if clean { byte } else { garbage(&mut self.wires.rng) };
-            // Without a parity bit nobody notices a flipped bit.
+            // Without a parity bit a flipped bit is not detected.
             let intact = clean && (!flipped || format.parity == Parity::None);
             encoder.hear(Heard { start, end, byte, intact });
         }

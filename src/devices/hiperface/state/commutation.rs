@@ -188,7 +188,7 @@ impl Asked {
 /// Absolute position and phase brought together; a residual beyond 14/32 is no agreement.
 fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<Reading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
-    // A range that nobody knows is not gone round.
+    // An unknown range does not wrap.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
     let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;

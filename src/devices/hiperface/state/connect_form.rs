@@ -214,7 +214,7 @@ impl LinkForm {
         parameters.entry("margin", &self.margin);
         parameters.entry("periods", &self.periods);
         parameters.entry("turns", &self.turns);
-        // What only a virtual encoder has is not for the others.
+        // Parameters of a virtual encoder do not apply to the others.
         parameters.rest(&self.rest, |name| self.kind == LinkKind::Virtual || !virtual_only(name));
         Ok(parameters)
     }

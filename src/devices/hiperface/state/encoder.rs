@@ -116,7 +116,7 @@ impl Encoder {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();
-        // What was typed may be a commutation offset as well.
+        // The edit may be a commutation offset as well.
         profile.mark_mounting();
         Some(profile)
     }

@@ -214,7 +214,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
                 actions.push(ask(encoder, Assistant::Read(slot)));
             }
         });
-        // What is typed for one place has to be told from what is typed for another.
+        // Entries of different places have to be distinguished.
         let label = format!("{} · {}", say(theme, slot.word()), say(theme, "commutation.fine"));
         let response = text_entry(ui, typed, POSITION, &label, &say(theme, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

@@ -101,7 +101,7 @@ fn map(
         })
         .collect();
     let free_blocks = memory.map_or(0, |memory| usize::from(memory.blocks));
-    // What is free counts; how many blocks of it are drawn does not. A field can grow to eight.
+    // The free space counts, not how many of its blocks are drawn. A field can grow to eight.
     let taken: usize = fields.iter().map(|field| field.blocks).sum();
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use crate::cli::args::DirectionOption;
 use crate::devices::interbus::protocol::Mode;
 
-/// What selects the meaning of a word that has several
+/// Options that select the meaning of an ambiguous word
 #[derive(Args)]
 pub(super) struct WordOptions {
     #[command(flatten)]

@@ -20,7 +20,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     Disturbs::Reading.say(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
-        // Where the window has what of the position; no other program is selected for that.
+        // The window determines the visible bits of the position; no other program is selected for that.
         programs(&mut runner, Vec::new())?;
     }
     if position.csv {

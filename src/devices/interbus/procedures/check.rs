@@ -120,7 +120,7 @@ pub fn check(
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {
-        // Whatever is asked now disturbs somebody, or goes into the wrong half of a word.
+        // Any further request disturbs another master, or goes into the wrong half of a word.
         return Ok(lines);
     }
     let begun = master.now();

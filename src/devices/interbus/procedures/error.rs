@@ -285,14 +285,10 @@ pub enum Error {
     },
     /// A mode that cannot be selected.
     #[error("mode {} cannot be selected", mode.emit())]
-    NotSelectable {
-        mode: StartupMode,
-    },
+    NotSelectable { mode: StartupMode },
     /// It is in a mode that the manual does not have: what any word but a read-out does there is not known.
     #[error("the encoder is in mode {}, which is unknown: nothing was sent but read-outs", mode.emit())]
-    UnknownMode {
-        mode: StartupMode,
-    },
+    UnknownMode { mode: StartupMode },
     /// The shaft turns where it must stand still.
     #[error("the shaft moves: from position {from} to {to}")]
     Moving {

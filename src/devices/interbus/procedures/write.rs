@@ -127,7 +127,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
             master.set(Command::Set(Parameter::Default, Value::default()))?;
             master.run()?;
             master.normal()?;
-            // What it holds now nobody has said before.
+            // The new value has not been read yet.
             refresh_gear(master)?;
         }
     }

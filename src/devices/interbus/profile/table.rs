@@ -1,8 +1,8 @@
 //! Tables of cams, as they stand in a spreadsheet or on a machine's drawing: read from a file or from what was pasted, and
 //! written. A row is a pulse: program, cam or name, start, stop; in steps, degrees or millimetres of the machine.
 //!
-//! What cannot be taken is told by line and column, and the rest is taken all the same. What an edge became on the
-//! encoder's steps stands beside what was asked for.
+//! Invalid entries are reported by line and column; the rest is read regardless. Each edge is kept as
+//! rounded to the encoder's steps, with its rounding error.
 
 mod columns;
 mod emit;

@@ -1,6 +1,6 @@
 //! The meaning of the four LEDs of an encoder (reference 1).
 
-/// A lamp.
+/// The state of an LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lamp {
     /// Dark.
@@ -11,7 +11,7 @@ pub enum Lamp {
     Blinking,
 }
 
-/// The lamps by their names at the encoder.
+/// The LEDs by their names at the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Leds {
     /// UL.

@@ -260,7 +260,7 @@ impl Encoder {
     fn obey(&mut self, now: Moment, command: Command, before: u32) {
         match command {
             Command::Normal if self.doing == Activity::ReadingOut => self.end_read_out(),
-            // What is not an edge of bit 31 changes nothing.
+            // Only an edge of bit 31 has an effect.
             Command::Run if before >> 31 == 0 => self.run(),
             Command::Normal | Command::Run | Command::Unknown(_) => {}
             Command::Preset if self.memory.armed => {

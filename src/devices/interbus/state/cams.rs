@@ -134,7 +134,7 @@ impl Chart {
         self.lanes.iter().filter(on).fold(0, |outputs, lane| outputs | 1 << lane.cam.get())
     }
 
-    /// The outputs as lamps: as this program gives them at a position, beside the encoder's own.
+    /// The outputs as indicators: those of this program at a position, beside the encoder's own.
     pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [Lamp; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);

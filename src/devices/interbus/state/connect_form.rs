@@ -128,7 +128,7 @@ impl InterbusForm {
         if self.low_first {
             parameters.set(LOW_FIRST.0, LOW_FIRST.1);
         }
-        // What only a virtual encoder has is not taken along.
+        // Parameters of a virtual encoder are dropped.
         let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !Config::KEYS.contains(&name);
         parameters.rest(&self.rest, belongs);
         parameters

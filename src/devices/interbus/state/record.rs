@@ -67,7 +67,7 @@ impl Record {
             }
             _ => self.track.watch(&[]),
         }
-        // Where a position is not sent, or not the whole of it, none is missing.
+        // A position that is not sent, or only in part, is not missing.
         let is_sent = reading.mode != Some(StartupMode::Velocity);
         let position = reading.position();
         if is_sent && (position.is_some() || !reading.is_valid()) {

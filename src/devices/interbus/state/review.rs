@@ -80,7 +80,7 @@ impl Reviewed for Interbus {
     }
 
     fn is_worn(prepared: &Prepared) -> bool {
-        // Beyond what the maker names, somebody has to say once more that it is wanted; so where it is refused otherwise.
+        // Beyond the manufacturer's limit the user has to confirm once more; so where it is refused otherwise.
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
     }
 

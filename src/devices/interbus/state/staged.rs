@@ -3,7 +3,7 @@
 //!
 //! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
 //! changed stays as he wants it, whatever the encoder has now, and all else follows the encoder, in the steps before too.
-//! A cam program that was not read cannot be edited, since nobody knows what a change of it would cost; edits of an
+//! A cam program that was not read cannot be edited, since the cost of a change is not known; edits of an
 //! earlier time wait until it is read. In a profile, what is not said can be said.
 //!
 //! Positions are steps, from 0 to one below the measuring range.

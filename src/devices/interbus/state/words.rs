@@ -102,7 +102,7 @@ pub fn range(steps: u32, turns: u32) -> Text {
 pub fn read_value(what: ReadOut, value: Value) -> Text {
     match (what.number(), Direction::of_code(value.get())) {
         (0x3, Some(own)) => direction(own),
-        // A number that is counted or names something; what its bits are nobody needs.
+        // A counted number or an identifier; its bits have no meaning of their own.
         (0x0..=0x7, _) => plain(value.get()),
         _ => read_out_value(what.value(value)),
     }

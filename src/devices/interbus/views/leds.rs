@@ -20,7 +20,7 @@ impl Default for LedsUiState {
     }
 }
 
-/// Width of a lamp's button.
+/// Width of an LED's button.
 const LAMP: f32 = 92.0;
 
 pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
@@ -53,7 +53,7 @@ fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
     });
 }
 
-/// A lamp: pressed, it goes from dark to lit, and where it can to blinking.
+/// Draws an LED: a press changes it from dark to lit, and to blinking if possible.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut Lamp, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {

@@ -57,7 +57,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
         ui.label(theme.caption(theme.words(&text)));
         let beside = if ui.available_width() < LAMPS { 4 } else { 8 };
         ui.scope(|ui| {
-            // Lamps are read, not touched.
+            // Indicators are not interactive.
             ui.spacing_mut().interact_size.y = LAMP;
             for first in (0..8).step_by(beside) {
                 ui.horizontal(|ui| {

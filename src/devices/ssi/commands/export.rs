@@ -33,7 +33,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
         SsiFormat::Timing => {
             let unknown = || Failure::Usage("the times of this layout are not known; name a family".to_owned());
             let times = times.as_ref().ok_or_else(unknown)?;
-            // What is not asked for is as the profile has it.
+            // Defaults come from the profile.
             let own = chosen.profile.reads();
             let reads = Reads {
                 clock_hz: clock.map_or(own.clock_hz, f64::from),

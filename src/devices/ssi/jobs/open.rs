@@ -29,7 +29,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let (station, adapter) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
-    // What a serial port of an adapter is set to matters only behind a converter; it is that of all adapters.
+    // The setting of an adapter's serial port matters only behind a converter; it is the same for all adapters.
     let wire = open_bytes(url, FORMAT, &clock, || {
         motor = Some(adapter.motor());
         Ok(inside(adapter, &clock))

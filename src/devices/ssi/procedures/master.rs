@@ -66,7 +66,7 @@ impl<'a> Master<'a> {
     /// As [`hello`](Self::hello).
     pub fn word(&mut self) -> Result<Words, Error> {
         match self.word_as_set() {
-            // It does not know any more how words are taken: it was reset. Once more, set anew.
+            // The adapter has lost its setting: it was reset. One more attempt, with a new setting.
             Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
                 if operation == Request::SsiRead.operation() =>
             {
@@ -248,7 +248,7 @@ impl<'a> Master<'a> {
     /// A stream that failed is over, at the adapter too where that can be told.
     fn stream_failed(&mut self, error: Error) -> Error {
         if error != Error::Cancelled && self.end_words().is_err() {
-            // Who starts anew says HELLO, which ends all streams.
+            // Restarting sends HELLO, which ends all streams.
             self.station.forget_adapter();
         }
         error

@@ -269,7 +269,7 @@ fn read_range(entries: &mut Entries) -> Result<Range, ProfileError> {
         ("bits", bits.is_some()),
         ("step_nanometres", step_nanometres.is_some()),
     ];
-    // What else is given belongs to what says which positions there are.
+    // Further entries belong to the one that selects the range.
     let only = |own: &'static str, others: &[&str]| {
         let other = given.iter().find(|(name, is_given)| *is_given && *name != own && !others.contains(name));
         match other {

@@ -206,7 +206,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         return search(Some(Doubt::Standing), Vec::new());
     }
     for group in &mut groups {
-        // Where steps vary, a lowest bit that never changes is none: it is a parity, or a zero that the code goes over.
+        // If steps vary, a lowest bit that never changes is not one: it is a parity, or a zero that the code covers.
         if verdict::is_varied(&group.read) && group.members.iter().any(|member| !member.trial.never_odd) {
             group.members.retain(|member| !member.trial.never_odd);
         }
@@ -247,7 +247,7 @@ fn same(one: &Motion, other: &Motion) -> bool {
         forwards += usize::from(step >> by == other >> other_by);
         backwards += usize::from(step >> by == -(other >> other_by));
     }
-    // Where one of them jumps the other must as well.
+    // Where one of them jumps, the other must as well.
     let even = |motion: &Motion| (0..motion.steps.len()).filter(|at| motion.is_even(*at)).count();
     // A disturbed bit may be one that the other does not look at.
     let disturbed = one.jumps.min(other.jumps) / 2;

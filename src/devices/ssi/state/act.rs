@@ -104,7 +104,7 @@ impl Encoder {
 
     fn try_with(&mut self, with: Try) {
         let layout = self.designer.layout();
-        // Whoever begins with a word that was read goes on from it.
+        // Trying starts from the word that was read, if one is shown.
         if self.is_following()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {

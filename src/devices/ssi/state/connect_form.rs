@@ -133,7 +133,7 @@ impl SsiForm {
         if self.leave_supply {
             parameters.set(SupplyAfter::LEFT_ON.0, SupplyAfter::LEFT_ON.1);
         }
-        // What only a virtual encoder has is not taken along.
+        // Parameters of a virtual encoder are dropped.
         let belongs = |name: &str| is_virtual || LinkParameters::KEYS.contains(&name) || !is_of_the_virtual(name);
         parameters.rest(&self.rest, belongs);
         parameters

@@ -56,7 +56,7 @@ impl Drafted for Encoder {
         match whole {
             Some(profile) => self.edit(Edit::Whole(Box::new(profile))),
             None if edits.is_empty() => {}
-            // What the file says by now and what was changed make no frame together.
+            // The present file and the edits together are not a possible frame.
             None => self.designer.refuse(TEXTS.text("ssi.draft_unfit")),
         }
     }
@@ -76,7 +76,7 @@ impl Drafted for Encoder {
     fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Some(profile) = document.body.get::<SsiProfile>() else { return };
         let before = self.designer.layout().clone();
-        // What was done and undone stays, unless the file holds something else by now: then what was changed stays changed.
+        // Undo steps are kept unless the file has changed: then the edits stay edited.
         if self.designer.design().profile == *profile {
             self.designer.saved_as(profile.clone());
         } else {

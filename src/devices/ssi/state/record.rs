@@ -94,7 +94,7 @@ impl Record {
     /// Takes what has come; `dropped` were not taken in time.
     pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
-            // Whatever was dropped, the numbers of the words tell how many there were.
+            // Whatever was dropped, the numbers of the words show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
             _ => self.track.lose(dropped),
         }

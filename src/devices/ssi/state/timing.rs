@@ -255,7 +255,7 @@ pub fn left_out(seconds: f64) -> Text {
 pub fn time(seconds: f64) -> Text {
     const UNITS: [(&str, f64); 4] =
         [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];
-    // What rounds to a thousand of a unit is one of the next.
+    // A value that rounds to a thousand of a unit is one of the next.
     let fits = UNITS.into_iter().rfind(|(_, unit)| seconds.abs() >= unit * 0.99995);
     let (id, unit) = fits.unwrap_or(if seconds == 0.0 { ("ssi.time_us", 1e-6) } else { ("ssi.time_ns", 1e-9) });
     let value = seconds / unit;

@@ -63,7 +63,7 @@ impl Strip {
     /// The boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
     pub(super) fn boundary(&self, pos: Pos2) -> usize {
         let inside = pos - self.origin - Vec2::new(0.0, self.margin);
-        // What is above or left of the strip becomes zero.
+        // Positions above or left of the strip become zero.
         let line = ((inside.y + self.gap / 2.0) / (self.block.y + self.gap)).floor() as usize;
         let column = ((inside.x / self.block.x).round() as usize).min(self.columns);
         line * self.columns + column

@@ -20,7 +20,7 @@ pub(super) fn editor_ui(
     let Some(mut edit) = view.edit.take() else { return };
     let before = edit.text.clone();
     ui.spacing_mut().interact_size.y = cell.height();
-    // What is typed stands where the value stood.
+    // The entry is drawn where the value was.
     let inset = theme.space.inside;
     let cell = Rect::from_min_max(cell.min - Vec2::new(inset, 0.0), cell.max - Vec2::new(inset, 0.0));
     let entry = TextEdit::singleline(&mut edit.text)

@@ -25,7 +25,7 @@ pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     let beside = room - limits - theme.space.between;
     let (scale, below) = if beside >= SCALE { (beside, false) } else { (room, true) };
     ui.scope(|ui| {
-        // What is read stands closer than what is touched.
+        // Displayed values are closer together than controls.
         ui.spacing_mut().interact_size.y = HEIGHT;
         for gauge in gauges {
             gauge_ui(ui, theme, gauge, scale.clamp(SCALE / 2.0, SCALE * 3.0), below);

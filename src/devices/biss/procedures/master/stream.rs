@@ -78,7 +78,7 @@ impl Master<'_> {
     /// A stream that failed is over, at the adapter too where that can be told.
     fn stream_failed(&mut self, error: Error) -> Error {
         if !matches!(error, Error::Cancelled) && self.end_frames().is_err() {
-            // Who starts anew says HELLO, which ends all streams.
+            // Restarting sends HELLO, which ends all streams.
             self.station.forget_adapter();
         }
         error

@@ -158,7 +158,7 @@ impl Master<'_> {
         // The receiver gives whole frames only.
         let parsed = Reply::parse(&Frame::parse(frame).ok()?, request.command());
         match parsed {
-            // What comes before our own bytes answers an earlier request.
+            // Bytes before our own answer an earlier request.
             Ok(_) if self.station.line.echo == Echo::On && !heard.echo_heard => heard.damage = Some(Damage::Echo),
             Ok(reply) => return Some(reply),
             Err(error) => heard.damage = Some(Damage::Reply(error)),

@@ -281,7 +281,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         let standing = &mut self.standing;
         // It begins with another bank.
         self.master.station().bank = None;
-        // What was written is to be read back, also when the user wishes an end.
+        // The written value is read back, even after cancellation.
         self.master.shielded(|master| {
             master.wait(RESTART)?;
             master.with_patience(RESTART_PATIENCE, |master| look(master, lock, standing))
@@ -298,7 +298,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         loop {
             let measured = self.measure(task, &mut gauge)?;
             if !is_told {
-                // Nobody can have answered what nobody has seen.
+                // Answers from before the question was displayed are void.
                 self.operator.begins();
                 is_told = true;
             }

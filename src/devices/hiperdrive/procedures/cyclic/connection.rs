@@ -122,7 +122,7 @@ impl Connection {
         }
     }
 
-    /// A packet is due with this. Whoever comes late sends one, not all that were left out.
+    /// Returns the packet that is due. A late call sends one, not all that were missed.
     pub fn packet(&mut self, now: Moment, image: &OutImage) -> Vec<u8> {
         self.next = self.next + self.send_interval;
         if self.next <= now {

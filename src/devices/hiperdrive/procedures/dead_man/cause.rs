@@ -75,7 +75,7 @@ impl DeadMan {
         if let (Stage::Go { acknowledged, .. } | Stage::Paused { acknowledged, .. }, false) = (self.stage, self.runs())
             && status.has(StatusBit::SetpointAcknowledged) == acknowledged
         {
-            // The drive has begun anew: the word on the wire would start the job again.
+            // The drive has restarted: the word on the wire would start the job again.
             return Some(Ended::Left(state));
         }
         let motion = act.motion?;

@@ -144,10 +144,10 @@ impl Watch {
         let is_job = matches!(motion.motive, Motive::Job { .. });
         // The target of a job lies within the limits: a degree beside it is no overrun.
         let beyond = if is_job && distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
-        // Where a job arrives it may overshoot by its accuracy.
+        // At its target a job may overshoot by its accuracy.
         let arrives = is_job && self.best <= ACCURACY * degree;
         let allowed = if arrives { ACCURACY * degree } else { degree };
-        // Who frees the way out watches the axis: a drive that counts the other way comes in by it.
+        // A user who enables the way out watches the axis: a drive that counts the other way comes in by it.
         let leaves = distance > self.best.saturating_add(allowed) && !self.freed;
         beyond.or_else(|| leaves.then_some(Ended::WrongWay { position: actual.position }))
     }

@@ -32,7 +32,7 @@ impl Master<'_> {
         if self.is_zero(number, 120, drive)? {
             return Ok(Error::NoDrive { drive });
         }
-        // What is asked of it is refused in this state: because nobody wants anything of it?
+        // The request is refused in this state: is the drive not requested?
         if refusal.status == GeneralStatus::STATE && self.is_zero(number, 152, drive)? {
             return Ok(Error::NotRequested { drive });
         }

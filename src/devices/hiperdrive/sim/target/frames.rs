@@ -64,7 +64,7 @@ impl Plant {
         if let Some(status) = status {
             return frame.refusal(status);
         }
-        // A TCP connection has one session. Whoever asks for another is told which (`U`).
+        // A TCP connection has one session. Another request for one returns it (`U`).
         if let Some((session, _)) = self.sessions.iter().find(|(_, whose)| **whose == from) {
             return Frame { session: *session, ..frame.refusal(EncapsulationStatus::UNSUPPORTED) };
         }

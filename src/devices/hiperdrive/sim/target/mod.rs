@@ -2,7 +2,7 @@
 //!
 //! Chosen here (`U`): a session ends with its TCP connection, a cyclic connection does not: it lives by its own time-out, as
 //! its packets tell that the master lives. A stream that is no frames, and UnRegisterSession, end the TCP connection. What
-//! lost its supply answers again when somebody connects anew.
+//! lost its supply answers again after the next connection.
 //!
 //! | file | what it is |
 //! |---|---|

@@ -42,7 +42,7 @@ impl Axis {
     }
 
     fn leave(&mut self, seen: &Seen, skipped: bool, when: &str) {
-        // What a person has just confirmed may be another fact than before.
+        // The fact that was just confirmed may differ from the earlier one.
         self.settle(seen);
         if self.fallen().is_some() {
             return;
@@ -80,7 +80,7 @@ impl Axis {
         }
     }
 
-    /// It is over before its end. Whoever calls this stops the drive.
+    /// Ends it early. The caller stops the drive.
     pub(crate) fn cancel(&mut self, seen: &Seen, when: &str) {
         if self.over.is_none() {
             self.going = None;

@@ -85,7 +85,7 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
             Some(text.with_number("steps", per_turn, decimals))
         }
         Step::Confirm | Step::Upper => {
-            // What was confirmed stays what it was, also after others were taught.
+            // A confirmed value stays, also after others were taught.
             let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
             Some(TEXTS.text("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))

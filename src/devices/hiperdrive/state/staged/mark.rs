@@ -72,7 +72,7 @@ impl Staged {
         let moved: Vec<ParameterNumber> =
             of_drives.iter().filter(|mark| matches!(mark, Mark::LimitsMove { .. })).flat_map(Mark::numbers).collect();
         let check = |(number, value): (&ParameterNumber, &i64)| {
-            // Where limits have moved with the scale, that is told, in turns.
+            // Limits that moved with the scale are reported, in turns.
             let moves = moved.contains(number);
             let travel = if moves { Travel::UNKNOWN } else { travel(*number, wanted, &self.families) };
             number.row()?.check(*number, *value, travel).err()

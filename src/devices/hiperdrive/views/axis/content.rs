@@ -117,7 +117,7 @@ fn said(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     if let Some(why) = blocked.into_iter().flatten().next()
         && shown.seen.controlled
         && shown.axis.fallen().is_none()
-        // That stands above already.
+        // Shown above already.
         && shown.axis.may_go_on(shown.seen).err().as_ref() != Some(&why)
     {
         super::warning(ui, theme, &why);
@@ -219,7 +219,7 @@ fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
         entry(ui, theme, &word, |ui| {
             let target = shown.axis.target(own, shown.seen).ok();
             let go = format!("{} {}", say(theme, "hd_axis.go"), target.map(&mm).unwrap_or_default());
-            // What comes of the three stands below each other.
+            // The results of the three are drawn below each other.
             let size = vec2(GO, ui.spacing().interact_size.y);
             ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.set_min_width(GO);

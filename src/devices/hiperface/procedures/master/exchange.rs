@@ -58,7 +58,7 @@ impl Master<'_> {
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
         let judgement = self.judge(request, heard);
-        // What is broken after a frame with an access code may be our own bytes come back: nothing of it is shown.
+        // A damaged reply to a frame with an access code may be our own bytes echoed: none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);

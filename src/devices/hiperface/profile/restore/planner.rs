@@ -139,7 +139,7 @@ impl Planner<'_> {
             let own = self.device.fields.iter().filter(|f| f.number >= first && self.target_of(f.number).is_none());
             targets.extend(own.cloned());
             targets.sort_by_key(|field| field.number);
-            // What the profile has no bytes for keeps its own.
+            // Fields without bytes in the profile keep theirs.
             for target in targets.iter_mut().filter(|target| target.bytes.is_none() && target.number >= first) {
                 let own = self.device.fields.iter().find(|field| field.number == target.number);
                 target.bytes =
@@ -165,7 +165,7 @@ impl Planner<'_> {
         let writable = target.status.with_write_enable(true);
         let first = if target.bytes.is_some() { writable } else { target.status };
         if target.bytes.is_none() && !self.left.contains(&target.number) {
-            // It is created because others may follow it; what was in it nobody knows.
+            // It is created because others may follow it; its former content is not known.
             self.missing.push(FieldRange::of(target.number));
         }
         self.ops.push(Op::Define { field: target.number, from: None, to: first });

@@ -12,7 +12,7 @@ pub(super) fn undo_created(profile: &HiperfaceProfile, device: &DeviceState) -> 
         let is_wanted = profile.fields.iter().any(|field| field.number == now.number);
         let created = profile.created.iter().find(|field| field.number == now.number).filter(|_| !is_wanted);
         match created {
-            // What is not the last cannot be deleted.
+            // Only the last field can be deleted.
             Some(created) if created == now && undone.len() + usize::from(now.number) + 1 == device.fields.len() => {
                 undone.push(now.clone());
             }

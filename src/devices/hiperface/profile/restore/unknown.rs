@@ -38,7 +38,7 @@ pub(super) fn unknown_fields(
         let new = target.bytes.as_ref()?;
         let now = device.fields.iter().find(|field| field.number == target.number);
         let old = match now {
-            // What cannot be read is left alone anyway.
+            // An unreadable field is left alone anyway.
             Some(now) => now.bytes.as_deref()?,
             None => &[],
         };

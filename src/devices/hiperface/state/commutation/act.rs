@@ -21,7 +21,7 @@ impl Encoder {
             Action::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
                 Ok((field, address, bytes)) => {
                     self.put(field, address, &bytes, services);
-                    // What is put there once more goes to the same place, whatever is empty then.
+                    // Putting it there once more keeps the place, whatever is empty then.
                     (self.commutation.form.field, self.commutation.form.address) = (Some(field), address.to_string());
                     let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
                     if (address..).zip(&bytes).all(is_there) {

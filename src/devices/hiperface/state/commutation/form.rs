@@ -32,7 +32,7 @@ pub struct Form {
     pub reversed: bool,
     /// Source of the position within a period.
     pub source: Source,
-    /// That position in periods, as entered, if it is measured externally.
+    /// The position in periods, as entered, if it is measured externally.
     pub phase: String,
     /// Allowed difference of both sides in electrical degrees, as entered.
     pub limit_deg: String,

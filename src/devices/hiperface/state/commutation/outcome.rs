@@ -141,7 +141,7 @@ impl Commutation {
     /// What is missing, in words.
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
-        // What was found wrong is not stored, what was not looked at may be.
+        // A failed check prevents storing, a missing one does not.
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
             return Err(TEXTS.text("commutation.second_refuses"));
         }

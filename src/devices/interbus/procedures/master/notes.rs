@@ -59,7 +59,7 @@ impl Master<'_> {
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
         let Some(excursion) = journal.excursion(&serial_number) else { return Ok(()) };
         if does_the_same(mode, excursion.found) || !excursion.sent.contains(&mode) {
-            // It is back, or somebody has chosen another mode since.
+            // It has been led back, or another mode was selected since.
             journal.is_back(&serial_number);
             return Ok(());
         }
@@ -110,7 +110,7 @@ impl Master<'_> {
         else {
             return;
         };
-        // What it is left in, it has still to leave.
+        // It still has to leave the program in which it was left.
         journal.may_have_stored(serial_number, std::mem::take(left) + u64::from(!is_back && excursion.is_some()));
         if is_back && excursion.take().is_some() {
             journal.is_back(serial_number);

@@ -39,7 +39,7 @@ fn busy_words_come_for_the_time_that_was_asked_for() {
         })
         .collect();
     assert_eq!(words, [7, 7, 0xC000_0000, 0xC000_0000, 0xC200_0168]);
-    // Cycles go on where nobody reads.
+    // Cycles go on without readings.
     master.write(0x0200_00B4);
     master.wait(10);
     assert_eq!(master.read(), 0xC000_0000);

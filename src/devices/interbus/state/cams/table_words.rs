@@ -78,7 +78,7 @@ pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
-    // As it stands in the table: rounded here too, nobody would see what became of it.
+    // As in the table: rounding here would hide the effect.
     let asked = decimals.max(written_decimals(edge.asked));
     let text = TEXTS.text(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
     let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });

@@ -69,7 +69,7 @@ pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
     beyond.into_iter().chain(clash).collect()
 }
 
-/// A lamp: whether the output is on, and what the encoder says otherwise.
+/// Returns the text of an indicator: whether the output is on, and a difference from the encoder.
 pub fn lamp(lamp: Lamp) -> Text {
     let says = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {

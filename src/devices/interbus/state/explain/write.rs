@@ -141,7 +141,7 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
 
 /// A write that is done.
 pub fn written(written: &Written) -> Text {
-    // Of the default nobody knows what there is to be read back.
+    // The values of the default are not known, so none is read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }

@@ -7,8 +7,8 @@
 //! * **Pointer**: an edge is dragged, or a cam as a whole; over the end of the range it comes in at the other. In the lane
 //!   of a cam that does not work, one is drawn. What would be is shown meanwhile, and Escape gives it up. Ctrl and the
 //!   wheel look nearer, the wheel held sideways goes along.
-//! * **Accessible**: an edge is a slider with its position, which can be set; a cam is a slider with where it is; a lamp
-//!   says whether its output is on, and who says so.
+//! * **Accessible**: an edge is a slider with its position, which can be set; a cam is a slider with its place; an
+//!   indicator has the state of its output, and its source.
 //! * **Painting**: a cam in its colour, hollow where it does not work, hatched where it meets another pulse of its track;
 //!   the end of the range hatched in the lane of a cam beyond it; the encoder's position as a line through all lanes.
 

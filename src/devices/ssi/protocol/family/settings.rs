@@ -190,7 +190,7 @@ impl Settings {
             range,
             code,
             coded: self.coded.unwrap_or(Coded::Position),
-            // Whoever cannot use error bits clocks the resolution alone (manual 3.1): zeros are left out with them.
+            // A host that cannot use error bits clocks the resolution only (manual 3.1): zeros are left out with them.
             area: if place == ErrorPlace::None { area.min(clocks) } else { area },
             lead,
             between: 0,

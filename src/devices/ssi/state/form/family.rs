@@ -48,7 +48,7 @@ pub(super) fn entered(
                 steps: None,
                 turns: None,
                 revolutions: None,
-                // What fits bits may not fit steps.
+                // A setting for bits may not suit steps.
                 align: None,
                 clocks: None,
                 ..next

@@ -78,7 +78,7 @@ pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Optio
     match (field, input) {
         (Field::Over, Input::Choice(over)) => next.coded = *OVER.get(*over)?,
         (Field::Clocks, Input::Number(clocks)) => next.clocks = byte(*clocks)?,
-        // What stands behind the position moves with it.
+        // The parts after the position move with it.
         (Field::Lead, Input::Number(lead)) => {
             return Some(Edit::Frame(Box::new(pushed(before, byte(*lead)?, before.between)?)));
         }

@@ -77,7 +77,7 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
-    // What is drawn is the frame as it would be; what is taken hold of, and where, is the frame as it is.
+    // The frame is drawn as it would become; the handles stay where they are in the present frame.
     let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
     let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.shown(frame)).unwrap_or_default();

@@ -92,7 +92,7 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
 pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
     let clocks = strip.layout().clocks();
-    // What has been shifted out of its area stands behind the last clock.
+    // Bits shifted out of the area are behind the last clock.
     let clock = strip.clock(handle)?.min(clocks);
     Some(rows.edge(clock, begins, clocks))
 }

@@ -64,7 +64,7 @@ impl Narrow {
                 self.x + APART / 2.0 - width
             };
             let free = (0..LEVELS).find(|level| self.is_free(tags, left, *level));
-            // Where lines cannot be kept off names, names at least are kept off each other.
+            // If names cannot avoid the lines, they at least avoid each other.
             let apart = || (0..).find(|level| self.is_apart(tags, left, *level));
             (left, free.or_else(apart).unwrap_or(LEVELS))
         };
@@ -157,8 +157,8 @@ pub(super) fn tags(
         Narrow { index, line, x: run.center().x, alone: true, begins, room, galley }
     });
     let mut narrow: Vec<Narrow> = narrow.collect();
-    // Where several stand side by side, each ends at its own line, so that the next one's passes it; at the beginning,
-    // where there is no room for that, each begins at its own, the last of them the highest.
+    // Of several side by side, each ends at its own line, so that the next one's passes it; at the start, where there
+    // is no room for that, each begins at its own, the last of them the highest.
     for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
         let (alone, begins) = (group.len() == 1, group.iter().any(|own| own.begins));
         for own in group {
