@@ -166,7 +166,7 @@ fn a_wrong_profile_is_told_where() {
     let error = Document::parse(&SHORT.replace("listed: [", &format!("listed: [{bank}), ")), BissProfile::FORMATS)
         .unwrap_err()
         .to_string();
-    assert_eq!(error, "data[0].listed[1].bank: bank 0x25 stands twice");
+    assert_eq!(error, "data[0].listed[1].bank: bank 0x25 appears twice");
 }
 
 #[test]
