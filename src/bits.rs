@@ -216,7 +216,6 @@ impl TypedKind {
 /// The first bytes of a run in one reading. Where the order of bytes makes no difference, both are the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypedRow {
-    /// The kind of reading.
     pub kind: TypedKind,
     /// Lowest byte first; `None` where there are too few bytes.
     pub little: Option<String>,

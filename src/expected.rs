@@ -43,7 +43,6 @@ pub enum Expected {
         /// The greatest.
         most: u32,
     },
-    /// Seconds.
     #[error("{low} to {high} seconds")]
     Seconds {
         /// The least.
@@ -112,7 +111,6 @@ pub enum Expected {
     /// The byte of an encoder's line settings.
     #[error("a settings byte without reserved values, as 0xE4")]
     SettingsByte,
-    /// A serial number.
     #[error("one to nine ASCII characters")]
     SerialNumber,
     /// A name.
@@ -124,7 +122,6 @@ pub enum Expected {
     /// A position that has no limits yet.
     #[error("a position in steps")]
     Steps,
-    /// Access codes.
     #[error("NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66")]
     AccessCodes,
     /// The release of a firmware.
@@ -175,7 +172,6 @@ pub enum Expected {
     /// A text of a form.
     #[error("a text such as {0:?}")]
     TextSuchAs(&'static str),
-    /// A byte.
     #[error("a number from 0 to 255 (0x00 to 0xFF)")]
     Byte,
     /// Two bytes.
@@ -205,13 +201,11 @@ pub enum Expected {
     /// Revolutions, which may be a fraction.
     #[error("a whole number, or a text such as \"25/2\"")]
     Revolutions,
-    /// A fraction.
     #[error("a number or a fraction such as 25/2")]
     Fraction,
     /// A whole frame.
     #[error("ones, or a number with the bits of a whole frame")]
     Frame,
-    /// A parity bit.
     #[error("even@CLOCK or odd@CLOCK")]
     ParityBit,
     /// The repetition of a frame.
@@ -228,19 +222,14 @@ pub enum Quantity {
     /// Nothing in particular.
     #[error("a number")]
     Number,
-    /// Milliseconds.
     #[error("milliseconds")]
     Milliseconds,
-    /// Microseconds.
     #[error("microseconds")]
     Microseconds,
-    /// Hertz.
     #[error("hertz")]
     Hertz,
-    /// Bits.
     #[error("bits")]
     Bits,
-    /// Steps.
     #[error("steps")]
     Steps,
     /// Revolutions.
@@ -267,7 +256,6 @@ pub enum Quantity {
     /// The version of a protocol.
     #[error("a version")]
     Version,
-    /// An address.
     #[error("an address")]
     Address,
     /// A TCP or UDP port.
@@ -291,7 +279,6 @@ pub enum Quantity {
     /// A position of a rotary switch.
     #[error("a position of the switch")]
     SwitchPosition,
-    /// Volts.
     #[error("volts")]
     Volts,
     /// The share of frames with a bit inverted.
@@ -336,7 +323,6 @@ impl Limit {
         Limit { thousandths }
     }
 
-    /// A whole number.
     pub const fn whole(number: i128) -> Self {
         Limit { thousandths: number * 1000 }
     }

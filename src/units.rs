@@ -60,7 +60,6 @@ impl Baud {
     /// 115 200 bits a second.
     pub const B115200: Baud = Baud(115_200);
 
-    /// Bits in a second.
     pub const fn bits_per_second(self) -> u32 {
         self.0
     }

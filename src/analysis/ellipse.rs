@@ -60,9 +60,7 @@ pub enum FitError {
 /// One of the two channels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Channel {
-    /// Sine.
     Sine,
-    /// Cosine.
     Cosine,
 }
 

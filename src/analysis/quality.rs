@@ -69,7 +69,6 @@ impl Family {
         }
     }
 
-    /// Its limits.
     pub const fn limits(self) -> Limits {
         match self {
             Family::Hiperface => Limits::HIPERFACE,
@@ -88,7 +87,6 @@ pub enum Finding {
         volts: f64,
         /// Good from, good to, in volts.
         ok_v: (f64, f64),
-        /// The verdict.
         verdict: Verdict,
     },
     /// Offset of the sine channel as a share of the amplitude.

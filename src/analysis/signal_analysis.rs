@@ -21,7 +21,6 @@ const LARGEST_STEP_DEG: f64 = 90.0;
 /// The result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// The ellipse.
     pub ellipse: Ellipse,
     /// How the samples cover the ellipse.
     pub coverage: Coverage,

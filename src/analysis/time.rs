@@ -9,7 +9,6 @@ use crate::units::Moment;
 pub struct Time(i64);
 
 impl Time {
-    /// The origin.
     pub const ORIGIN: Time = Time(0);
 
     /// The point `nanoseconds` after the origin.

@@ -20,13 +20,9 @@ pub struct Wires {
 /// One of the four wires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire {
-    /// SIN.
     Sin,
-    /// REFSIN.
     Refsin,
-    /// COS.
     Cos,
-    /// REFCOS.
     Refcos,
 }
 

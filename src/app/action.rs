@@ -23,7 +23,6 @@ use crate::worker::{OpenError, Worker};
 
 /// Something to be done.
 pub enum Action {
-    /// Show a tab.
     ShowTab(Tab),
     /// Dark or light.
     SetTheme(ColorScheme),
@@ -114,7 +113,6 @@ pub enum ReviewAction {
     Toggle(Permit),
     /// Write although the device counts as worn.
     ForceWear(bool),
-    /// Close it.
     Close,
 }
 
@@ -125,7 +123,6 @@ pub enum Done {
         question: FileQuestion,
         /// The place.
         path: PathBuf,
-        /// There is.
         exists: bool,
     },
     /// A link was opened for a session, or not.
@@ -177,9 +174,7 @@ pub enum Done {
     Listed(SessionId, DeviceKey, Box<Listed>),
     /// A backup was read, or not.
     Backup {
-        /// For which session.
         session: SessionId,
-        /// For which device.
         of: DeviceKey,
         /// The file.
         path: PathBuf,
@@ -208,7 +203,6 @@ pub struct Opened<D: Kind> {
     /// The part of the session that stays outside its thread.
     pub(crate) aside: D::SessionHandle,
     pub(super) url: crate::link::LinkUrl,
-    /// Its trace.
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     /// The device lives in this process.
     pub(super) is_virtual: bool,
@@ -240,20 +234,16 @@ impl<D: Kind> AnyOpened for Opened<D> {
 /// The waits before the window closes, in order; a later one includes the earlier ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Waited {
-    /// Drives.
     Drives,
-    /// The disk.
     Disk,
     /// Jobs that write nothing.
     Jobs,
-    /// Writes.
     Writes,
 }
 
 /// Why there is no session.
 #[derive(Debug)]
 pub enum OpenFailed {
-    /// The link.
     Link(OpenError),
     /// No thread for it.
     Thread(String),
@@ -267,7 +257,6 @@ pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice
 /// Why a profile cannot be read.
 #[derive(Debug)]
 pub enum ReadError {
-    /// The file.
     File(FileError),
     /// Its content.
     Profile(ProfileError),

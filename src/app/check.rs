@@ -3,7 +3,6 @@
 use super::Text;
 use crate::analysis::check::{StepResult, Verdict};
 
-/// One line of a check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckLine {
     pub step: Text,
@@ -22,7 +21,6 @@ impl CheckLine {
     }
 }
 
-/// Returns the text of a verdict.
 pub fn verdict(verdict: Verdict) -> Text {
     Text::new(match verdict {
         Verdict::Skipped => "check.skipped",

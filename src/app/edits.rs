@@ -10,7 +10,6 @@ use super::history::History;
 pub trait EditBase: Default {
     /// The location of a value.
     type Place: Ord + Copy;
-    /// A value.
     type Value: Copy + PartialEq;
 
     /// A value at a place is an edit: another one was read there.

@@ -14,7 +14,6 @@ use super::{DeviceAction, Language, Picture, Text};
 pub enum FileQuestion {
     /// Opens a profile.
     Open,
-    /// Opens a capture.
     OpenCapture,
     /// Opens a recorded trace to connect to.
     Recording,
@@ -38,7 +37,6 @@ pub enum FileQuestion {
     },
     /// Saves a picture.
     Picture {
-        /// The picture.
         picture: Picture,
         /// A name to begin with.
         suggested: PathBuf,

@@ -72,7 +72,6 @@ impl Studio {
         self.with_device(session, |device, services| device.save(path, services));
     }
 
-    /// The recorder of a desk.
     pub fn recorder(&self, desk: RecorderOwner) -> Option<&Recorder> {
         match desk {
             RecorderOwner::Device(id) => self.device(id).map(|device| device.recorder()),

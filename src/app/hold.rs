@@ -183,7 +183,6 @@ impl HoldState {
         self.next_picture
     }
 
-    /// It is held.
     pub const fn is_held(&self) -> bool {
         self.holder.is_some()
     }

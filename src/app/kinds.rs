@@ -17,7 +17,6 @@ pub struct Kinds {
 }
 
 impl Kinds {
-    /// None.
     pub const NONE: Kinds = Kinds::new(Formats::new(&[]), &[], &[]);
 
     /// These.
@@ -29,12 +28,10 @@ impl Kinds {
         Kinds { formats, devices, tools }
     }
 
-    /// Returns the kinds of devices.
     pub fn devices(self) -> &'static [&'static dyn DeviceKind] {
         self.devices
     }
 
-    /// Returns the tools.
     pub(super) fn tools(self) -> &'static [&'static dyn ToolKind] {
         self.tools
     }
@@ -44,7 +41,6 @@ impl Kinds {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
 
-    /// Returns the kind of device of a profile.
     pub(super) fn of_profile(self, word: &str) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.word() == word)
     }

@@ -30,7 +30,6 @@ pub(crate) enum Then {
     Write(FileQuestion, PathBuf),
     Forget(RecorderOwner),
     Save(Box<Saving>),
-    /// The link of this session is opened.
     OpenLink(SessionId),
     /// The search of the form of this tab, in the connection dialog, goes on.
     Find(Tab),

@@ -100,7 +100,6 @@ impl<K: Reviewed> Review<K> {
         self.state = ReviewState::Failed { texts, begun, cut_off };
     }
 
-    /// Returns the change with one of its permits toggled.
     pub(crate) fn toggled(&self, permit: Permit) -> Option<K::Change> {
         let mut change = self.change.clone();
         let own = K::permitted(&mut change, permit)?;
@@ -145,7 +144,6 @@ impl OpWords {
         OpWords { item, changes: vec![ChangeWords { part: None, old, new }] }
     }
 
-    /// All its texts.
     pub fn texts(&self) -> impl Iterator<Item = &Text> {
         let changes = self.changes.iter().flat_map(|own| own.part.iter().chain([&own.old, &own.new]));
         std::iter::once(&self.item).chain(changes)

@@ -86,7 +86,6 @@ pub struct Services {
     pub(crate) world: World,
     /// Threads.
     pub(crate) tasks: Tasks,
-    /// The log.
     pub log: Log,
     /// Jobs, the newest last.
     jobs: VecDeque<JobRecord>,

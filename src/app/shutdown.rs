@@ -20,7 +20,6 @@ use crate::worker::{Ending, JobId, Worker};
 pub struct GracePeriods {
     /// For drives: they stop and are let go.
     pub drives: Duration,
-    /// For the disk.
     pub disk: Duration,
     /// For a job that writes nothing.
     pub job: Duration,

@@ -36,7 +36,6 @@ pub struct SineCosineRange {
 /// The device that a reading is from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineCosineOrigin {
-    /// Its session.
     pub session: SessionId,
     /// Its serial number, where it was read.
     pub serial_number: Option<String>,
@@ -49,7 +48,6 @@ pub trait SineCosineSource {
     /// It can be read now.
     fn is_ready(&self) -> bool;
 
-    /// The action that reads it.
     fn read_action(&self) -> Action;
 
     /// Returns the identity of the device.

@@ -11,9 +11,7 @@ use serde::{Deserialize, Serialize};
 /// A language of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Language {
-    /// English.
     English,
-    /// German.
     German,
 }
 

@@ -80,7 +80,6 @@ pub struct Palette {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThemeData {
-    /// Text sizes.
     pub text: TextSizes,
     /// Distances.
     pub space: Spaces,

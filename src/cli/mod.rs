@@ -62,7 +62,6 @@ pub type Result<T = Done> = std::result::Result<T, Failure>;
 pub enum Asked {
     /// A command, which has ended with this status.
     Command(u8),
-    /// The window.
     Window(Window),
 }
 

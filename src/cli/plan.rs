@@ -70,7 +70,6 @@ pub fn text<Base, Op: Operation>(
 /// Said of a plan without operations.
 pub(super) const NOTHING: &str = "nothing to write: it is so already\n";
 
-/// The summary of a write.
 #[derive(Default)]
 pub struct WriteSummary {
     /// Things that were changed.

@@ -76,7 +76,6 @@ pub struct Runner<D: Runs> {
 
 /// A job that ended early.
 pub enum Ended<D: Runs> {
-    /// With this error.
     Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
     Interrupted,
@@ -246,7 +245,6 @@ fn lines(mut sentences: Vec<String>) -> Vec<String> {
     sentences
 }
 
-/// A failure with one text.
 pub fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal()])
 }

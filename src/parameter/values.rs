@@ -8,7 +8,6 @@ use crate::expected::{Expected, Limit, Quantity};
 
 /// The values that a parameter takes.
 pub trait Values {
-    /// The parsed value.
     type Value;
 
     /// The meaning of a value as it is written.
@@ -49,7 +48,6 @@ pub struct Whole<T>(pub Quantity, pub RangeInclusive<T>);
 #[derive(Clone, Debug)]
 pub struct Decimal(pub Quantity, pub RangeInclusive<f64>);
 
-/// Milliseconds of a range.
 #[derive(Clone, Debug)]
 pub struct Milliseconds(pub RangeInclusive<u64>);
 
@@ -69,7 +67,6 @@ pub struct Checked<T>(pub Expected, pub fn(&str) -> Option<T>);
 #[derive(Clone, Debug)]
 pub struct Maybe<V>(pub V);
 
-/// On or off.
 pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
 
 /// Any text: what it means depends on other parameters. None is refused here.

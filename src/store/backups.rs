@@ -23,7 +23,6 @@ const MOST_IN_A_SECOND: u32 = 1000;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Backups(PathBuf);
 
-/// One backup.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Backup {
     /// The file.

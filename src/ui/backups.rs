@@ -10,7 +10,6 @@ use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand};
 use crate::store::{Entry, Outcome};
 
-/// Draws the page.
 pub fn page_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     profile(ui, theme, device, actions);
     if *device.phase() == Phase::Offline {

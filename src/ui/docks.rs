@@ -16,9 +16,7 @@ pub(super) enum Pane {
     Live,
     /// The trace panel.
     Trace,
-    /// Jobs.
     Jobs,
-    /// The log.
     Log,
 }
 

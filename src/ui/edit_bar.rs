@@ -20,7 +20,6 @@ pub enum Edited {
     Values,
 }
 
-/// Draws the foot.
 pub fn foot_ui(
     ui: &mut Ui,
     theme: &Theme,

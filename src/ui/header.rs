@@ -12,7 +12,6 @@ use crate::app::{Action, AnyDevice, ColorScheme, Language, Notice, Studio, Text,
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
 
-/// Draws the header.
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         sessions(ui, theme, studio, actions);

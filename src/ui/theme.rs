@@ -17,7 +17,6 @@ impl From<Rgb> for Color32 {
 pub struct Theme {
     /// Colours by what they mean.
     pub palette: &'static Palette,
-    /// Text sizes.
     pub sizes: &'static TextSizes,
     /// Distances.
     pub space: &'static Spaces,
@@ -29,7 +28,6 @@ pub struct Theme {
 }
 
 impl Theme {
-    /// The theme of a theme in a language.
     pub fn new(look: &'static ThemeData, theme: ColorScheme, language: Language) -> Self {
         Theme {
             palette: look.palette(theme),

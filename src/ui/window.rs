@@ -14,7 +14,6 @@ use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Theme, Views, header, review, stop_debounce};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, ThemeData};
 
-/// The window.
 pub struct Window {
     studio: Studio,
     views: Views,

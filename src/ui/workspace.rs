@@ -11,7 +11,6 @@ use super::{Theme, Views, icons};
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio, connect};
 
-/// Draws the workspace.
 pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     if views.plot.is_large()
         && let Some(device) = studio.shown()

@@ -12,24 +12,19 @@ pub const HEAD: usize = 64 << 10;
 /// The delimiter between two columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delimiter {
-    /// A comma.
     Comma,
-    /// A semicolon.
     Semicolon,
-    /// A tab.
     Tab,
 }
 
 /// The known properties of a table; those that are `None` are detected.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableHints {
-    /// Delimiter.
     pub delimiter: Option<Delimiter>,
     /// Numbers have a decimal comma.
     pub decimal_comma: Option<bool>,
     /// Columns by number.
     pub columns: Option<Columns>,
-    /// Unit of the time.
     pub time_unit: Option<TimeUnit>,
     /// Volts in one unit of the sine and cosine columns, whatever the header says; finite, not zero.
     pub volts_per_unit: Option<f64>,
@@ -38,7 +33,6 @@ pub struct TableHints {
 /// The format of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Delimiter.
     pub delimiter: Delimiter,
     /// Numbers have a decimal comma.
     pub decimal_comma: bool,
@@ -48,7 +42,6 @@ pub struct Layout {
     pub names: Vec<String>,
     /// The columns that are used.
     pub columns: Columns,
-    /// Unit of the time.
     pub time_unit: TimeUnit,
     /// Volts in one unit of the sine and cosine columns.
     pub volts_per_unit: f64,

@@ -21,26 +21,19 @@ pub struct Columns {
 /// Unit of a time column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TimeUnit {
-    /// Seconds.
     #[default]
     Seconds,
-    /// Milliseconds.
     Milliseconds,
-    /// Microseconds.
     Microseconds,
-    /// Nanoseconds.
     Nanoseconds,
 }
 
 /// Unit of a voltage column.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum VoltUnit {
-    /// Volts.
     #[default]
     Volts,
-    /// Millivolts.
     Millivolts,
-    /// Microvolts.
     Microvolts,
 }
 

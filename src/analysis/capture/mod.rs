@@ -51,15 +51,11 @@ pub enum CaptureError {
     /// No line holds numbers in two columns or more.
     #[error("no line has numbers")]
     NoNumbers,
-    /// There is one column.
     #[error("it has one column")]
     OneColumn,
     /// There are too few columns, and their names do not tell which is missing.
     #[error("it has {columns} columns")]
-    TooFewColumns {
-        /// Columns that there are.
-        columns: usize,
-    },
+    TooFewColumns { columns: usize },
     /// A row ends before a column that is needed.
     #[error("row {row} has {columns} columns, {needed} are needed")]
     ShortRow {
@@ -87,7 +83,6 @@ pub enum CaptureError {
         row: u64,
         /// The column, from 1.
         column: usize,
-        /// The text.
         text: String,
     },
     /// A number is NaN or infinite: a time, or a value of a table with too few rows.
@@ -105,7 +100,6 @@ pub enum CaptureError {
     NoValues {
         /// Rows without one.
         left_out: u64,
-        /// Rows in all.
         rows: u64,
         /// The first of them: the line in the file, from 1.
         row: u64,

@@ -4,7 +4,6 @@ use super::OutOfLimits;
 use crate::analysis::ellipse::Channel;
 use crate::analysis::wiring::Wire;
 
-/// The severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Good to know; the signal is usable.
@@ -33,14 +32,12 @@ pub enum What {
     AtRest,
     /// One channel does not move while the other does.
     Dead {
-        /// The channel.
         channel: Channel,
         /// Level of its wires.
         stuck: Stuck,
     },
     /// One channel has half of the other's amplitude: one of its two wires is open.
     Half {
-        /// The channel.
         channel: Channel,
         /// Its amplitude over the other's.
         share: f64,
@@ -62,7 +59,6 @@ pub enum What {
         mains_hz: f64,
         /// All of its lines together, peak, in volts.
         volts: f64,
-        /// As a share.
         share: f64,
         /// In phase and about equally strong in both channels: it comes in by the screen or the ground.
         common: bool,
@@ -73,7 +69,6 @@ pub enum What {
         frequency_hz: f64,
         /// Peak in the channel that has more of it, in volts.
         volts: f64,
-        /// As a share.
         share: f64,
         /// As of the hum.
         common: bool,
@@ -82,7 +77,6 @@ pub enum What {
     Noise {
         /// Of one channel, rms, in volts.
         volts: f64,
-        /// As a share.
         share: f64,
     },
     /// The distance from the ellipse repeats so many times a period: harmonics one below and one above that.
@@ -94,7 +88,6 @@ pub enum What {
     },
     /// A channel is cut off.
     Clipping {
-        /// The channel.
         channel: Channel,
         /// Level in volts.
         volts: f64,
@@ -193,9 +186,7 @@ pub enum What {
 pub enum Stuck {
     /// Both at the same level: one is open, or they are shorted to each other.
     Together,
-    /// This wire is at ground.
     Ground(Wire),
-    /// This wire is at a supply.
     Supply(Wire),
     /// This many volts apart: one of them is shorted, or open where no resistor joins them.
     Apart(f64),

@@ -46,7 +46,6 @@ impl BitOrAssign for Flags {
 /// Samples that share one summary; a block has as many groups as a `u64` has bits.
 const GROUP: usize = BLOCK / u64::BITS as usize;
 
-/// The flags there are.
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
 /// The flags of a block. What groups of samples have stands right here, so that those of the samples, which lie elsewhere

@@ -113,7 +113,6 @@ pub struct Sample {
     pub time: Time,
     /// The value as it was appended.
     pub value: Value,
-    /// The flags.
     pub flags: Flags,
 }
 

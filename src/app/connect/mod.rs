@@ -27,7 +27,6 @@ use crate::link::LinkUrl;
 
 /// An action of the dialog.
 pub enum Action {
-    /// Open it.
     Open,
     /// Close it; a search ends.
     Close,
@@ -41,7 +40,6 @@ pub enum Action {
     Find(Payload),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),
-    /// Ask for a recording.
     AskRecording,
     /// A recording was chosen.
     Recording(PathBuf),

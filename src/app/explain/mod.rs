@@ -68,7 +68,6 @@ pub fn open_failed(failed: &OpenFailed, open: impl Fn(&OpenError) -> Text) -> Te
     }
 }
 
-/// A file.
 pub fn file(error: &FileError) -> Text {
     let path = error.path.display();
     match &error.problem {
@@ -152,7 +151,6 @@ pub fn logbook(why: &LogbookError) -> Text {
     Text::new("write.logbook").with_text("why", logbook_problem(why))
 }
 
-/// A parity.
 pub fn parity(parity: Parity) -> Text {
     Text::new(match parity {
         Parity::None => "parity.none",

@@ -14,10 +14,8 @@ pub enum Cursor {
 }
 
 impl Cursor {
-    /// Both.
     pub const BOTH: [Cursor; 2] = [Cursor::A, Cursor::B];
 
-    /// A or B.
     pub const fn word(self) -> &'static str {
         match self {
             Cursor::A => "A",
@@ -46,7 +44,6 @@ pub struct Between {
     pub count: u64,
     /// Samples without a value to believe.
     pub bad: u64,
-    /// Mean.
     pub mean: f64,
     /// The least.
     pub min: f64,
@@ -57,7 +54,6 @@ pub struct Between {
 }
 
 impl Recorder {
-    /// Returns the time of a cursor.
     pub fn cursor(&self, cursor: Cursor) -> Option<Time> {
         match cursor {
             Cursor::A => self.cursors[0],

@@ -62,7 +62,6 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    /// There are samples of a line.
     pub(in crate::app) fn has_samples(&self, id: LineId) -> bool {
         self.line(id).and_then(|line| self.history(line)).is_some_and(|history| !history.all().is_empty())
     }

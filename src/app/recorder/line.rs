@@ -36,7 +36,6 @@ pub struct Series {
     pub heading: String,
     /// The colour, one of eight; further lines start again.
     pub colour: usize,
-    /// It is shown.
     pub shown: bool,
     /// The stretch of values that is shown, in the line's unit; `None`: what is visible fits.
     pub range: Option<(f64, f64)>,

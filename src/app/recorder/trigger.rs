@@ -23,7 +23,6 @@ impl When {
     /// All of them.
     pub const ALL: [When; 5] = [When::Rising, When::Falling, When::Above, When::Below, When::Error];
 
-    /// There is a level to it.
     pub const fn has_level(self) -> bool {
         !matches!(self, When::Error)
     }
@@ -32,7 +31,6 @@ impl When {
 /// A trigger: its condition, and the range shown around it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
-    /// In which line.
     pub line: LineId,
     /// For what.
     pub when: When,
@@ -44,7 +42,6 @@ pub struct Trigger {
     pub repeat: bool,
 }
 
-/// The state of a trigger.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TriggerState {
     /// It waits.

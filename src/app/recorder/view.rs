@@ -18,7 +18,6 @@ pub enum TimeWindow {
     },
     /// This stretch, whatever comes.
     Fixed {
-        /// From here.
         from: Time,
         /// To here, which is later.
         to: Time,

@@ -4,10 +4,8 @@ use super::{Kind, Session};
 
 /// A device with a session.
 pub trait HasSession {
-    /// Its kind.
     type Device: Kind;
 
-    /// Returns the session.
     fn session(&self) -> &Session<Self::Device>;
 
     /// The same, to be changed.

@@ -136,7 +136,6 @@ impl<D: Kind> Session<D> {
         Session::new(id, Source::Link(url), Phase::Opening)
     }
 
-    /// With a profile.
     pub fn in_file(id: SessionId, file: ProfileFile, document: Document) -> Self {
         Session::new(id, file.source(document), Phase::Offline)
     }

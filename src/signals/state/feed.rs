@@ -56,7 +56,6 @@ impl From<Pair> for Channels {
 pub(super) enum Feed {
     /// The virtual encoder.
     Virtual(Stream<Analogue>),
-    /// An adapter.
     Adapter {
         stream: Stream<Bridge<SineCosine>>,
         /// The adapter and its actual setting, once known.
@@ -146,7 +145,6 @@ impl Feed {
         }
     }
 
-    /// It has ended by itself.
     pub(super) fn is_ended(&self) -> bool {
         match self {
             Feed::Virtual(stream) => stream.is_ended(),
@@ -154,7 +152,6 @@ impl Feed {
         }
     }
 
-    /// Returns why it ended by itself.
     pub(super) fn why_ended(&self) -> Text {
         match self {
             Feed::Virtual(stream) if stream.take_error().is_some() => TEXTS.text("virtual.forgotten"),

@@ -11,7 +11,6 @@ use crate::signals::state::TEXTS;
 /// Sizes of tables that are told about.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
-/// The error of a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableError {
     /// Its intervals in one octant.
@@ -29,7 +28,6 @@ pub struct TableError {
 pub struct Interpolated {
     /// By the arctangent.
     pub exact: Phase,
-    /// By the table.
     pub table: Phase,
     /// Table minus exact, in electrical degrees, within ±180.
     pub difference_deg: f64,

@@ -20,7 +20,6 @@ use crate::buses::bridge::procedures::Streaming;
 use crate::link::LinkUrl;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 
-/// An action on the source.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SourceAction {
     /// Let the virtual encoder turn.
@@ -51,13 +50,11 @@ pub enum SourceAction {
     Reset,
 }
 
-/// The kind of source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SourceKind {
     /// The virtual encoder.
     #[default]
     Encoder,
-    /// An adapter.
     Adapter,
 }
 

@@ -21,23 +21,18 @@ use crate::signals::state::TEXTS;
 /// The origin of a capture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// A table.
     Table(TableSource),
     /// The virtual encoder.
     Virtual,
-    /// An adapter.
     Adapter {
-        /// Its name.
         name: String,
         /// It lives in this process.
         is_virtual: bool,
     },
 }
 
-/// The source of a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableSource {
-    /// A file.
     File(PathBuf),
     /// One that ships with the program.
     Example(Example),

@@ -25,7 +25,6 @@ pub use texts::TEXTS;
 
 use crate::app::{Tab, Tool, ToolAction, ToolKind};
 
-/// The tab that shows it.
 pub(crate) const TAB: Tab = Tab::named("Signals");
 
 /// The Signals tab, for the list of tools.

@@ -15,7 +15,6 @@ pub struct Quantity {
     pub value: f64,
     /// Decimals that mean something.
     pub decimals: usize,
-    /// Its unit.
     pub unit: Unit,
     /// The same in another unit, to be read beside it.
     pub also: Option<(f64, usize, Unit)>,
@@ -30,23 +29,18 @@ pub struct Quantity {
 pub enum Unit {
     /// None.
     One,
-    /// Volts.
     Volts,
-    /// Millivolts.
     Millivolts,
     /// Decibels above one volt rms.
     DecibelVolts,
-    /// Percent.
     Percent,
     /// Degrees, electrical or mechanical.
     Degrees,
     /// Mechanical seconds of arc.
     ArcSeconds,
-    /// Kilohertz.
     Kilohertz,
     /// Revolutions a minute.
     Rpm,
-    /// Milliseconds.
     Milliseconds,
 }
 

@@ -13,7 +13,6 @@ use crate::worker::stream::Batch;
 /// A recorder with the signals.
 #[derive(Debug)]
 pub struct Scope {
-    /// The recorder.
     pub recorder: Recorder,
     /// Why there is nothing to draw.
     pub refused: Option<NoTimes>,
@@ -51,7 +50,6 @@ impl Scope {
         Scope::new(with_wires, KEPT, Recorder::new(SPAN))
     }
 
-    /// All of a capture.
     pub(super) fn of(capture: &Capture) -> Self {
         let count = capture.sine_v.len().min(capture.cosine_v.len());
         let counts = capture.time_s.len() < count;

@@ -7,9 +7,7 @@ use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_ra
 /// Both spectra.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectra {
-    /// Of the sine channel.
     pub sine: ChannelSpectrum,
-    /// Of the cosine channel.
     pub cosine: ChannelSpectrum,
     /// Distance of two lines in hertz.
     pub spacing_hz: f64,
@@ -17,7 +15,6 @@ pub struct Spectra {
     pub samples: usize,
 }
 
-/// One spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelSpectrum {
     /// (hertz, peak amplitude in volts), growing in frequency.

@@ -9,7 +9,6 @@ use crate::app::number::{MOST_PERIODS, number_or_hex, whole, within};
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
 use crate::signals::state::TEXTS;
 
-/// An action.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
     /// An entry was edited.
@@ -197,7 +196,6 @@ impl Synchronisation {
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
     }
 
-    /// The verdict in words.
     pub fn words(&self) -> (Verdict, Text) {
         match self.result {
             Err(Unsynchronisable) => (Verdict::Fault, TEXTS.text("synchronise.impossible")),

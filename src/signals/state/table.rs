@@ -20,7 +20,6 @@ pub struct Table {
 /// A column that is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
-    /// Time.
     Time,
     /// Sine, or SIN against ground.
     Sine,

@@ -19,7 +19,6 @@ const POINTS: u32 = 100;
 /// Height of the curves in points.
 const HEIGHT: f32 = 220.0;
 
-/// Draws the page.
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, form: &mut Form) {
     // The drawing beside the entries shows their present result.
     let circuit = form.circuit();

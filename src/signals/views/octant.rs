@@ -22,7 +22,6 @@ impl Default for OctantUiState {
     }
 }
 
-/// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut OctantUiState) {
     card(ui, theme, TEXTS.text("octant.title"), |ui| {
         paragraph(ui, theme.label(say(theme, "octant.words")));

@@ -20,7 +20,6 @@ const RING: f32 = 200.0;
 /// Share of the left column, and the least width for two.
 const COLUMNS: (f32, f32) = (0.42, 620.0);
 
-/// Draws the page.
 pub(super) fn page_ui(
     ui: &mut Ui,
     theme: &Theme,

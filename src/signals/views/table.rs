@@ -36,7 +36,6 @@ const TIME_UNITS: [(TimeUnit, &str); 4] = [
     (TimeUnit::Nanoseconds, "ns"),
 ];
 
-/// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, actions: &mut Vec<Action>) {
     let mut wish = |action: Signals| actions.push(Action::tool(action));
     let mut again = false;

@@ -51,7 +51,6 @@ const DISTURBANCES: [Slid; 8] = [
 /// Windows to choose from, in milliseconds.
 const WINDOWS: [u32; 5] = [20, 50, 200, 1000, 5000];
 
-/// Draws the card.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let mut reset = false;

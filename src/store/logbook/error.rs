@@ -31,7 +31,6 @@ pub enum LogbookProblem {
     /// Another program held it longer than it is waited for.
     #[error("another program is using it")]
     Locked,
-    /// The disk is full.
     #[error("the disk is full")]
     DiskFull,
     /// It is no database, or a damaged one.
@@ -50,10 +49,7 @@ pub enum LogbookProblem {
     },
     /// The entry to conclude does not exist, or is concluded.
     #[error("entry {entry} is not an open one")]
-    NotOpen {
-        /// The entry.
-        entry: EntryId,
-    },
+    NotOpen { entry: EntryId },
     /// Anything else, as the database calls it.
     #[error("{what}")]
     Database {

@@ -34,7 +34,6 @@ pub struct DeviceKey {
     pub kind: String,
     /// Its type within the kind, as its manual writes it: `37h`. Serial numbers are unique within a type only.
     pub device_type: String,
-    /// Its serial number.
     pub serial_number: String,
     /// A simulated device; it never shares a count with a real one.
     pub is_virtual: bool,

@@ -12,7 +12,6 @@ use crate::ui::Theme;
 /// Height of a lane in points below which there is no room for names in it.
 const LOW: f32 = 40.0;
 
-/// The colour of a line.
 pub(super) fn colour(theme: &Theme, line: &Series) -> Color32 {
     let series = &theme.palette.series;
     series.get(line.colour % series.len()).copied().unwrap_or(theme.palette.accent).into()

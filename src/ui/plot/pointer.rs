@@ -15,12 +15,17 @@ const CLICK: f32 = 5.0;
 /// The object of a drag.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
-    /// A cursor.
     Cursor(Cursor),
     /// A box to look into.
-    Box { from: Pos2, to: Pos2 },
+    Box {
+        from: Pos2,
+        to: Pos2,
+    },
     /// The picture: what lay under the pointer.
-    Picture { under: Time, window: (Time, Time) },
+    Picture {
+        under: Time,
+        window: (Time, Time),
+    },
 }
 
 pub(super) fn interact(

@@ -10,7 +10,6 @@ use crate::app::{Action, Picture};
 /// A picture that is wanted.
 #[derive(Default)]
 pub(super) enum Shot {
-    /// None is.
     #[default]
     None,
     /// It is asked for as soon as the plot is in sight; so many frames were waited.

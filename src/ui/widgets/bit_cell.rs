@@ -4,7 +4,6 @@ use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect};
 
 use crate::ui::Theme;
 
-/// A cell.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BitCell<'a> {
     /// The colour of its field.
@@ -18,7 +17,6 @@ pub(crate) struct BitCell<'a> {
 }
 
 impl BitCell<'_> {
-    /// Paints it.
     pub(crate) fn paint(&self, painter: &Painter, theme: &Theme, rect: Rect) {
         let palette = theme.palette;
         let corners = CornerRadius::same(2);

@@ -46,7 +46,6 @@ pub struct Chart<'a> {
 pub struct Trace {
     /// Its name in the legend.
     pub name: String,
-    /// Points.
     pub points: Vec<(f64, f64)>,
     /// Index of the series' colour.
     pub colour: usize,

@@ -22,7 +22,6 @@ use crate::ui::Theme;
 
 use strip::Strip;
 
-/// One field.
 #[derive(Clone, Debug, Default)]
 pub struct MapField {
     /// Its number, shown in it.
@@ -58,7 +57,6 @@ pub struct FieldMap<'a> {
     pub free_tooltip: &'a str,
     /// Number of the selected field.
     pub selected: Option<u8>,
-    /// Bytes in a block.
     pub block_bytes: usize,
     /// Sizes in blocks that the last field may be dragged to; `None` offers no handle.
     pub resize: Option<RangeInclusive<usize>>,
@@ -72,10 +70,7 @@ pub enum MapEvent {
     /// Selects the free space.
     SelectFree,
     /// Another size of the last field; it is not the present one.
-    ResizeLast {
-        /// In blocks.
-        blocks: usize,
-    },
+    ResizeLast { blocks: usize },
 }
 
 /// Draws the map and says what was done to it. One map a `Ui`: another needs an id of its own (`push_id`).

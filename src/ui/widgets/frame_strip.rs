@@ -56,7 +56,6 @@ const BAR: f32 = 2.0;
 const NAME: f32 = 15.0;
 const VALUE: f32 = 18.0;
 
-/// Draws it.
 pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
     let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, theme, field)).collect();
     let wants = strip.fields.iter().zip(&words).map(|(field, words)| Want { bits: field.bits, words: words.width() });

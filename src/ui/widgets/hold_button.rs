@@ -89,7 +89,6 @@ impl Drawn {
     }
 }
 
-/// Draws it.
 pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Vec2) -> Option<HoldEvent> {
     let size = Vec2::new(size.x.max(LEAST), size.y.max(LEAST));
     let around: HoldSurroundings = ui.data(|data| data.get_temp(Id::unique("around hold buttons"))).unwrap_or_default();

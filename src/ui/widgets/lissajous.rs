@@ -75,7 +75,6 @@ impl PlotArea {
     }
 }
 
-/// Draws it.
 pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side.max(40.0)), Sense::hover());
     response.widget_info(|| {

@@ -43,7 +43,6 @@ pub struct RegisterLocation {
     pub row: usize,
 }
 
-/// The table.
 #[derive(Clone, Copy)]
 pub struct RegisterTable<'a> {
     /// Accessible name.
@@ -111,7 +110,6 @@ pub struct RegisterRow {
     pub kept: Option<String>,
     /// Why the value cannot be edited; `None` if it can.
     pub read_only: Option<String>,
-    /// Its bit fields.
     pub fields: Vec<RegisterBits>,
 }
 
@@ -121,7 +119,6 @@ pub struct RegisterBits {
     /// The bits, such as `b3…b0`.
     pub bits: String,
     pub name: String,
-    /// Its value.
     pub value: String,
     pub meaning: String,
     /// It tells of something that matters.

@@ -57,7 +57,6 @@ impl Dial {
     }
 }
 
-/// Draws it.
 pub fn step_ring(ui: &mut Ui, theme: &Theme, ring: &StepRing<'_>, side: f32) {
     let side = side.max(80.0);
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());

@@ -35,7 +35,6 @@ pub struct Step {
     pub progress: Option<f32>,
 }
 
-/// The state of a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StepState {
     /// Its turn has not come.
@@ -45,11 +44,9 @@ pub enum StepState {
     Waiting,
     /// It runs.
     Running,
-    /// It is done.
     Done,
     /// It was left out.
     Skipped,
-    /// It failed.
     Failed,
 }
 
@@ -62,7 +59,6 @@ pub struct Gauge {
     pub value: Option<f64>,
     /// The value with its unit.
     pub shown: String,
-    /// The allowed range.
     pub allowed: RangeInclusive<f64>,
     /// The best range; `None` if all values are equally good.
     pub best: Option<RangeInclusive<f64>>,

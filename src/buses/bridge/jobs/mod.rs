@@ -29,7 +29,6 @@ pub trait Stretch: Send + 'static {
     fn read(&self, data: Data, streaming: &Streaming) -> Option<Self::Samples>;
 }
 
-/// Sine and cosine.
 #[derive(Clone, Copy, Debug)]
 pub struct SineCosine {
     /// Samples a second.
@@ -39,9 +38,7 @@ pub struct SineCosine {
 /// Both signals in volts, equally long.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pair {
-    /// Sine.
     pub sine_v: Vec<f64>,
-    /// Cosine.
     pub cosine_v: Vec<f64>,
 }
 

@@ -148,7 +148,6 @@ struct Puppet {
     capabilities: Capabilities,
     /// What it gives too much when it switches a supply on, in millivolts.
     too_high: u16,
-    /// Operations that are refused, with their code.
     refused: Vec<(Operation, ErrorCode)>,
     /// Replies that get lost, by their operation, once each.
     swallowed: Vec<Operation>,

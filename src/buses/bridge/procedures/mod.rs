@@ -100,16 +100,12 @@ pub enum AdapterError {
     Restarted,
     /// Streamed data is not of this version.
     #[error("what the adapter sends cannot be read: {cause}")]
-    Data {
-        /// The cause.
-        cause: BodyError,
-    },
+    Data { cause: BodyError },
     /// It refuses a request.
     #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
     Refused {
         /// The requested operation.
         operation: Operation,
-        /// The error code.
         code: ErrorCode,
         /// In its own words.
         text: String,
@@ -119,13 +115,11 @@ pub enum AdapterError {
     Reply {
         /// The requested operation.
         operation: Operation,
-        /// The cause.
         cause: BodyError,
     },
     /// It answers another question.
     #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", asked.byte(), got.byte())]
     Other {
-        /// The requested operation.
         asked: Operation,
         /// The operation of the reply.
         got: Operation,

@@ -8,7 +8,6 @@ pub enum SupplyAfter {
     /// As it was found: what this session switched on goes off.
     #[default]
     AsFound,
-    /// On.
     On,
     /// Off, also where it was on before.
     Off,

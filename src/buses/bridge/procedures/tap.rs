@@ -18,7 +18,6 @@ pub enum Wanted {
         clock_hz: u32,
         /// Position, error and warning, without the CRC.
         data_bits: u8,
-        /// Bits of the CRC.
         crc_bits: u8,
         /// Microseconds from one to the next.
         period_us: u32,
@@ -55,7 +54,6 @@ pub enum TapError {
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The adapter.
     #[error(transparent)]
     Adapter(#[from] AdapterError),
 }

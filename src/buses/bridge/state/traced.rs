@@ -24,7 +24,6 @@ pub fn received(bytes: &[u8]) -> Option<Explained> {
     }
 }
 
-/// Returns the text of a request.
 pub fn asked(request: &Request) -> Text {
     match request {
         Request::BissRead | Request::SsiRead => Text::new("trace.position"),

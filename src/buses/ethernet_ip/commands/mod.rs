@@ -15,7 +15,6 @@ use crate::cli::commands::ProtocolDecoder;
 use crate::cli::decode::{Explained, frames, show};
 use crate::cli::output::{Output, count};
 
-/// Decoded bytes.
 pub(crate) struct DecodedBytes {
     pub(crate) lines: Vec<String>,
     /// Further keys for a script.

@@ -12,7 +12,6 @@ fn register(address: RegisterAddress) -> Option<&'static Register> {
     KIT.as_ref()?.at(address)
 }
 
-/// Returns the name of the register at an address.
 pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
     let area = || Some(KIT.as_ref()?.area_at(address)?.name.english());
     register(address).map(|register| register.name.english()).or_else(area)

@@ -59,23 +59,23 @@ pub enum BissJob {
 pub enum Change {
     /// Make the encoder as the profile says.
     Restore {
-        /// The profile.
         profile: Box<BissProfile>,
         options: RestoreOptions,
     },
     /// Write registers: where, and which bytes. Those of an area of data are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
-    /// Select a filter.
     SelectFilter(Filter),
     /// Store this preset value, where one is given; and make the shaft's place what is stored then, where parts are.
     Preset {
-        /// The value.
         value: Option<PresetValue>,
         /// Parts of the position.
         parts: Option<PresetParts>,
     },
     /// Procedures led by a person: one, or all of a mounting.
-    Guided { run: MountingRun, motor: MotorSource },
+    Guided {
+        run: MountingRun,
+        motor: MotorSource,
+    },
 }
 
 /// Kinds of change that differ in what completes one that was cut off.
@@ -98,7 +98,6 @@ pub enum ChangeKind {
 }
 
 impl Change {
-    /// Its kind.
     pub fn kind(&self) -> ChangeKind {
         match self {
             Change::Restore { .. } => ChangeKind::Restore,
@@ -115,7 +114,6 @@ impl Change {
 /// A plan, ready to be looked at.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The kind of change that it is for.
     pub kind: ChangeKind,
     pub plan: BissPlan,
     /// The encoder it is for.
@@ -203,9 +201,7 @@ pub enum DeviceMessage {
 /// The step that a BiSS job is at. Its text is the command line's.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JobStep {
-    /// A register is read.
     Register(RegisterAddress),
-    /// A bank is read.
     Bank(u8),
     /// An operation of a plan is carried out.
     Operation {

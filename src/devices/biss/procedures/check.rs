@@ -39,23 +39,17 @@ pub enum Step {
 pub enum Finding {
     /// The name of its description.
     Name(String),
-    /// Its serial number.
     SerialNumber(String),
-    /// Its firmware.
     Firmware(Firmware),
     /// No description is for it.
     Mismatch(Mismatch),
-    /// An error that is set, with its name.
     Error(u8, Option<Name>),
-    /// A warning that is set, with its name.
     Warning(u8, Option<Name>),
     /// It has no registers for errors and warnings, or not with this firmware.
     NotTold,
-    /// It is in a device mode.
     Mode(DeviceMode),
     /// The password is set.
     Open,
-    /// The position.
     Position(PositionReading),
     /// The position came with its error bit.
     ErrorBit,
@@ -78,7 +72,6 @@ pub enum Finding {
     },
     /// Degrees Celsius, and what the data sheet allows.
     Temperature {
-        /// As it is.
         celsius: f64,
         /// At least.
         low: i32,

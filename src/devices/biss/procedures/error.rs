@@ -12,11 +12,9 @@ use crate::profile::DeviceError;
 /// A request to an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// A register.
     Read(RegisterAddress),
     /// To take a value into a register.
     Write(RegisterAddress, u8),
-    /// The position.
     Position,
 }
 
@@ -39,7 +37,6 @@ pub enum Error {
     /// Nothing came back.
     #[error("no reply while {asked} ({tries} tries)")]
     NoReply {
-        /// The request.
         asked: Asked,
         /// Number of attempts.
         tries: u32,
@@ -49,7 +46,6 @@ pub enum Error {
     /// Something came back and was broken every time.
     #[error("damaged reply while {asked} ({tries} tries): {cause}")]
     Damaged {
-        /// The request.
         asked: Asked,
         /// Number of attempts.
         tries: u32,
@@ -100,22 +96,14 @@ pub enum Error {
     },
     /// The encoder answers, and not when it is asked for this register: it has none there.
     #[error("the encoder has no register {address}")]
-    NoSuchRegister {
-        /// The register.
-        address: RegisterAddress,
-    },
+    NoSuchRegister { address: RegisterAddress },
     /// Registers of an area of data are not watched: they are read at standstill only.
     #[error("register {address} is data, which is not read while the shaft may turn")]
-    NotWatched {
-        /// The register.
-        address: RegisterAddress,
-    },
+    NotWatched { address: RegisterAddress },
     /// The encoder did not take a value.
     #[error("the encoder refuses 0x{value:02X} for register {address}")]
     Refused {
-        /// The register.
         address: RegisterAddress,
-        /// The value written.
         value: u8,
         /// The value that the register reads instead, if the way shows it.
         reads: Option<u8>,
@@ -123,9 +111,7 @@ pub enum Error {
     /// Whether a value was accepted is not known: reading the register back does not show it, or is not possible.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
-        /// The register.
         address: RegisterAddress,
-        /// The value written.
         value: u8,
         /// Why it is not known.
         cause: Box<Error>,
@@ -171,10 +157,7 @@ pub enum Error {
     },
     /// The encoder is in a device mode, in which its registers may show what was entered and never saved.
     #[error("the encoder is in device mode {mode}")]
-    NotInOperation {
-        /// The mode.
-        mode: DeviceMode,
-    },
+    NotInOperation { mode: DeviceMode },
     /// Values changed between the plan and its execution.
     #[error("{item} has changed since the plan was made")]
     Changed {
@@ -183,12 +166,7 @@ pub enum Error {
     },
     /// The reply belongs to another kind of request.
     #[error("{asked}: the reply is of another kind: {reply}")]
-    OtherReply {
-        /// The request.
-        asked: Asked,
-        /// The reply, as parsed.
-        reply: String,
-    },
+    OtherReply { asked: Asked, reply: String },
     /// The adapter reports a status of the frame that the bridge protocol does not have.
     #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
     FrameStatus {

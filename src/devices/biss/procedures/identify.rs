@@ -35,7 +35,6 @@ pub struct Identity {
     pub data_sheet: Option<DataSheet>,
     /// The frame of its position.
     pub layout: Layout,
-    /// Source of the frame.
     pub source: FrameSource,
     /// The adapter, over that way.
     pub adapter: Option<Hello>,
@@ -79,7 +78,6 @@ pub struct DataSheet {
     pub layout: Result<Layout, EdsError>,
 }
 
-/// A bank of the data sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheetBank {
     /// Its number.

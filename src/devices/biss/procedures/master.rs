@@ -50,7 +50,6 @@ type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 /// An encoder's reaction to a value.
 enum Taken {
-    /// It has it.
     Yes,
     /// It refused; with what the register gives back, where the way tells that.
     No(Option<u8>),
@@ -78,7 +77,6 @@ impl<'a> Master<'a> {
         self.station.description.clone().ok_or(Error::NotIdentified)
     }
 
-    /// Now.
     pub fn now(&self) -> Moment {
         self.line.now()
     }

@@ -35,9 +35,7 @@ pub enum Unsaved {
 /// The stage of reading a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadStage {
-    /// A register.
     Register(RegisterAddress),
-    /// A bank.
     Bank(u8),
 }
 

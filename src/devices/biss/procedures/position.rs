@@ -90,7 +90,6 @@ impl PositionReading {
 /// A polled sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
-    /// The position.
     Position(PositionReading),
     /// Frames came, and none with a right checksum.
     Missed {

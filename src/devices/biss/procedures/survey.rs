@@ -11,13 +11,10 @@ use crate::devices::biss::protocol::{
 /// The status of an encoder. Values without a register, or not with this firmware, are `None`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
-    /// The device mode.
     pub mode: Option<DeviceMode>,
     /// The value of the password register.
     pub protection: Option<u8>,
-    /// Its errors.
     pub errors: Option<Bits>,
-    /// Its warnings.
     pub warnings: Option<Bits>,
     /// Degrees Celsius.
     pub celsius: Option<f64>,
@@ -46,11 +43,8 @@ pub struct Bits {
 /// An encoder as it was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
-    /// The identity.
     pub identity: Identity,
-    /// The status.
     pub status: Status,
-    /// Status of the calibration.
     pub calibration: Option<CalibrationStatus>,
     /// The last Wiegand test since power came.
     pub wiegand_last: Option<WiegandResult>,

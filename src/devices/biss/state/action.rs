@@ -27,7 +27,6 @@ pub enum Action {
     Put {
         /// First byte.
         start: RegisterAddress,
-        /// The bytes.
         bytes: Vec<u8>,
     },
     /// Take the edits of a range back.

@@ -43,7 +43,6 @@ pub struct BissForm {
     pub port: String,
     /// Name or address of a device server.
     pub host: String,
-    /// Its TCP port.
     pub tcp_port: String,
     /// The recording.
     pub file: String,

@@ -123,7 +123,6 @@ impl Encoder {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
 
-    /// Returns the identity in the profile, if this is one.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
     }

@@ -169,7 +169,6 @@ fn moving(rpm: Option<f64>) -> Text {
     TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
-/// Returns the text of a request.
 pub fn asked(asked: Asked) -> Text {
     match asked {
         Asked::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
@@ -210,7 +209,6 @@ fn description(error: &StoreError) -> Text {
     }
 }
 
-/// Returns the text of the present step of a job.
 pub fn doing(doing: &JobStep) -> Text {
     match doing {
         JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),

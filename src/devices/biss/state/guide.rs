@@ -45,7 +45,6 @@ pub enum Reached {
     Done,
     /// It waits for a person.
     Waits,
-    /// It runs.
     Runs,
     /// It was left out.
     Skipped,

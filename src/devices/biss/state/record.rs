@@ -187,7 +187,6 @@ impl Record {
         self.track.watched()
     }
 
-    /// The last position.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref()
     }

@@ -11,7 +11,6 @@ use crate::devices::biss::state::explain as words;
 
 /// A write on its way.
 pub type Review = review::Review<Biss>;
-/// The state of a review.
 pub type ReviewState = review::ReviewState<Biss>;
 
 /// A person has to be there for it, or may lead it.

@@ -24,7 +24,6 @@ pub struct Group {
     rows: Vec<Row>,
 }
 
-/// One row.
 #[derive(Clone, Debug)]
 pub struct Row {
     /// The register; a byte that is not described is one of a width of 1, without a name.
@@ -84,7 +83,6 @@ impl Group {
         Group { bank, name, rows }
     }
 
-    /// Its rows.
     pub fn rows(&self) -> &[Row] {
         &self.rows
     }

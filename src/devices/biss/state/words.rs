@@ -12,7 +12,6 @@ use crate::devices::biss::protocol::{
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
-/// A job.
 pub(super) fn job(job: &BissJob) -> Text {
     match job {
         BissJob::Survey | BissJob::Identify => Text::new("job.survey"),

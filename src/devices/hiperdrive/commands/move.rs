@@ -167,7 +167,6 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
     }
 }
 
-/// Returns the end of an act, if it has ended.
 fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
     let view = runner.kept.view();
     let ended = view.drives.iter().find(|own| own.number == drive).and_then(|own| own.ended);

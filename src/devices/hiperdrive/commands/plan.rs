@@ -91,7 +91,6 @@ pub(super) fn said(plan: &HiperdrivePlan) -> String {
     text
 }
 
-/// The operations as JSON.
 pub(super) fn operations(plan: &HiperdrivePlan) -> Vec<Json> {
     plan.ops
         .iter()

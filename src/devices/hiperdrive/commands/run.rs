@@ -75,7 +75,6 @@ impl Runs for Hiperdrive {
     }
 }
 
-/// Reads a parameter.
 pub(super) fn value(runner: &mut Runner, number: ParameterNumber) -> Result<Value> {
     match runner.run(HiperdriveJob::Read(number))? {
         HiperdriveOutput::Value(_, value) => Ok(value),

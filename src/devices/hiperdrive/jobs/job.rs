@@ -31,7 +31,6 @@ pub enum HiperdriveJob {
     Check,
     /// Reads the position of a drive once.
     Position(DriveNumber),
-    /// A parameter.
     Read(ParameterNumber),
     /// Address switches and TCP/IP object.
     Network,
@@ -53,11 +52,7 @@ pub enum HiperdriveJob {
 #[derive(Clone, Debug)]
 pub enum Change {
     /// Make the device as the profile says.
-    Restore {
-        /// The profile.
-        profile: Box<HiperdriveProfile>,
-        options: RestoreOptions,
-    },
+    Restore { profile: Box<HiperdriveProfile>, options: RestoreOptions },
     /// Make it like this, and save it; what the image says nothing about stays as it is.
     Write(Box<Image>),
     /// Make it like this, and save nothing.
@@ -85,7 +80,6 @@ pub enum ChangeKind {
     Edits,
     /// Values are written for now.
     Try,
-    /// A position is set.
     Position,
     /// The device does something.
     Service(Service),
@@ -94,7 +88,6 @@ pub enum ChangeKind {
 }
 
 impl Change {
-    /// Its kind.
     pub const fn kind(&self) -> ChangeKind {
         match self {
             Change::Restore { .. } => ChangeKind::Restore,
@@ -110,7 +103,6 @@ impl Change {
 /// A plan, ready to be looked at.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The kind of change that it is for.
     pub kind: ChangeKind,
     pub plan: HiperdrivePlan,
     /// The device it is for.
@@ -158,7 +150,6 @@ pub enum DeviceMessage {
 /// The step that a job is at. Its text is the command line's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
-    /// A parameter is read.
     Parameter(ParameterNumber),
     /// A step of the check.
     Step(Step),

@@ -41,11 +41,9 @@ struct Cell {
 /// The drives at one moment: what they do, and what they may do.
 #[derive(Clone, Debug)]
 pub struct Glance {
-    /// The moment.
     pub at: Moment,
     /// The state of the drives.
     pub view: MotionSnapshot,
-    /// The limits of the drives.
     pub limits: BTreeMap<DriveNumber, DriveLimits>,
 }
 

@@ -36,7 +36,6 @@ pub enum Step {
     Memory,
     /// The drives plugged in.
     Drives,
-    /// Whether a drive is requested.
     Request(DriveNumber),
     /// RS-485 to a drive.
     Line(DriveNumber),
@@ -44,7 +43,6 @@ pub enum Step {
     Timeout(DriveNumber),
     /// State and errors of a drive.
     Errors(DriveNumber),
-    /// Temperature of a drive.
     DriveTemperature(DriveNumber),
     /// Scaling, limits and position of a drive.
     Range(DriveNumber),
@@ -84,9 +82,7 @@ pub enum Finding {
         /// Frames that arrived after their time limit.
         late: u64,
     },
-    /// The category.
     Category(String),
-    /// Its serial number.
     SerialNumber(String),
     /// Its software.
     Version(String),
@@ -108,7 +104,6 @@ pub enum Finding {
     Drive {
         number: DriveNumber,
         variant: Variant,
-        /// Its serial number.
         serial_number: String,
     },
     /// No drive is plugged in.
@@ -177,7 +172,6 @@ pub enum Finding {
     Within(i64),
     /// The position lies outside of the limits.
     Outside {
-        /// The position.
         position: i64,
         /// Parameter 158.
         lower: i64,

@@ -133,7 +133,6 @@ impl DeadMan {
         self.sent
     }
 
-    /// Returns the drive.
     pub const fn drive(&self) -> DriveNumber {
         self.drive
     }
@@ -304,7 +303,6 @@ impl DeadMan {
 }
 
 impl Motive {
-    /// Returns the target, if there is one.
     pub const fn target(self) -> Option<i32> {
         match self {
             Motive::Job { target } => Some(target),

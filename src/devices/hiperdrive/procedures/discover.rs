@@ -15,7 +15,6 @@ pub struct Found {
     pub address: Ipv4Addr,
     /// Port of explicit messages.
     pub port: u16,
-    /// The identity.
     pub identity: IdentityItem,
 }
 

@@ -14,7 +14,6 @@ use crate::profile::DeviceError;
 /// A request to a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Asked {
-    /// A session.
     Session,
     /// A parameter's value.
     Parameter(ParameterNumber),
@@ -24,12 +23,10 @@ pub enum Asked {
     Identity,
     /// An attribute of the TCP/IP object.
     Network {
-        /// The attribute.
         attribute: u16,
     },
     /// To take an attribute of the TCP/IP object.
     SetNetwork {
-        /// The attribute.
         attribute: u16,
     },
     /// The address of its network card.
@@ -99,7 +96,6 @@ pub struct Late {
 pub struct Refusal {
     /// The service requested.
     pub service: Service,
-    /// The status.
     pub status: GeneralStatus,
     /// The words behind it.
     pub extended: Vec<u16>,
@@ -132,9 +128,7 @@ impl fmt::Display for Refusal {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
 pub struct WrongLength {
-    /// The parameter.
     pub number: ParameterNumber,
-    /// Its name.
     pub name: &'static str,
     /// Bytes of its type.
     pub expected: usize,
@@ -154,10 +148,8 @@ pub enum Error {
     /// Bytes keep coming that are no frames.
     #[error("bytes keep arriving that are no EtherNet/IP frames")]
     NeverSilent,
-    /// No reply.
     #[error("no answer: {asked}, tried {tries} times")]
     NoReply {
-        /// The request.
         asked: Asked,
         /// Number of attempts.
         tries: u32,
@@ -167,7 +159,6 @@ pub enum Error {
     /// It answers, and not as it should.
     #[error("{asked}: {cause}, tried {tries} times")]
     Damaged {
-        /// The request.
         asked: Asked,
         /// Number of attempts.
         tries: u32,
@@ -176,20 +167,10 @@ pub enum Error {
     },
     /// The frame was refused.
     #[error("{asked}: {status}")]
-    Encapsulation {
-        /// The request.
-        asked: Asked,
-        /// The status.
-        status: EncapsulationStatus,
-    },
+    Encapsulation { asked: Asked, status: EncapsulationStatus },
     /// The request was refused.
     #[error("{asked}: {refusal}")]
-    Refused {
-        /// The request.
-        asked: Asked,
-        /// The refusal.
-        refusal: Refusal,
-    },
+    Refused { asked: Asked, refusal: Refusal },
     /// Another master has the cyclic connection.
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
@@ -232,10 +213,7 @@ pub enum Error {
     },
     /// Parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
-    NotRequested {
-        /// The drive.
-        drive: DriveNumber,
-    },
+    NotRequested { drive: DriveNumber },
     /// A value that it may not be; nothing was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
@@ -247,42 +225,19 @@ pub enum Error {
     Length(#[from] WrongLength),
     /// The value does not fit its parameter; nothing was sent.
     #[error("parameter {number}: {cause}")]
-    Value {
-        /// The parameter.
-        number: ParameterNumber,
-        /// The cause.
-        cause: ValueError,
-    },
+    Value { number: ParameterNumber, cause: ValueError },
     /// It can only be read; nothing was sent.
     #[error("parameter {number} ({name}) can only be read")]
-    ReadOnly {
-        /// The parameter.
-        number: ParameterNumber,
-        /// Its name.
-        name: &'static str,
-    },
+    ReadOnly { number: ParameterNumber, name: &'static str },
     /// It can only be written.
     #[error("parameter {number} ({name}) can only be written")]
-    WriteOnly {
-        /// The parameter.
-        number: ParameterNumber,
-        /// Its name.
-        name: &'static str,
-    },
+    WriteOnly { number: ParameterNumber, name: &'static str },
     /// It moves the drive: over the cyclic connection alone; nothing was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
-    Motion {
-        /// The parameter.
-        number: ParameterNumber,
-        /// Its name.
-        name: &'static str,
-    },
+    Motion { number: ParameterNumber, name: &'static str },
     /// The drive moves where it must stand still.
     #[error("drive {} moves", drive.get())]
-    Moving {
-        /// The drive.
-        drive: DriveNumber,
-    },
+    Moving { drive: DriveNumber },
     /// Its identity is not that of a HIPERDRIVE.
     #[error("this is no HIPERDRIVE: {says:?}")]
     NotHiperdrive {
@@ -292,7 +247,6 @@ pub enum Error {
     /// A written value does not read back.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]
     NotTaken {
-        /// The parameter.
         number: ParameterNumber,
         /// The value written.
         wanted: i64,
@@ -301,10 +255,7 @@ pub enum Error {
     },
     /// Network settings that were written do not read back.
     #[error("attribute {attribute} of the TCP/IP object does not read back as it was written")]
-    NetworkNotTaken {
-        /// The attribute.
-        attribute: u16,
-    },
+    NetworkNotTaken { attribute: u16 },
     /// Parameter 47 does not become 0.
     #[error("parameter 47 is still {reads} after {milliseconds} ms")]
     Busy {

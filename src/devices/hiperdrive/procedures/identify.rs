@@ -30,7 +30,6 @@ pub struct Identity {
     pub drives: Vec<DriveIdentity>,
 }
 
-/// The identity of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveIdentity {
     /// Its place.
@@ -52,7 +51,6 @@ pub struct DriveIdentity {
 /// Everything that can be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
-    /// The identity.
     pub identity: Identity,
     /// Its address and where it has it from.
     pub network: Network,
@@ -73,7 +71,6 @@ pub struct Status {
     pub temperature: i64,
 }
 
-/// The status of a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveStatus {
     /// Its place.
@@ -103,7 +100,6 @@ struct Steps<'t> {
 }
 
 impl Steps<'_> {
-    /// This is read next.
     fn next(&mut self, number: ParameterNumber) -> ParameterNumber {
         (self.told)(self.done, self.total, number);
         self.done += 1;
@@ -121,7 +117,6 @@ impl Steps<'_> {
 pub struct Reading {
     /// When.
     pub at: Moment,
-    /// The drive.
     pub drive: DriveNumber,
     /// Parameters 105 to 107.
     pub actual: Actual,

@@ -10,7 +10,6 @@ use super::rules::{GROUPS, Rules};
 use crate::devices::hiperdrive::protocol::{ParameterNumber, PositionScale, Topology, Variant};
 use crate::units::Moment;
 
-/// The limits of one drive.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
     rules: Rules,

@@ -71,7 +71,6 @@ impl<'a> Master<'a> {
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Now.
     pub fn now(&self) -> Moment {
         self.line.now()
     }
@@ -385,7 +384,6 @@ fn has_session(answer: &Frame) -> bool {
         && answer.session != 0
 }
 
-/// Parses the reply in a frame.
 fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeError> {
     let Body::Data { items, .. } = frame.body()? else { return Err(Damage::Empty.into()) };
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;

@@ -36,7 +36,6 @@ const LONGEST_TIMEOUT: u64 = 2000;
 /// The state of an adapter or a hub.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Parameters of the link.
     pub link: LinkParameters,
     /// Port of cyclic data, unless the device reports another.
     pub udp: u16,
@@ -65,7 +64,6 @@ pub struct Station {
 /// The known state of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Known {
-    /// Its topology.
     pub(super) topology: Option<Topology>,
 }
 

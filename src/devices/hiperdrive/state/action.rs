@@ -74,11 +74,7 @@ pub enum Motor {
         target: i32,
     },
     /// Turning in speed mode.
-    Run {
-        direction: Direction,
-        /// The end of the run.
-        end: RunEnd,
-    },
+    Run { direction: Direction, end: RunEnd },
     /// The job waits.
     Pause,
     /// It goes on.

@@ -32,7 +32,6 @@ pub struct FoundDevice {
     pub address: Ipv4Addr,
     /// Port of explicit messages.
     pub port: u16,
-    /// Its name.
     pub name: String,
     /// Its serial number in its identity object.
     pub serial_number: u32,

@@ -17,7 +17,6 @@ pub struct Leds {
     pub module: BusLight,
     /// NS.
     pub network: BusLight,
-    /// Of a port.
     pub port: PortLight,
 }
 
@@ -32,12 +31,9 @@ pub enum Lamp {
     Port,
 }
 
-/// The meaning of an LED.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LedMeaning {
-    /// The severity.
     pub severity: Severity,
-    /// The meaning.
     pub meaning: Text,
     /// What to do.
     pub remedy: Text,

@@ -31,7 +31,6 @@ pub struct Form {
 pub enum PowerUp {
     /// The switches say it.
     Fixed(Ipv4Addr),
-    /// It is stored.
     Stored(Ipv4Addr),
     /// It should be stored, and none is.
     NothingStored,
@@ -48,7 +47,6 @@ pub enum PowerUp {
 pub struct Position {
     /// The two digits: `0`, `1…96`.
     pub digits: &'static str,
-    /// Their meaning.
     pub meaning: Text,
     /// They stand so.
     pub is_now: bool,
@@ -158,7 +156,6 @@ impl PowerUp {
         }
     }
 
-    /// In words.
     pub fn words(self) -> Text {
         match self {
             PowerUp::Fixed(address) => TEXTS.text("hd_net.up_fixed").with("address", address),

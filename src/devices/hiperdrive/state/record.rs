@@ -63,7 +63,6 @@ impl Record {
         self.last = Some(reading);
     }
 
-    /// Returns the last reading.
     pub fn last(&self) -> Option<&Reading> {
         self.last.as_ref()
     }

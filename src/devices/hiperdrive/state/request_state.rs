@@ -16,7 +16,6 @@ use crate::devices::hiperdrive::state::explain as words;
 /// The state of a request to a drive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RequestState {
-    /// In words.
     pub words: Text,
     /// Needs no action.
     pub is_well: bool,

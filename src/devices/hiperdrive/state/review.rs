@@ -18,7 +18,6 @@ use crate::profile::Plan;
 
 /// A write on its way.
 pub type Review = review::Review<Hiperdrive>;
-/// The state of a review.
 pub type ReviewState = review::ReviewState<Hiperdrive>;
 
 impl Reviewed for Hiperdrive {

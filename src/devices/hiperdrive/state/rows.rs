@@ -16,9 +16,7 @@ use crate::devices::hiperdrive::state::explain as explained;
 /// A parameter as a row of the table.
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// Its own number.
     pub number: ParameterNumber,
-    /// Its name.
     pub name: Text,
     /// Its row of the manual's table.
     pub kind: &'static ParameterRow,

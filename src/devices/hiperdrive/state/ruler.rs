@@ -45,7 +45,6 @@ impl Ruler {
         }
     }
 
-    /// The measures that it has.
     pub fn measures(self) -> impl Iterator<Item = Measure> {
         Measure::ALL.into_iter().filter(move |measure| self.steps_in(*measure).is_some())
     }

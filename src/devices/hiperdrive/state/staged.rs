@@ -58,7 +58,6 @@ pub struct SavedEdit(pub u16, pub Option<i64>);
 /// Something that is wanted otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
-    /// The parameter.
     pub number: ParameterNumber,
     /// Now; `None`: a profile does not say it.
     pub from: Option<i64>,

@@ -127,7 +127,6 @@ impl Unit {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Returns the identity in the profile, if this is one.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
     }
@@ -222,7 +221,6 @@ impl Unit {
         })
     }
 
-    /// In which state a drive is.
     pub fn state(&self, drive: DriveNumber) -> Option<State> {
         self.actual(drive).map(|own| own.status.state())
     }

@@ -14,7 +14,6 @@ use crate::ui::{Theme, icons};
 /// STOP: wide enough for a flat hand.
 const STOP: egui::Vec2 = vec2(112.0, 44.0);
 
-/// Draws it.
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     ui.horizontal_top(|ui| {

@@ -86,7 +86,6 @@ fn interval(ui: &mut Ui, theme: &Theme, form: &mut HiperdriveForm) {
     typed(ui, theme, say, interval, &mut form.typed);
 }
 
-/// Draws the discovery.
 fn discovery(ui: &mut Ui, theme: &Theme, discovery: Option<&Discovery>, actions: &mut Vec<Action>) {
     let is_running = discovery.is_some_and(Discovery::is_running);
     ui.horizontal(|ui| {

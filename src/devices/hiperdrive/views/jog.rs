@@ -16,7 +16,6 @@ use crate::ui::widgets::{HoldButton, hold_button};
 /// Height of the buttons that are held.
 const PAD: f32 = 72.0;
 
-/// The card.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_jog.title"), |ui| {
         let drafts = &mut view.jog_effort;

@@ -20,7 +20,6 @@ pub(super) struct ScaleUiState {
 /// Width of an entry.
 const NUMBER: f32 = 88.0;
 
-/// The card.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleUiState, actions: &mut Vec<Action>) {
     let (id, drive) = (unit.session.id, unit.drive());
     card(ui, theme, TEXTS.text("hd_scale.title"), |ui| {

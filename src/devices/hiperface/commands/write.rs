@@ -136,7 +136,6 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
     plan::text(plan, lines, prepared.cycles_seen, None)
 }
 
-/// The operations as JSON.
 pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
     plan.ops
         .iter()

@@ -62,43 +62,34 @@ pub enum HiperfaceJob {
 pub enum Change {
     /// Make the encoder as the profile says.
     Restore {
-        /// The profile.
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
     },
     /// Write bytes of data fields: where, and which; a count has to be that of the bytes.
     Store(Vec<(FieldRange, Vec<u8>)>),
-    /// Create a data field.
     CreateField {
-        /// Its number.
         number: u8,
-        /// Its status.
         status: DataFieldStatus,
     },
     /// Give a field another status: protection, access code, or, for the last, size.
     Redefine {
-        /// Its number.
         number: u8,
         /// Its status from then on; it exists.
         status: DataFieldStatus,
     },
     /// Write-protect a field, or make it writable.
     LockField {
-        /// Its number.
         number: u8,
         /// Protect it.
         lock: bool,
     },
     /// Give the last field another size.
     ResizeField {
-        /// Its number.
         number: u8,
-        /// Its size.
         size: FieldSize,
     },
     /// Delete the last field.
     DeleteField {
-        /// Its number.
         number: u8,
     },
     /// Change an access code; its present value is the session's.
@@ -146,7 +137,6 @@ pub enum ChangeKind {
 }
 
 impl Change {
-    /// Its kind.
     pub fn kind(&self) -> ChangeKind {
         match self {
             Change::Restore { .. } => ChangeKind::Restore,
@@ -159,7 +149,6 @@ impl Change {
 /// A plan, ready to be looked at.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The kind of change that it is for.
     pub kind: ChangeKind,
     pub plan: HiperfacePlan,
     /// The encoder it is for.
@@ -187,7 +176,6 @@ pub struct Prepared {
 /// The types of a profile and of the encoder that it goes onto, which is of another one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OtherType {
-    /// In the profile.
     pub profile: u8,
     /// In the encoder.
     pub device: u8,
@@ -213,16 +201,12 @@ pub type Committed = crate::worker::Committed<Written>;
 /// A value that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// A number.
     Number(i64),
     /// An analogue value, and what it should not exceed, where the encoder's extended label says so.
     Analogue {
-        /// As read.
         value: i16,
-        /// The limit.
         limit: Option<i16>,
     },
-    /// Bytes.
     Bytes(Vec<u8>),
 }
 

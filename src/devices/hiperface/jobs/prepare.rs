@@ -176,7 +176,6 @@ fn change_code(
     Ok(HiperfacePlan { base: Base { field_count: memory.fields, fields, scalars: Vec::new() }, ops })
 }
 
-/// The field, which has to be there.
 fn existing(master: &mut Master<'_>, memory: FreeMemory, number: u8) -> Result<FieldImage, JobError> {
     if number >= memory.fields {
         return Err(PlanError::NoSuchField { field: number, count: memory.fields }.into());

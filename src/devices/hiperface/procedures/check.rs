@@ -34,54 +34,42 @@ pub enum Step {
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// A status code.
     Code(StatusCode),
-    /// The position.
     Position(Position),
     /// The position word, where periods and turns are not known.
     RawPosition(u32),
     /// The encoder's name.
     Name(String),
-    /// Its serial number.
     SerialNumber(String),
     /// An analogue value and what it should not exceed.
     Limit {
-        /// The channel.
         channel: u8,
-        /// Its value.
         value: i16,
         /// The limit of the extended label.
         limit: i16,
     },
     /// A data field that can be read.
     Field {
-        /// Its number.
         number: u8,
-        /// Its status.
         status: DataFieldStatus,
     },
     /// A data field whose access code, which its status names, is not known.
     FieldLocked {
-        /// Its number.
         number: u8,
-        /// Its status.
         status: DataFieldStatus,
     },
     /// A data field that the encoder refuses.
     FieldRefused {
-        /// Its number.
         number: u8,
         codes: Vec<StatusCode>,
     },
     /// A data field that cannot be read.
     FieldUnreadable {
-        /// Its number.
         number: u8,
         why: Error,
     },
     /// Something else that cannot be read.
     Unreadable(Error),
-    /// Quality of the line.
     Line(LineQuality),
 }
 

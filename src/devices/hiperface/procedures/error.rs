@@ -17,7 +17,6 @@ pub enum Error {
     NoReply {
         /// Address of the request.
         address: u8,
-        /// The request.
         command: Command,
         /// Number of attempts.
         tries: u32,
@@ -27,7 +26,6 @@ pub enum Error {
     /// Something came back and was broken every time.
     #[error("damaged reply to {} ({tries} tries): {cause}", command.row().name)]
     Damaged {
-        /// The request.
         command: Command,
         /// Number of attempts.
         tries: u32,
@@ -39,12 +37,7 @@ pub enum Error {
     NeverSilent,
     /// The encoder refused.
     #[error("{} was refused: {}", command.row().name, list(codes))]
-    Rejected {
-        /// The request.
-        command: Command,
-        /// The status codes.
-        codes: Vec<StatusCode>,
-    },
+    Rejected { command: Command, codes: Vec<StatusCode> },
     /// Whether a change was carried out is not known: the encoder can no longer be reached.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
@@ -70,10 +63,7 @@ pub enum Error {
     },
     /// Another encoder answers at the new address.
     #[error("address {address:02X}h belongs to another encoder")]
-    AddressTaken {
-        /// The address.
-        address: u8,
-    },
+    AddressTaken { address: u8 },
     /// The position asked for is beyond the measuring range.
     #[error("position {wanted} is outside 0…{last}")]
     PositionRange {
@@ -85,7 +75,6 @@ pub enum Error {
     /// Bytes beyond the end of a data field.
     #[error("data field {field} has bytes 0…{}, not {address}…{}", size.saturating_sub(1), (address + count).saturating_sub(1))]
     OutOfField {
-        /// The field.
         field: u8,
         /// First byte asked for.
         address: usize,
@@ -97,7 +86,6 @@ pub enum Error {
     /// A field cannot be read because its access code is another.
     #[error("the access code {number} is not known")]
     CodeUnknown {
-        /// The field.
         field: u8,
         /// The access code that guards it.
         number: CodeNumber,
@@ -111,21 +99,14 @@ pub enum Error {
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
-        /// The item written.
         item: PlanItem,
         /// As it should be.
         expected: String,
-        /// As it is.
         got: ReadBack,
     },
     /// The reply belongs to another kind of request.
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
-    OtherReply {
-        /// The request.
-        command: Command,
-        /// The reply, as parsed.
-        reply: String,
-    },
+    OtherReply { command: Command, reply: String },
     /// The position already had the value that was written, so reading it back proves nothing.
     #[error("the position had this value before, so reading it back does not show whether it was written")]
     PositionUnchanged,
@@ -164,7 +145,6 @@ pub enum ReadBack {
 /// The damage of a reply.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Damage {
-    /// The reply itself.
     #[error(transparent)]
     Reply(#[from] ReplyError),
     /// The reply to a request with an access code; which bytes it has is not told, they may be our own.

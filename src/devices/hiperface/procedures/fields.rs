@@ -57,7 +57,6 @@ pub fn read_all_fields(
 /// A data field that could not be read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnreadableField {
-    /// Its number.
     pub number: u8,
     /// Its status, where that could be read.
     pub status: Option<DataFieldStatus>,

@@ -27,7 +27,6 @@ pub struct FindOptions {
 /// An encoder that answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Found {
-    /// Its address.
     pub address: u8,
     /// The format that was used.
     pub format: CharacterFormat,
@@ -46,7 +45,6 @@ pub enum Attempt {
     Probing {
         /// Whom.
         address: u8,
-        /// The format.
         format: CharacterFormat,
     },
 }
@@ -70,7 +68,6 @@ pub enum News<'a> {
         done: u64,
         /// Tries in all.
         total: u64,
-        /// This one.
         attempt: &'a Attempt,
     },
     /// An encoder that answered, once for each.

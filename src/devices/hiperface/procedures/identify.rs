@@ -29,7 +29,6 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// The extended label, read.
     pub fn extended(&self) -> Option<ExtendedLabel> {
         self.extended_label.as_deref().and_then(|bytes| ExtendedLabel::parse(bytes).ok())
     }

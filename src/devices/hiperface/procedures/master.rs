@@ -43,7 +43,6 @@ impl<'a> Master<'a> {
         self.station
     }
 
-    /// Now.
     pub fn now(&self) -> Moment {
         self.line.now()
     }

@@ -44,7 +44,6 @@ pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Res
 /// A polled sample.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
-    /// The position.
     Position(PositionReading),
     /// The encoder is there and has no position to give at the moment.
     NoPosition {

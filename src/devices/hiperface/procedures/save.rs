@@ -5,7 +5,6 @@ use crate::devices::hiperface::profile::{FieldImage, HiperfaceProfile, Interface
 use crate::devices::hiperface::protocol::EncoderTypes;
 use crate::profile::Unknown;
 
-/// The options of saving.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
     /// A field whose access code is not known is an error.

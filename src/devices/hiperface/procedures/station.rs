@@ -47,7 +47,6 @@ impl Default for Codes {
 }
 
 impl Codes {
-    /// The code of a number.
     pub fn get(self, number: CodeNumber) -> AccessCode {
         self.0.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }

@@ -11,7 +11,6 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 /// An encoder as it was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
-    /// The identity.
     pub identity: Identity,
     /// The error queue, in the encoder's order, and what came to it meanwhile.
     pub codes: Vec<StatusCode>,

@@ -20,7 +20,6 @@ pub enum Action {
     ReadAnalogue(u8),
     /// Read the shaft at rest: position, sine and cosine.
     ReadRest,
-    /// Read the counter.
     ReadCounter,
     /// The device check; with a restart first.
     Check {
@@ -39,11 +38,9 @@ pub enum Action {
     },
     /// Put bytes into a field.
     Put {
-        /// The field.
         field: u8,
         /// First byte.
         address: usize,
-        /// The bytes.
         bytes: Vec<u8>,
     },
     /// Take the edits of a range back.
@@ -56,7 +53,6 @@ pub enum Action {
     ForceWear(bool),
     /// Write the plan that was shown, and no other.
     Write(PlanId),
-    /// Close the review.
     CloseReview,
     /// Save the profile.
     Save(PathBuf),

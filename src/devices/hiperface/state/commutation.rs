@@ -78,14 +78,12 @@ pub enum Kind {
     Fine {
         /// Absolute minus fine position in periods.
         residual_periods: f64,
-        /// The verdict on it.
         verdict: Verdict,
         /// The smallest step that can be told apart, in periods; `None` where the phase was typed.
         resolution_periods: Option<f64>,
     },
     /// The absolute position alone: the middle of its step.
     Absolute,
-    /// Typed.
     Typed,
 }
 

@@ -41,13 +41,11 @@ pub struct LinkForm {
     pub port: String,
     /// Name or address of a device server.
     pub host: String,
-    /// Its TCP port.
     pub tcp_port: String,
     /// The recording.
     pub file: String,
     /// Speed.
     pub baud: Baud,
-    /// Parity.
     pub parity: Parity,
     /// `40`, `0x40` or `40h`, always hexadecimal; or `broadcast`.
     pub address: String,

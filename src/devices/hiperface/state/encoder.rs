@@ -79,7 +79,6 @@ impl Encoder {
         }
     }
 
-    /// Sets the identity.
     pub(super) fn identify(&mut self, identity: Identity) {
         let serial = &identity.serial.serial_number;
         self.session.title =

@@ -11,7 +11,6 @@ use crate::devices::hiperface::state::explain as words;
 
 /// A write on its way.
 pub type Review = review::Review<Hiperface>;
-/// The state of a review.
 pub type ReviewState = review::ReviewState<Hiperface>;
 
 impl Review {

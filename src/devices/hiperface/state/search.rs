@@ -38,7 +38,6 @@ pub struct Search {
 }
 
 impl Search {
-    /// Returns the progress.
     pub fn progress(&self) -> Option<&Progress<JobStep>> {
         self.line.as_ref()?.running()?.progress.as_ref()
     }
@@ -123,13 +122,11 @@ impl Search {
 /// Looks for encoders on the line of the connection form.
 #[derive(Default)]
 pub struct SearchFinder {
-    /// The search.
     pub search: Option<Search>,
     /// The search that starts once the user has confirmed that no drive is on the line.
     asked: Option<FindOptions>,
 }
 
-/// An action of the search.
 pub enum SearchAction {
     /// Look for encoders.
     Search(FindOptions),
@@ -139,7 +136,6 @@ pub enum SearchAction {
 
 /// A link was opened for a search.
 pub struct OpenedForSearch {
-    /// For which.
     number: u32,
     /// The session on its thread.
     result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,

@@ -22,7 +22,6 @@ pub(crate) enum Page {
     /// Identity, state and wiring.
     #[default]
     Encoder,
-    /// Its memory.
     Memory,
     /// Analogue values and the counter.
     Values,

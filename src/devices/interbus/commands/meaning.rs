@@ -197,7 +197,6 @@ fn name(read_out: ReadOut) -> String {
     }
 }
 
-/// The cams of a mask.
 fn cams(mask: u16) -> String {
     let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
     match numbers.as_slice() {

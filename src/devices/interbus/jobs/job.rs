@@ -45,7 +45,6 @@ pub enum InterbusJob {
     Check,
     /// The IN word, once; nothing is sent to the encoder.
     Position,
-    /// An item.
     Read(Item),
     /// Anything that can be read out, a register of the chip as well.
     ReadOut(ReadOut),
@@ -69,11 +68,7 @@ pub enum InterbusJob {
 #[derive(Clone, Debug)]
 pub enum Change {
     /// Make the encoder as the profile says.
-    Restore {
-        /// The profile.
-        profile: Box<InterbusProfile>,
-        options: RestoreOptions,
-    },
+    Restore { profile: Box<InterbusProfile>, options: RestoreOptions },
     /// Make it like this; what the image says nothing about stays as it is, and is not read.
     Write(Box<Image>),
     /// Give one item this value; the rest stays as it is.
@@ -101,7 +96,6 @@ pub enum ChangeKind {
 }
 
 impl Change {
-    /// Its kind.
     pub const fn kind(&self) -> ChangeKind {
         match self {
             Change::Restore { .. } => ChangeKind::Restore,
@@ -115,7 +109,6 @@ impl Change {
 /// A plan, ready to be looked at.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    /// The kind of change that it is for.
     pub kind: ChangeKind,
     pub plan: InterbusPlan,
     /// The encoder it is for.
@@ -224,7 +217,6 @@ pub enum InterbusOutput {
     Saved(Box<InterbusProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    /// With the mode in which it is.
     LedBack(StartupMode),
 }
 

@@ -27,7 +27,6 @@ pub enum Step {
     Identity,
     /// Read-outs: OUT gets to the encoder, and IN comes back.
     Handshake,
-    /// Temperature.
     Temperature,
     /// Stores in the EEPROM.
     Wear,
@@ -56,33 +55,27 @@ pub enum Finding {
     Runs(u32),
     /// Bits that should be 0 are not.
     Stray(u32),
-    /// An error word.
     Error(ErrorWord),
     /// The encoder is being parameterised or read out by another master.
     Occupied(u32),
-    /// Its serial number.
     SerialNumber(String),
-    /// Its software.
     SoftwareVersion(u32),
     /// Steps and turns.
     Gear {
         /// Steps over all turns.
         steps: u32,
-        /// Turns.
         turns: u32,
     },
     /// Implausible data.
     Implausible(Implausible),
     /// The preset lies beyond the measuring range.
     PresetBeyond {
-        /// The preset.
         preset: u32,
         /// The last position.
         last: u32,
     },
     /// It counts its steps less one.
     StepsMinusOne,
-    /// The mode.
     Mode(StartupMode),
     /// Values read out.
     ReadOuts {

@@ -25,7 +25,6 @@ pub trait ProcessData {
     /// As [`cycle`](Self::cycle).
     fn output(&mut self) -> Result<Option<u32>, Error>;
 
-    /// Now.
     fn now(&self) -> Moment;
 
     /// Waits; ends early when the user wishes.

@@ -25,7 +25,6 @@ pub enum Asked {
     Write {
         /// The first of them.
         register: u16,
-        /// The word.
         word: u32,
     },
 }
@@ -178,7 +177,6 @@ pub enum Implausible {
     Value {
         /// The OUT word that asked.
         read: u32,
-        /// The value.
         value: u32,
     },
 }
@@ -192,7 +190,6 @@ pub enum Error {
     /// The gateway does not answer.
     #[error("the gateway does not answer while {asked} ({tries} tries)")]
     NoReply {
-        /// The request.
         asked: Asked,
         /// Number of attempts.
         tries: u32,
@@ -200,7 +197,6 @@ pub enum Error {
     /// Every reply is damaged.
     #[error("damaged reply while {asked} ({tries} tries): {cause}")]
     Damaged {
-        /// The request.
         asked: Asked,
         /// Number of attempts.
         tries: u32,
@@ -213,7 +209,6 @@ pub enum Error {
     /// It refuses.
     #[error("the gateway refuses {asked}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception {
-        /// The request.
         asked: Asked,
         /// Its code.
         exception: Exception,
@@ -226,18 +221,10 @@ pub enum Error {
     Illegal(#[from] Refused),
     /// The encoder answers with an error word.
     #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), word(*error), error.meaning(), error.remedy())]
-    Refused {
-        /// The command sent.
-        sent: Command,
-        /// The error word.
-        error: ErrorWord,
-    },
+    Refused { sent: Command, error: ErrorWord },
     /// It has nothing to read out there.
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
-    UnknownReadOut {
-        /// The command.
-        command: Command,
-    },
+    UnknownReadOut { command: Command },
     /// Nothing came of a word within the time of the handshake.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
@@ -300,7 +287,6 @@ pub enum Error {
     /// A written value does not read back.
     #[error("{item} reads {reads} after {wanted} was written")]
     NotTaken {
-        /// The item written.
         item: String,
         /// The value written.
         wanted: u32,

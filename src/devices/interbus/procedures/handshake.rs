@@ -10,11 +10,9 @@ use crate::units::Moment;
 pub struct Handshake {
     /// When IN was read.
     pub at: Moment,
-    /// OUT.
     pub out: u32,
     /// Meaning of OUT in the encoder's mode.
     pub command: Command,
-    /// IN.
     pub input: u32,
     /// Meaning of IN as the answer.
     pub says: Says,
@@ -31,9 +29,7 @@ pub enum Says {
     Echoed,
     /// The echo of another word: an old one, as long as it does not stay.
     OldEcho,
-    /// A value.
     Value(Value),
-    /// An error word.
     Error(ErrorWord),
     /// A word that the manual does not have.
     Unknown,

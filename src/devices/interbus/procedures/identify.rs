@@ -19,11 +19,9 @@ pub struct Identity {
     pub revolutions: u32,
     /// Direction of counting.
     pub direction: Direction,
-    /// Version of its software.
     pub software_version: u32,
     /// Its mode, now and at power-up.
     pub mode: StartupMode,
-    /// Its flags.
     pub flags: Flags,
 }
 
@@ -41,9 +39,7 @@ impl Identity {
 /// An encoder as it was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
-    /// Its identity.
     pub identity: Identity,
-    /// Its parameters.
     pub parameters: Parameters,
     /// The preset's flag, as it is read out.
     pub preset_flag: u32,
@@ -70,7 +66,6 @@ pub struct Status {
     pub error: Option<ErrorWord>,
     /// Its mode, now and at power-up.
     pub mode: StartupMode,
-    /// Its flags.
     pub flags: Flags,
     /// Operating time in minutes.
     pub operating_minutes: u32,

@@ -99,7 +99,6 @@ impl<'a> Master<'a> {
         self
     }
 
-    /// Now.
     pub fn now(&self) -> Moment {
         self.data.now()
     }

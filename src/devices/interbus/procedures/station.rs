@@ -33,7 +33,6 @@ parameters! {
 /// The state of a gateway and the encoder behind it.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Parameters of the link.
     pub link: LinkParameters,
     /// It is a recording that answers: its replies have the numbers of the requests of that time.
     pub recorded: bool,
@@ -52,9 +51,7 @@ pub struct Station {
 pub(super) struct Known {
     /// Its mode, as it said last.
     pub(super) mode: Option<StartupMode>,
-    /// Its gear.
     pub(super) gear: Option<Gear>,
-    /// The shift of its window.
     pub(super) shift: Option<WindowShift>,
     /// The OUT word that keeps this mode, where normal running does not.
     pub(super) hold: Option<(StartupMode, Command)>,

@@ -35,16 +35,9 @@ pub enum Action {
     /// Take what was read of a table into the edits, or leave it.
     TakeTable(bool),
     /// Ask where to write the cams as a table, with a decimal comma or a point.
-    AskSaveTable {
-        /// With a comma.
-        decimal_comma: bool,
-    },
+    AskSaveTable { decimal_comma: bool },
     /// Write the cams as a table.
-    SaveTable {
-        path: PathBuf,
-        /// With a decimal comma.
-        decimal_comma: bool,
-    },
+    SaveTable { path: PathBuf, decimal_comma: bool },
     /// The machine counts in this.
     SetScale(Scale),
     /// Turn the virtual encoder's shaft, in revolutions a minute.

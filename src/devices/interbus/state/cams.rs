@@ -22,7 +22,6 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 /// A program as a chart.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Chart {
-    /// The program.
     pub program: ProgramNumber,
     /// Steps of the measuring range.
     pub range: u32,
@@ -33,9 +32,7 @@ pub struct Chart {
 /// A cam in it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Lane {
-    /// The cam.
     pub cam: CamNumber,
-    /// Its name.
     pub name: Option<String>,
     /// It works.
     pub on: bool,
@@ -52,9 +49,7 @@ pub struct Lane {
 /// Positions without a gap, both ends with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stretch {
-    /// The first.
     pub first: u32,
-    /// The last.
     pub last: u32,
 }
 
@@ -102,7 +97,6 @@ impl Chart {
         Chart { program, range: wanted.range(), lanes }
     }
 
-    /// The lane of a cam.
     pub fn lane(&self, cam: CamNumber) -> Option<&Lane> {
         self.lanes.get(usize::from(cam.get()))
     }
@@ -185,7 +179,6 @@ impl VisibleRange {
         self.span
     }
 
-    /// It shows all.
     pub fn is_whole(&self, range: u32) -> bool {
         self.span >= f64::from(range)
     }
@@ -195,7 +188,6 @@ impl VisibleRange {
         (position - self.first) / self.span
     }
 
-    /// The position there.
     pub fn position(&self, part: f64) -> f64 {
         self.first + part * self.span
     }

@@ -111,7 +111,6 @@ impl Encoder {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Returns the identity in the profile, if this is one.
     pub fn profile_identity(&self) -> Option<&ProfileIdentity> {
         self.profile().map(|profile| &profile.identity)
     }
@@ -173,7 +172,6 @@ impl Encoder {
         self.staged.wanted().map_or(0, Wanted::range)
     }
 
-    /// Returns a value read out.
     pub fn read_out(&self, what: ReadOut) -> Option<Value> {
         self.read_outs.get(&what.number()).copied()
     }

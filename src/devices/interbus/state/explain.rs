@@ -164,7 +164,6 @@ fn standing(standing: &LeftState) -> Text {
     }
 }
 
-/// Returns the text of the present step of a job.
 pub fn doing(doing: &JobStep) -> Text {
     match doing {
         JobStep::ReadOut(read_out) => item::read_out(*read_out),

@@ -23,7 +23,6 @@ impl Way {
     /// All of them.
     pub const ALL: [Way; 4] = [Way::In, Way::Out, Way::K1, Way::K2];
 
-    /// Its word.
     pub const fn word(self) -> &'static str {
         match self {
             Way::In => "ib_reader.in",

@@ -11,7 +11,6 @@ use crate::devices::interbus::state::explain as words;
 
 /// A write on its way.
 pub type Review = review::Review<Interbus>;
-/// The state of a review.
 pub type ReviewState = review::ReviewState<Interbus>;
 
 impl Reviewed for Interbus {

@@ -12,7 +12,6 @@ use crate::devices::interbus::state::explain as explained;
 /// The facts about an encoder that its IN words depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Known {
-    /// In which mode it is.
     pub mode: Mode,
     /// The value being read out.
     pub read_out: Option<ReadOut>,
@@ -40,7 +39,6 @@ pub fn out(word: u32, mode: Mode) -> Text {
     }
 }
 
-/// A command.
 pub fn asked(command: Command) -> Text {
     let cam = |id, number: u8| TEXTS.text(id).with("cam", number);
     match command {
@@ -134,7 +132,6 @@ fn echo(reply: Reply, mode: Mode) -> Text {
     }
 }
 
-/// Returns the cams of a mask.
 fn cams(mask: u16) -> Text {
     let numbers: Vec<String> = (0..16).filter(|bit| mask >> bit & 1 != 0).map(|bit| bit.to_string()).collect();
     if numbers.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(numbers.join(", ")) }

@@ -79,7 +79,6 @@ impl Wanted {
         self.image.program(program).is_some_and(|own| own.is_on(cam))
     }
 
-    /// Returns the name of a cam.
     pub fn name(&self, program: ProgramNumber, cam: CamNumber) -> Option<&str> {
         Some(self.names.cam(program, cam)).filter(|name| !name.is_empty())
     }

@@ -33,7 +33,6 @@ impl Encoder {
         });
     }
 
-    /// Reads a text as a table.
     pub(super) fn read_table(&mut self, origin: Text, text: String, program: ProgramNumber) {
         self.refusal = None;
         let table = self.options(program).read(&text);

@@ -7,7 +7,6 @@ use crate::devices::interbus::protocol::{Flags, Interface, LedRow, Mode, Paramet
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain::{direction, startup};
 
-/// A parameter.
 pub fn parameter(parameter: Parameter) -> Text {
     TEXTS.text(match parameter {
         Parameter::Steps => "ib_parameter.steps",
@@ -38,7 +37,6 @@ pub fn mode(mode: Mode) -> Text {
     })
 }
 
-/// Returns the text of a value read out.
 pub fn read_out_value(value: ReadOutValue) -> Text {
     match value {
         ReadOutValue::Plain(number) => plain(format!("{number} (0x{number:X})")),

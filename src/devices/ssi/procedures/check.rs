@@ -40,12 +40,7 @@ pub enum Finding {
     /// The adapter's name and firmware.
     Adapter(String, String),
     /// The clock in hertz as it was asked for, and as it is.
-    Clock {
-        /// Asked for.
-        asked: u32,
-        /// As it is.
-        got: u32,
-    },
+    Clock { asked: u32, got: u32 },
     /// Millivolts wished and measured, and milliamperes.
     Supply {
         /// Millivolts wished.
@@ -61,7 +56,6 @@ pub enum Finding {
     Words {
         /// Number of words.
         taken: u64,
-        /// Different ones.
         different: usize,
     },
     /// A finding about words, and in how many of them.

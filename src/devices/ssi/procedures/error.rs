@@ -10,7 +10,6 @@ pub enum Error {
     /// The wire to the adapter.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// The adapter.
     #[error(transparent)]
     Adapter(#[from] AdapterError),
     /// The user wished an end.

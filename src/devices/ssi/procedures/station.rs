@@ -68,7 +68,6 @@ pub struct Identity {
 pub struct Station {
     /// Silences and damage: what every line has.
     pub line: LineState,
-    /// The adapter.
     pub adapter: AdapterState,
     /// How words are read.
     pub asking: Asking,

@@ -36,7 +36,6 @@ pub struct SsiForm {
     pub port: String,
     /// Its name or address.
     pub host: String,
-    /// Its TCP port.
     pub tcp_port: String,
     /// The recording.
     pub file: String,

@@ -23,7 +23,6 @@ const TO_BEGIN_WITH: &str = "ahm36";
 /// A layout that can work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
-    /// The profile.
     pub profile: SsiProfile,
     /// Its frame, checked.
     pub layout: Layout,

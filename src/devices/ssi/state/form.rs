@@ -15,9 +15,7 @@ use crate::devices::ssi::state::explain as words;
 pub struct Row {
     /// The subject of the row.
     pub field: Field,
-    /// Its name.
     pub name: Text,
-    /// Its entry.
     pub entry: Entry,
     /// Id of its explanation.
     pub hint: Option<&'static str>,
@@ -27,12 +25,7 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Entry {
     /// A whole number.
-    Number {
-        /// As it is.
-        value: u64,
-        /// Its unit.
-        unit: Option<Text>,
-    },
+    Number { value: u64, unit: Option<Text> },
     /// One of several.
     Choice {
         /// All of them.
@@ -80,7 +73,6 @@ pub enum Field {
     Bits,
     /// Length of a step in nanometres.
     StepLength,
-    /// The code.
     Code,
     /// The bits that a Gray code covers.
     Over,
@@ -137,7 +129,6 @@ pub enum Field {
 pub struct Group {
     /// Their heading, as a row of the texts.
     pub title: &'static str,
-    /// The rows.
     pub rows: Vec<Row>,
 }
 

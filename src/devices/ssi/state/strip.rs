@@ -88,7 +88,6 @@ pub enum Handle {
     WordEnd,
     /// The start of the repetition.
     GapEnd,
-    /// The end of the frame.
     FrameEnd,
     /// The whole position, by its first clock.
     Position,
@@ -101,7 +100,6 @@ pub enum Handle {
 /// The appearance of a cell of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CellState {
-    /// Its bit.
     pub bit: bool,
     /// The meaning for the position: an active error bit, or a bit that should be 0 and is not.
     pub tells: Option<Meaning>,

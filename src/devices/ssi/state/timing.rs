@@ -234,7 +234,6 @@ impl Diagram {
 }
 
 impl Moment {
-    /// In words.
     pub fn words(self) -> Text {
         TEXTS.text(match self {
             Moment::Latched => "ssi.timing_latched",

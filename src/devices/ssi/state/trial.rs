@@ -21,7 +21,6 @@ pub struct Decoded {
     pub reading: Reading,
     /// The position, if the bits are one, and what it is on the shaft or scale.
     pub place: Option<(u64, Location)>,
-    /// The findings.
     pub findings: Vec<Finding>,
     /// The position may be used.
     pub is_valid: bool,

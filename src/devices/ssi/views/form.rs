@@ -21,7 +21,6 @@ pub(super) struct LayoutFormUiState {
 const NUMBER: f32 = 104.0;
 const NAME: f32 = 160.0;
 
-/// Draws rows.
 pub(super) fn rows_ui(
     ui: &mut Ui,
     theme: &Theme,

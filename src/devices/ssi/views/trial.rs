@@ -32,7 +32,6 @@ impl TrialUiState {
 
 const NUMBER: f32 = 128.0;
 
-/// Draws the card.
 pub(super) fn card_ui(
     ui: &mut Ui,
     theme: &Theme,

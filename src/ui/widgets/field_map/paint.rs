@@ -30,7 +30,6 @@ fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     (rect, CornerRadius { nw: at(begins), sw: at(begins), ne: at(ends), se: at(ends) })
 }
 
-/// A field.
 pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field: &MapField, state: &State) {
     let colour = series(theme, field.colour);
     let painter = ui.painter();

@@ -11,7 +11,6 @@ pub(super) struct Strip {
     pub(super) origin: Pos2,
     /// The size of the map.
     pub(super) size: Vec2,
-    /// One block.
     pub(super) block: Vec2,
     /// Above and below: room for the ring of the keyboard.
     margin: f32,

@@ -3,7 +3,6 @@
 /// The space that a field needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Want {
-    /// Its bits.
     pub(super) bits: usize,
     /// The width of the words below it.
     pub(super) words: f32,

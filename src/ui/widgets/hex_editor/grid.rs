@@ -50,7 +50,6 @@ impl Grid {
         Grid { font, glyph, row, width, digits, gap, text_left, hex_left, byte, letter, len }
     }
 
-    /// Lines there are.
     pub(super) fn lines(&self) -> usize {
         self.len.div_ceil(WIDTH)
     }

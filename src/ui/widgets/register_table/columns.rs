@@ -5,7 +5,6 @@ use egui::Rangef;
 
 use super::RegisterKind;
 
-/// A column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Column {
     Marks,

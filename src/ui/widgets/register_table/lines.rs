@@ -4,7 +4,6 @@
 use super::view::Selected;
 use super::{RegisterLocation, RegisterTable, RegisterView};
 
-/// The kind of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LineKind {
     Group(usize),
@@ -13,7 +12,6 @@ pub(super) enum LineKind {
     Bits(RegisterLocation, usize),
 }
 
-/// All lines.
 #[derive(Clone, Debug)]
 pub(super) struct Lines {
     sections: Vec<Section>,

@@ -66,7 +66,6 @@ pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &C
     ui.painter().hline(rect.x_range(), rect.bottom() - 2.5, Stroke::new(1.0, theme.palette.line));
 }
 
-/// The heading of a group.
 pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup, folded: bool, state: State) {
     let painter = ui.painter();
     painter.rect_filled(rect, 2.0, theme.palette.raised);

@@ -46,7 +46,6 @@ pub(super) struct Edit {
 }
 
 impl RegisterView {
-    /// The register that is selected.
     pub fn selected(&self) -> Option<RegisterLocation> {
         match self.selected {
             Some(Selected::Row(place)) => Some(place),

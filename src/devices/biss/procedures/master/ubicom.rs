@@ -40,7 +40,6 @@ struct Heard {
 }
 
 impl Master<'_> {
-    /// Reads a register once.
     pub(super) fn pin_read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         self.register_once(address.global(), order)
@@ -59,7 +58,6 @@ impl Master<'_> {
         })
     }
 
-    /// Writes a register once.
     pub(super) fn pin_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
@@ -70,7 +68,6 @@ impl Master<'_> {
         })
     }
 
-    /// Reads the position once.
     pub(super) fn pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(Timed { reply: Reply::Position(word), at }) => (word, at),

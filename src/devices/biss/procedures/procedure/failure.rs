@@ -22,7 +22,6 @@ pub enum Failure {
     /// The Wiegand test says why.
     #[error("the Wiegand test ended with {status}, error code 0x{code:02X}")]
     Wiegand {
-        /// In which run.
         run: Run,
         /// The encoder's status.
         status: WiegandStatus,
@@ -38,7 +37,6 @@ pub enum Failure {
     /// The device mode that was written does not read back.
     #[error("device mode {wanted} was written and {found} is there")]
     Mode {
-        /// The mode written.
         wanted: DeviceMode,
         /// The mode read back.
         found: DeviceMode,
@@ -46,7 +44,6 @@ pub enum Failure {
     /// A status register never said what it has to.
     #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
     Status {
-        /// The procedure.
         kind: ProcedureKind,
         /// The expected status.
         expected: u8,
@@ -56,7 +53,6 @@ pub enum Failure {
     /// A run has no end.
     #[error("the run has not ended after {seconds} s")]
     TooLong {
-        /// The run.
         run: Run,
         /// Time waited, in seconds.
         seconds: u64,
@@ -64,7 +60,6 @@ pub enum Failure {
     /// The user did not fulfil the task in the time allowed.
     #[error("what has to be is not: {blockers:?}")]
     NotReady {
-        /// The task.
         task: Task,
         /// What prevents the start.
         blockers: Vec<Blocker>,
@@ -72,19 +67,14 @@ pub enum Failure {
     /// A value read back differs from the one written.
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
-        /// The item written.
         item: String,
         /// As it should be.
         expected: String,
-        /// As it is.
         got: String,
     },
     /// The description of this encoder does not have what the plan needs.
     #[error("nothing describes how this encoder does that")]
-    NotDescribed {
-        /// The procedure.
-        kind: ProcedureKind,
-    },
+    NotDescribed { kind: ProcedureKind },
 }
 
 impl OperationError for Failure {

@@ -67,7 +67,6 @@ pub(super) struct Course {
 
 /// The person's answer, with the measurement at that time.
 pub(super) enum Attended {
-    /// Go on.
     Go(Option<Motion>),
     /// Leave it out.
     Skip,
@@ -104,7 +103,6 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.cycles
     }
 
-    /// The step that it is at.
     pub(in crate::devices::biss::procedures) fn at(&self) -> Step {
         self.step
     }

@@ -12,11 +12,9 @@ pub struct Possible<T>(Vec<T>);
 /// The known state of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    /// Its device mode.
     pub mode: Possible<DeviceMode>,
     /// The password is set, so that device modes can be chosen.
     pub password: Possible<bool>,
-    /// Its activity.
     pub activity: Activity,
 }
 
@@ -46,12 +44,10 @@ impl<T: Copy + PartialEq> Possible<T> {
         &self.0
     }
 
-    /// It is this.
     pub fn is(&self, value: T) -> bool {
         self.0 == [value]
     }
 
-    /// It may be this.
     pub fn may_be(&self, value: T) -> bool {
         self.0.contains(&value)
     }
@@ -75,7 +71,6 @@ impl<T: Copy + PartialEq> Possible<T> {
 }
 
 impl LeftState {
-    /// In operation, with the password set or not.
     pub fn in_operation(password: bool) -> Self {
         LeftState {
             mode: Possible::known(DeviceMode::OPERATION),

@@ -121,7 +121,6 @@ pub enum Blocker {
     Speed {
         /// Revolutions a minute, without direction.
         rpm: f64,
-        /// The allowed range.
         allowed: SpeedRange,
     },
     /// The motor still accelerates, or its speed wavers.
@@ -140,10 +139,7 @@ pub enum Blocker {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Advice {
     /// Another speed, or a steadier one, gives a better result.
-    Speed {
-        /// The recommended range.
-        recommended: SpeedRange,
-    },
+    Speed { recommended: SpeedRange },
     /// Manual 6.4: if this run fails, the table of the calibration is lost.
     TableAtRisk,
     /// The encoder marks its positions as invalid: the speed is calculated from them regardless.
@@ -153,7 +149,6 @@ pub enum Advice {
 /// The present task and measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Demand {
-    /// The task.
     pub task: Task,
     /// Motion of the shaft; `None` until it is measured.
     pub motion: Option<Motion>,

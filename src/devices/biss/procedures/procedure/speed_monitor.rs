@@ -49,7 +49,6 @@ impl SpeedMonitor {
         SpeedMonitor { window, unwrap: None, steps_per_turn: 1.0, places: VecDeque::new() }
     }
 
-    /// The next position.
     pub(super) fn next(&mut self, reading: &PositionReading) {
         let bits = u32::from(reading.raw().bits);
         self.steps_per_turn = f64::powi(2.0, reading.singleturn_bits.into());

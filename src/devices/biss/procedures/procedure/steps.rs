@@ -21,7 +21,6 @@ pub enum Step {
     Write,
     /// A run of a procedure.
     Run(Run),
-    /// The results are read.
     Results,
     /// The flash is written.
     Save,
@@ -49,13 +48,10 @@ pub struct News {
 /// The detail of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Detail {
-    /// It begins.
     Begins,
     /// Registers done, and their total.
     Count {
-        /// Done.
         done: u64,
-        /// All.
         total: u64,
     },
     /// It takes its time.

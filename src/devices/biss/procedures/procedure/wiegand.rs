@@ -13,7 +13,6 @@ const REVOLUTIONS: f64 = 515.0;
 /// A Wiegand test that is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
-    /// The result.
     pub result: WiegandResult,
     /// It is kept in the encoder; it can be seen there after a restart.
     pub saved: bool,

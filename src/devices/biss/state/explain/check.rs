@@ -10,7 +10,6 @@ use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::sheet;
 
-/// The lines of a check.
 pub fn check(lines: &[BissStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }

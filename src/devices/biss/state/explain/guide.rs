@@ -21,7 +21,6 @@ pub fn procedure(op: &Op) -> Text {
     })
 }
 
-/// A step.
 pub fn step(step: Step) -> Text {
     match step {
         Step::Await(task) => self::task(task),
@@ -44,7 +43,6 @@ pub fn step(step: Step) -> Text {
     }
 }
 
-/// A device mode.
 pub fn mode(mode: DeviceMode) -> Text {
     let id = match mode {
         DeviceMode::OPERATION => "biss_mode.operation",
@@ -58,7 +56,6 @@ pub fn mode(mode: DeviceMode) -> Text {
     TEXTS.text(id).with("code", format!("0x{:02X}", mode.byte()))
 }
 
-/// Returns the text of a task.
 pub fn task(task: Task) -> Text {
     match task {
         Task::Turn(run) => {

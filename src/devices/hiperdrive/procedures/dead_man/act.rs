@@ -10,7 +10,6 @@ use crate::units::Moment;
 pub struct Intent {
     /// Of which drive. The others rest.
     pub drive: DriveNumber,
-    /// The request.
     pub wish: MotionRequest,
     /// The act of a person that it came with: each has a number of its own, higher than those before.
     pub number: u64,
@@ -47,7 +46,6 @@ pub enum MotionRequest {
     Resume,
     /// Turning for as long as it is held, to the end of the range at most.
     Jog {
-        /// The direction.
         direction: Direction,
         /// Speed and torque; slow ([`Effort::JOG`]) if it leads further out.
         effort: Effort,
@@ -56,9 +54,7 @@ pub enum MotionRequest {
     },
     /// Turning in speed mode.
     Run {
-        /// The direction.
         direction: Direction,
-        /// The end of the run.
         end: RunEnd,
         /// Speed and torque.
         effort: Effort,
@@ -130,11 +126,9 @@ pub enum Phase {
     Leading(Goal),
     /// A motion is about to begin.
     Starting(Motive),
-    /// It moves.
     Moving(Motive),
     /// Its job waits.
     Paused {
-        /// The target.
         target: i32,
     },
     /// It is to stand.
@@ -150,12 +144,7 @@ pub enum Motive {
         target: i32,
     },
     /// In speed mode.
-    Run {
-        /// The direction.
-        direction: Direction,
-        /// The end of the run.
-        end: RunEnd,
-    },
+    Run { direction: Direction, end: RunEnd },
 }
 
 /// A rung of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
@@ -314,7 +303,6 @@ impl Goal {
     /// All of them, the lowest first.
     pub const ALL: [Goal; 4] = [Goal::Off, Goal::Ready, Goal::Operational, Goal::Enabled];
 
-    /// The one above.
     pub(super) const fn above(self) -> Goal {
         match self {
             Goal::Off => Goal::Ready,

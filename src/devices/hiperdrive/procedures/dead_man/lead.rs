@@ -16,9 +16,7 @@ pub(super) struct Lead {
 
 /// How a drive is to continue.
 enum Way {
-    /// With this word.
     By(ControlWord),
-    /// It is there.
     There,
     /// It does not follow.
     Lost,

@@ -28,7 +28,6 @@ pub enum Side {
 /// How a drive is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
-    /// On this side.
     At(Side),
     /// The drive says so by status bit 15, and its position is more than a degree inside both limits, or near both.
     Unclear,

@@ -64,7 +64,6 @@ pub enum Action {
     Begin,
     /// Something was typed.
     Edit(Box<Entries>),
-    /// A button.
     Press(Button),
     /// The place where the axis is becomes the limit of the step.
     TakePlace,
@@ -78,6 +77,5 @@ pub enum Action {
     Cancel,
     /// Ask where to save the report of a run that is over.
     AskReport,
-    /// Save it, in this language.
     SaveReport(PathBuf, Language),
 }

@@ -10,7 +10,6 @@ pub struct Difference {
     pub number: u16,
     /// As it was saved.
     pub saved: i64,
-    /// As it is.
     pub now: i64,
 }
 

@@ -74,7 +74,6 @@ impl Axis {
         }
     }
 
-    /// Returns the request of the step itself.
     fn ask_of_step(&self, seen: &Seen) -> Result<Ask, Text> {
         match self.step {
             Step::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),

@@ -11,7 +11,6 @@ pub struct Device {
     pub name: String,
     /// The variant, if known.
     pub variant: Option<Text>,
-    /// Its serial number.
     pub serial_number: String,
 }
 

@@ -16,7 +16,6 @@ pub struct Seen {
     pub busy: bool,
     /// Its parameters may be others than those that were read.
     pub stale: bool,
-    /// It is a virtual one.
     pub is_virtual: bool,
     /// The cyclic connection is open.
     pub controlled: bool,

@@ -43,7 +43,6 @@ pub enum Power {
     On(Before),
     /// It has stopped answering, or its parameters were not read since.
     Gone(Before),
-    /// It is back.
     Back {
         /// As it was.
         before: Before,

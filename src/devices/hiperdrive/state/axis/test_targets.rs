@@ -19,7 +19,6 @@ pub enum TestTarget {
 /// The outcome of a test move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// The target.
     pub target: i32,
     /// The position of the drive at its end.
     pub position: i32,
@@ -62,7 +61,6 @@ impl Outcome {
         i64::from(self.position) - i64::from(self.target)
     }
 
-    /// It is there.
     pub fn is_good(&self) -> bool {
         self.ended == Ended::Arrived && self.missed().abs() <= self.allowed
     }

@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::devices::hiperdrive::state::ruler::{Measure, Ruler};
 
-/// Returns the name of a step.
 pub fn title(step: Step) -> Text {
     TEXTS.text(match step {
         Step::Request => "hd_axis.step_request",

@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::procedures::check::{Finding, HiperdriveStepResul
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// The lines of a check.
 pub fn check(lines: &[HiperdriveStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }

@@ -9,7 +9,6 @@ use crate::devices::hiperdrive::procedures::{Asked, Damage, Error, Late, Refusal
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Returns the text of an error of a device.
 pub fn device(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),

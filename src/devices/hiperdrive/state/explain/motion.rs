@@ -72,7 +72,6 @@ pub fn ended(ended: Ended, place: impl Fn(i32) -> Text) -> Text {
     }
 }
 
-/// Returns the severity of an end.
 pub const fn weight(ended: Ended) -> Severity {
     match ended {
         Ended::Done | Ended::Arrived | Ended::Stopped | Ended::Replaced => Severity::Note,
@@ -99,7 +98,6 @@ pub fn goal(goal: Goal) -> Text {
     })
 }
 
-/// Returns the text of a phase.
 pub fn phase(phase: Phase) -> Text {
     match phase {
         Phase::Idle => TEXTS.text("hd_phase.idle"),

@@ -59,12 +59,9 @@ pub fn control_bit(bit: ControlBit, speed_mode: bool) -> Text {
     })
 }
 
-/// An error in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ErrorWords {
-    /// The name.
     pub name: Text,
-    /// The cause.
     pub cause: Text,
     /// What to do before acknowledging it.
     pub remedy: Text,

@@ -8,7 +8,6 @@ use crate::devices::hiperdrive::state::ruler::Ruler;
 /// A change. Each is one step, however much it changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
-    /// A parameter is to be this.
     Set(ParameterNumber, i64),
     /// A parameter stays as it is, or as the profile says.
     Revert(ParameterNumber),

@@ -101,7 +101,6 @@ pub struct Inputs {
     pub motor: Motor,
     /// Signal periods a revolution.
     pub periods: u32,
-    /// Pole pairs.
     pub pole_pairs: u32,
     /// The position falls while the electrical angle rises.
     pub reversed: bool,

@@ -51,7 +51,6 @@ pub struct Stored {
     pub field: u8,
     /// Its first byte there.
     pub address: usize,
-    /// The record.
     pub record: Result<CommutationRecord, Damaged>,
     /// It is an edit that is not written yet.
     pub edited: bool,

@@ -9,7 +9,6 @@ use crate::devices::hiperface::procedures::LineQuality;
 use crate::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step};
 use crate::devices::hiperface::state::TEXTS;
 
-/// The lines of a check.
 pub fn check(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
@@ -38,7 +37,6 @@ pub fn line_quality(quality: &LineQuality) -> Text {
         .with("late", late)
 }
 
-/// Returns the text of a finding.
 fn finding(finding: &Finding) -> Text {
     match finding {
         Finding::Code(code) => status_with_number(*code),

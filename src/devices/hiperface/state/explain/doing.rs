@@ -6,7 +6,6 @@ use crate::devices::hiperface::jobs::JobStep;
 use crate::devices::hiperface::procedures::find::Attempt;
 use crate::devices::hiperface::state::TEXTS;
 
-/// Returns the text of the present step of a job.
 pub fn doing(doing: &JobStep) -> Text {
     match doing {
         JobStep::Field(field) => TEXTS.text("op.field").with("field", field),

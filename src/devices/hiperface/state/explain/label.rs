@@ -10,7 +10,6 @@ use crate::devices::hiperface::state::TEXTS;
 pub struct LabelRow {
     /// First and last address.
     pub addresses: String,
-    /// The bytes.
     pub bytes: String,
     pub meaning: Text,
 }

@@ -35,7 +35,6 @@ const STATUS: [(u8, &str); 27] = [
     (0x23, "status.code_23"),
 ];
 
-/// Returns the text of a status code.
 pub fn status(code: StatusCode) -> Text {
     let id = STATUS.iter().find(|(byte, _)| *byte == code.byte()).map_or("status.unknown", |(_, id)| id);
     TEXTS.text(id)
@@ -64,7 +63,6 @@ pub fn field_access(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.is_writable() { "field.writable" } else { "field.write_protected" })
 }
 
-/// "code required" or "code not required".
 pub fn field_code_required(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }

@@ -74,12 +74,10 @@ impl Held {
     }
 }
 
-/// The result of a cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CycleResult {
     /// When.
     pub(super) now: Moment,
-    /// IN.
     pub(super) word: u32,
     /// For how long it was that.
     pub(super) same: Held,

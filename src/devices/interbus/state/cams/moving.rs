@@ -8,9 +8,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 /// The dragged part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Hold {
-    /// An edge.
     Edge(CamNumber, Edge),
-    /// A cam as a whole.
     Whole(CamNumber),
     /// The empty lane of a cam: one is drawn there.
     New(CamNumber),

@@ -15,7 +15,6 @@ pub fn cam(lane: &Lane) -> Text {
     }
 }
 
-/// A cam by its number.
 pub fn bare(cam: CamNumber) -> Text {
     TEXTS.text("cams.cam").with("cam", cam.get())
 }

@@ -7,7 +7,6 @@ use crate::devices::interbus::procedures::check::{Finding, InterbusStepResult, S
 use crate::devices::interbus::protocol::Reply;
 use crate::devices::interbus::state::TEXTS;
 
-/// The lines of a check.
 pub fn check(lines: &[InterbusStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }

@@ -18,7 +18,6 @@ pub(super) fn asked(asked: Asked) -> Text {
     }
 }
 
-/// The name of an exception.
 pub(super) fn exception_name(exception: Exception) -> Text {
     TEXTS.text(match exception.code() {
         0x01 => "ib_exception_name.function",

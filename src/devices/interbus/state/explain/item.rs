@@ -6,7 +6,6 @@ use crate::devices::interbus::profile::{Direction, Edge};
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ReadOut, StartupMode};
 use crate::devices::interbus::state::TEXTS;
 
-/// A parameter.
 pub fn parameter(parameter: Parameter) -> Text {
     TEXTS.text(match parameter {
         Parameter::Steps => "ib_item.steps",
@@ -34,14 +33,12 @@ pub fn direction(direction: Direction) -> Text {
     })
 }
 
-/// The cams of a mask.
 pub(super) fn cams(mask: u8) -> Text {
     let on: Vec<String> =
         CamNumber::all().map(CamNumber::get).filter(|cam| mask >> cam & 1 != 0).map(|cam| cam.to_string()).collect();
     if on.is_empty() { TEXTS.text("ib_item.no_cam") } else { plain(on.join(", ")) }
 }
 
-/// An edge of a cam.
 pub(super) fn edge(cam: CamNumber, edge: Edge) -> Text {
     TEXTS
         .text(match edge {

@@ -7,11 +7,9 @@ use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
 /// Something that has one value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ValueId {
-    /// A parameter.
     Parameter(Parameter),
     /// The shift of the window.
     Shift,
-    /// An edge of a cam.
     Edge(ProgramNumber, CamNumber, Edge),
     /// Whether a cam is active: 1 or 0.
     On(ProgramNumber, CamNumber),

@@ -15,7 +15,6 @@ pub enum Edit {
     Revolutions(u32),
     /// Both at once, where one after the other would not go.
     Gear {
-        /// Steps.
         steps: u32,
         /// Turns.
         revolutions: u32,

@@ -39,7 +39,6 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// The cam of a program that it is about.
     pub fn is_about(&self, number: ProgramNumber, own: CamNumber) -> bool {
         match *self {
             Mark::Beyond { program, cam, .. } => (program, cam) == (number, own),

@@ -25,7 +25,6 @@ pub(crate) struct CamChart<'a> {
     pub(crate) position: Option<u32>,
     /// The outputs as the encoder says, bit i for cam i; `None`: it does not.
     pub(crate) own: Option<u8>,
-    /// The selected cam.
     pub(crate) selected: Option<CamNumber>,
     /// Cams can be changed.
     pub(crate) movable: bool,

@@ -185,7 +185,6 @@ impl Ring<'_> {
         event
     }
 
-    /// Returns the place of an edge.
     fn place(&self, chart: &Chart, cam: CamNumber, edge: Edge) -> Option<Pos2> {
         let at = chart.edge(cam, edge)?.min(chart.range);
         let beyond = u32::from(edge == Edge::Stop && at < chart.range);

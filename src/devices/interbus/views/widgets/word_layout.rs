@@ -20,7 +20,6 @@ use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::widgets::{BitCell, series};
 
-/// A word.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct WordLayout<'a> {
     /// Accessible name.
@@ -203,7 +202,6 @@ impl Cells {
     }
 }
 
-/// Draws it.
 pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     let cells = Cells::new(ui.available_width());
     let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());

@@ -7,7 +7,6 @@ use crate::app::explain::plain;
 use crate::devices::ssi::procedures::check::{Finding, SsiStepResult, Step};
 use crate::devices::ssi::state::TEXTS;
 
-/// The lines of a check.
 pub fn check(lines: &[SsiStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }

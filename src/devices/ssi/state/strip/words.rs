@@ -74,7 +74,6 @@ pub fn bare(strip: &Strip, field: &Field) -> String {
     }
 }
 
-/// Returns the clocks of a field.
 pub fn clocks(field: &Field) -> Text {
     if field.first == field.last {
         TEXTS.text("ssi.strip_on_clock").with("clock", field.first)

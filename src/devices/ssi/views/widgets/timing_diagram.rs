@@ -57,7 +57,6 @@ struct Rows {
     bottom: f32,
 }
 
-/// Draws it.
 pub(crate) fn timing_diagram(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     theme.sunken().show(ui, |ui| draw(ui, theme, model));
 }

@@ -103,7 +103,6 @@ fn what_fits_is_taken() {
     }
 }
 
-/// There is one master.
 #[test]
 fn a_second_master_is_refused() {
     let mut host = Host::opened("");

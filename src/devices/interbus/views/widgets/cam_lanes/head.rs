@@ -30,7 +30,6 @@ impl Lanes<'_> {
         event
     }
 
-    /// Draws the switch of the cam.
     pub(super) fn switch(&self, lane: &Lane) -> Option<CamEvent> {
         let (ui, head) = (self.ui, self.place.head_of(lane.cam));
         let can = self.model.movable && (lane.edges.is_some() || lane.on);

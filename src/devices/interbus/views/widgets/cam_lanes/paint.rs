@@ -80,7 +80,6 @@ impl Lanes<'_> {
         painter.text(middle, Align2::CENTER_CENTER, words, font, theme.palette.muted.into());
     }
 
-    /// A cam in its lane.
     fn cam(&self, painter: &Painter, lane: &Lane) {
         let (theme, place) = (self.theme, self.place);
         let colour = ink(theme, lane.cam);

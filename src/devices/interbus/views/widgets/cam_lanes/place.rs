@@ -68,7 +68,6 @@ impl PlotArea {
         self.view.position(f64::from((x - self.plot.left()) / self.plot.width().max(1.0)))
     }
 
-    /// The lane of a cam.
     pub(super) fn lane(&self, cam: CamNumber) -> Rect {
         let top = self.plot.top() + f32::from(cam.get()) * LANE;
         Rect::from_min_size(pos2(self.plot.left(), top), Vec2::new(self.plot.width(), LANE))

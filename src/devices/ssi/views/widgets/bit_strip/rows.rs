@@ -75,7 +75,6 @@ impl Rows {
         Vec2::new(self.width(clocks) + 2.0 * MARGIN, self.tops.last().copied().unwrap_or(GAP) - GAP)
     }
 
-    /// The line of a clock.
     pub(super) fn line(&self, clock: u8) -> usize {
         usize::from(clock.saturating_sub(1) / self.columns)
     }
@@ -84,7 +83,6 @@ impl Rows {
         self.origin.y + self.tops.get(line).or(self.tops.last()).copied().unwrap_or(0.0)
     }
 
-    /// The cell of a clock.
     pub(super) fn cell(&self, clock: u8) -> Rect {
         let column = f32::from(clock.saturating_sub(1) % self.columns);
         let at = pos2(self.origin.x + column * self.cell, self.top(self.line(clock)) + NUMBERS);
