@@ -249,6 +249,18 @@ pub fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal()])
 }
 
+/// Takes the result of a job apart: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of another
+/// kind ends the function with an error.
+#[macro_export]
+macro_rules! result_of {
+    ($result:expr, $wanted:pat => $value:expr) => {
+        match $result {
+            $wanted => $value,
+            other => return Err($crate::cli::unexpected(&other)),
+        }
+    };
+}
+
 /// A job gave a result of another kind: a defect of this program, told rather than hidden.
 pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])

@@ -32,7 +32,7 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
     fn url(&self) -> Result<LinkUrl, Text>;
 
     /// Fills in the file of a recording.
-    fn set_file(&mut self, file: String);
+    fn set_file(&mut self, _file: String) {}
 
     /// Returns what a link to such a device looks like.
     fn example(&self) -> &'static str;

@@ -8,7 +8,7 @@ use super::{DraftDone, DraftEdits, DraftKey, HasSession, Kind, Phase, ProfileFil
 use crate::app::services::Services;
 use crate::app::{PendingEdits, Severity, Text, explain};
 use crate::profile::Document;
-use crate::store::FileError;
+use crate::store::{DeviceKey, FileError};
 
 /// Text id of the notice that a profile could not be saved.
 const NOT_SAVED: &str = "session.not_saved";
@@ -18,9 +18,14 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session with edits.
 pub trait Drafted: HasSession {
-    /// The type and the serial number of the device that was read: another type may have the same number. An empty number
-    /// where the device does not say who it is; `None` where nothing has been read.
-    fn type_and_serial(&self) -> Option<(String, String)>;
+    /// Returns the key of the logbook; `None` before the device was read, and for a device that does not say who it is.
+    fn key(&self) -> Option<DeviceKey>;
+
+    /// Returns the type and the serial number of the device that was read, by which its draft is kept: another type may have
+    /// the same number. An empty number where the device does not say who it is; `None` where nothing has been read.
+    fn type_and_serial(&self) -> Option<(String, String)> {
+        self.key().map(|key| (key.device_type, key.serial_number))
+    }
 
     /// Returns the edits.
     fn edited(&self) -> Edits<Self>;

@@ -55,7 +55,9 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     }
 
     /// A plan was made for another device than the one that was read before.
-    fn is_of_another(&self, prepared: &Prepared<Self>) -> bool;
+    fn is_of_another(&self, prepared: &Prepared<Self>) -> bool {
+        self.key().is_some_and(|own| own != prepared.device(own.is_virtual))
+    }
 
     /// The job that makes a plan.
     fn prepare(change: Change<Self>) -> Job<Self>;

@@ -8,7 +8,6 @@ use crate::app::action::ReadError;
 use crate::app::documents::{document_of, only_looked_at, read_error};
 use crate::app::services::Services;
 use crate::profile::{Body, Document, ProfileError};
-use crate::store::DeviceKey;
 use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
@@ -23,9 +22,6 @@ pub fn without_edits(count: usize) -> Option<Text> {
 
 /// A device that can be saved and restored.
 pub trait Saved: WithMemory {
-    /// Returns the key of the logbook; `None` before the device was read.
-    fn key(&self) -> Option<DeviceKey>;
-
     /// The job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
 

@@ -5,14 +5,15 @@ use std::convert::Infallible;
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
     Command, Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save,
-    Simulate, Simulated, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore, unexpected,
+    Simulate, Simulated, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore,
     write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
+use encoder_studio::result_of;
 use encoder_studio::worker::Session;
 use serde_json::json;
 
-use super::jobs::{Change, Job, JobError, LIFE, Novo, Output as Came, Prepared};
+use super::jobs::{Change, Job, LIFE, Novo, Output as Came, Prepared};
 use super::profile::NovoProfile;
 use super::protocol::{ITEMS, KIND, name_of};
 use super::sim::Virtual;
@@ -55,20 +56,16 @@ impl DeviceCommands for NovoCommands {
         let NovoProfile { serial, values } = to_restore(restore, profile)?;
         let mut runner = Runner::open(common)?;
         let change = Change { restored: Some(serial), values, options };
-        let prepared = match runner.run(Job::Prepare(change))? {
-            Came::Prepared(prepared) => *prepared,
-            other => return Err(unexpected(&other)),
-        };
+        let prepared = result_of!(runner.run(Job::Prepare(change))?, Came::Prepared(prepared) => *prepared);
         let shown = shown(&prepared);
         let unchanged = (ITEMS.len() - prepared.plan.ops.len()) as u64;
         let left = Left { unchanged, missing: Vec::new(), redo: Vec::new() };
         write_restore(output, restore, &shown, &left, || {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
-            match runner.run(Job::Commit(Box::new(agreed)))? {
-                Came::Committed(done) => Ok(plan::WriteSummary::of(output, *done)),
-                other => Err(unexpected(&other)),
-            }
+            Ok(
+                result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(done) => plan::WriteSummary::of(output, *done)),
+            )
         })
     }
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
@@ -91,15 +88,17 @@ fn position(common: &Common, output: &Output, position: &Position) -> Result {
     if position.csv {
         output.print("position\n")?;
     }
-    let read = |came: std::result::Result<Came, Box<JobError>>| match came {
-        Ok(Came::Position((_, position))) => {
+    readings(
+        &mut runner,
+        position,
+        || Job::Position,
+        |_, came| {
+            let came = came.map_err(|error| Ended::<Novo>::Job(error).into_failure())?;
+            let (_, position) = result_of!(came, Came::Position(sample) => sample);
             output.show(&json!({ "position": position }), &format!("{position}\n"))?;
             Ok(true)
-        }
-        Ok(other) => Err(unexpected(&other)),
-        Err(error) => Err(Ended::<Novo>::Job(error).into_failure()),
-    };
-    readings(&mut runner, position, || Job::Position, |_, came| read(came))
+        },
+    )
 }
 
 fn save(common: &Common, output: &Output, save: &Save) -> Result {
@@ -109,10 +108,7 @@ fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 fn survey(runner: &mut Runner) -> Result<NovoProfile> {
-    match runner.run(Job::Survey)? {
-        Came::Surveyed(read) => Ok(read),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(Job::Survey)?, Came::Surveyed(read) => read))
 }
 
 fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::PlanReport {

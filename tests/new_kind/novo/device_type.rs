@@ -98,8 +98,6 @@ impl FormModel for NovoForm {
         jobs::check(&url).map_err(|error| explain::open(&error))?;
         Ok(url)
     }
-    fn set_file(&mut self, _file: String) {}
-
     fn example(&self) -> &'static str {
         "tcp:192.168.0.7:4001"
     }

@@ -37,8 +37,8 @@ impl Reviewed for Novo {
 }
 
 impl Drafted for Encoder {
-    fn type_and_serial(&self) -> Option<(String, String)> {
-        self.key().map(|key| (key.device_type, key.serial_number))
+    fn key(&self) -> Option<DeviceKey> {
+        self.read().map(|own| device_key(own.serial, self.session.is_virtual()))
     }
     fn edited(&self) -> Vec<(usize, u16)> {
         self.staged.iter().collect()
@@ -67,9 +67,6 @@ impl WithMemory for Encoder {
     fn is_for_another(&self, change: &Change) -> bool {
         change.restored.zip(self.read()).is_some_and(|(of, own)| of != own.serial)
     }
-    fn is_of_another(&self, prepared: &Prepared) -> bool {
-        self.read().is_some_and(|own| own.serial != prepared.serial)
-    }
     fn prepare(change: Change) -> Job {
         Job::Prepare(change)
     }
@@ -83,9 +80,6 @@ impl WithMemory for Encoder {
 }
 
 impl Saved for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
-        self.read().map(|own| device_key(own.serial, self.session.is_virtual()))
-    }
     fn read_all() -> Job {
         Job::Survey
     }

@@ -24,6 +24,7 @@ use crate::devices::biss::procedures::procedure::Outcome;
 use crate::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RegisterRange};
 use crate::devices::biss::protocol::{Filter, KIND, PresetValue};
 use crate::devices::biss::state::explain as words;
+use crate::result_of;
 
 /// How long a person may take to turn the motor as required.
 const PERSON: Duration = Duration::from_secs(300);
@@ -63,10 +64,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
 }
 
 fn check_device(common: &Common, output: &Output) -> Result {
-    match Runner::open(common)?.run(BissJob::Check)? {
-        BissOutput::Check(lines) => check::show(output, &words::check(&lines)),
-        other => Err(unexpected(&other)),
-    }
+    result_of!(Runner::open(common)?.run(BissJob::Check)?, BissOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }
 
 fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {

@@ -17,6 +17,7 @@ use crate::devices::biss::procedures::{Bits, Damage, Error, FrameSource, Identit
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
+use crate::result_of;
 
 /// Without a good frame for so long, nothing but noise comes.
 const NOISE: Duration = Duration::from_secs(5);
@@ -93,10 +94,7 @@ fn serial(identity: &Identity) -> String {
 
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    let status = match runner.run(BissJob::Status)? {
-        BissOutput::Status(status) => *status,
-        other => return Err(unexpected(&other)),
-    };
+    let status = result_of!(runner.run(BissJob::Status)?, BissOutput::Status(status) => *status);
     let position_error = status.position.and_then(|reading| reading.error);
     let errors = status.errors.as_ref().map_or_else(Vec::new, list);
     let json = json!({

@@ -12,7 +12,6 @@ use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, Step, WriteSummary, warn};
-use crate::cli::runner::unexpected;
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
 use crate::devices::biss::procedures::write::Written;
@@ -20,6 +19,7 @@ use crate::devices::biss::profile::{BissPlan, Op, PresetParts, RegisterRange};
 use crate::devices::biss::protocol::PresetValue;
 use crate::devices::biss::state::explain as explained;
 use crate::profile::Operation as _;
+use crate::result_of;
 
 /// Manual 6.4.
 pub(super) const CALIBRATION: &str =
@@ -27,10 +27,7 @@ pub(super) const CALIBRATION: &str =
 
 /// Makes a plan for a change; nothing is written.
 pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
-    match runner.run(BissJob::Prepare(change))? {
-        BissOutput::Prepared(prepared) => Ok(*prepared),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
 /// Asks for consent where needed, and carries the plan out. An empty plan sends nothing. Only the measurement decides
@@ -52,10 +49,8 @@ pub(super) fn commit(
     let text = shown(&prepared).text;
     let agreed = agreed(output, consent, prepared, &[&text])?;
     let commit = Commit { agreed, attendance: OperatorPresence::Unattended(Unattended { patience }) };
-    let committed = match runner.run(BissJob::Commit(Box::new(commit)))? {
-        BissOutput::Committed(committed) => *committed,
-        other => return Err(unexpected(&other)),
-    };
+    let committed =
+        result_of!(runner.run(BissJob::Commit(Box::new(commit)))?, BissOutput::Committed(committed) => *committed);
     warn(output, committed.logbook_warning.as_ref());
     let Written { written, verified, write_cycles, outcomes, .. } = committed.written;
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))

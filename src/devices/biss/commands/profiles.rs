@@ -8,13 +8,13 @@ use crate::app::Text;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Left, keep, restore_options, say_mounting_left, to_restore, write_restore};
-use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
 use crate::devices::biss::protocol::DeviceMode;
 use crate::devices::biss::state::explain as words;
 use crate::profile::Body;
+use crate::result_of;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, BissJob::Save)?;
@@ -50,10 +50,7 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 }
 
 fn saved(common: &Common, job: BissJob) -> Result<BissProfile> {
-    match Runner::open(common)?.run(job)? {
-        BissOutput::Saved(profile) => Ok(*profile),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(Runner::open(common)?.run(job)?, BissOutput::Saved(profile) => *profile))
 }
 
 pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profile: Body) -> Result {

@@ -11,6 +11,7 @@ use crate::devices::biss::procedures::procedure::{Detail, News};
 use crate::devices::biss::procedures::{Identity, Way};
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::state::explain as words;
+use crate::result_of;
 use crate::worker::Session;
 
 /// A session with a BiSS encoder on its thread.
@@ -68,10 +69,7 @@ fn detail(news: &News) -> String {
 
 /// Identifies the encoder.
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
-    match runner.run(BissJob::Identify)? {
-        BissOutput::Identity(identity) => Ok(identity),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
 /// Frames with a wrong checksum that the last job met, beside those of its reading.

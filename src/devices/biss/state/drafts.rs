@@ -2,10 +2,12 @@
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Saved, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
 use crate::devices::biss::jobs::Biss;
+use crate::devices::biss::jobs::device_key;
 use crate::devices::biss::profile::BissProfile;
 use crate::profile::Document;
+use crate::store::DeviceKey;
 
 /// Edited bytes: global address, byte.
 pub(crate) type Edits = Vec<(u16, u8)>;
@@ -23,8 +25,8 @@ impl HasSession for Encoder {
 }
 
 impl Drafted for Encoder {
-    fn type_and_serial(&self) -> Option<(String, String)> {
-        self.key().map(|key| (key.device_type, key.serial_number))
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 
     fn edited(&self) -> Edits {

@@ -9,9 +9,7 @@ use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, EarlyEnd, Known, Saved, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::biss::jobs::{
-    Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared, device_key,
-};
+use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
 use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, Unattended};
 use crate::devices::biss::procedures::{Error, profile_of};
 use crate::devices::biss::profile::{
@@ -20,7 +18,6 @@ use crate::devices::biss::profile::{
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
-use crate::store::DeviceKey;
 use crate::worker::EndedEarly;
 
 /// How long to wait for a shaft to stand still if no one is asked to stop it.
@@ -101,10 +98,6 @@ impl WithMemory for Encoder {
         other_type(&profile.identity, &own.profile()).is_some()
     }
 
-    fn is_of_another(&self, prepared: &Prepared) -> bool {
-        self.is_another(&prepared.identity)
-    }
-
     fn prepare(change: Change) -> BissJob {
         BissJob::Prepare(change)
     }
@@ -157,10 +150,6 @@ impl WithMemory for Encoder {
 }
 
 impl Saved for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
-        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
-    }
-
     fn read_all() -> BissJob {
         BissJob::Save
     }

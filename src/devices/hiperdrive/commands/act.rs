@@ -8,7 +8,7 @@ use crate::cli::consent::require_consent;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::runner::failed;
 use crate::cli::{Failure, Result, check};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::DriveIdentity;
@@ -16,6 +16,7 @@ use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
+use crate::result_of;
 
 const ACTIONS: &str = "check, acknowledge, save, recall, factory, presence-test and set-position";
 
@@ -85,10 +86,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
 
 /// The drives that are plugged in.
 fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
-    match runner.run(HiperdriveJob::Identify)? {
-        HiperdriveOutput::Identity(identity) => Ok(identity.drives),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }
 
 /// Checks that the presence test has found a drive, and each that was there before it.
@@ -113,8 +111,5 @@ fn set_position(of: &OfDrive, text: &str) -> Result<Change> {
 
 fn check_device(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    match runner.run(HiperdriveJob::Check)? {
-        HiperdriveOutput::Check(lines) => check::show(output, &words::check(&lines)),
-        other => Err(unexpected(&other)),
-    }
+    result_of!(runner.run(HiperdriveJob::Check)?, HiperdriveOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }

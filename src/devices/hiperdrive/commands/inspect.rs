@@ -6,7 +6,6 @@ use super::item;
 use super::run::{Runner, value};
 use crate::cli::args::{Common, Read};
 use crate::cli::output::{Lines, Output};
-use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::{DriveIdentity, DriveStatus, Identity, Status};
@@ -15,13 +14,11 @@ use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
 };
 use crate::devices::hiperdrive::state::explain as words;
+use crate::result_of;
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    let identity = match runner.run(HiperdriveJob::Identify)? {
-        HiperdriveOutput::Identity(identity) => identity,
-        other => return Err(unexpected(&other)),
-    };
+    let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
     let json = json!({
         "device": KIND,
         "category": identity.category,
@@ -72,10 +69,7 @@ fn identity_text(identity: &Identity) -> String {
 
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    let status = match runner.run(HiperdriveJob::Status)? {
-        HiperdriveOutput::Status(status) => *status,
-        other => return Err(unexpected(&other)),
-    };
+    let status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
     let said: Vec<DriveFact> = status.drives.iter().flat_map(said).collect();
     let list =
         |weight: Weight| said.iter().filter(|own| own.weight == weight).map(DriveFact::json).collect::<Vec<Json>>();

@@ -15,7 +15,7 @@ use crate::app::Text;
 use crate::cli::args::Common;
 use crate::cli::number::parse_number;
 use crate::cli::output::Output;
-use crate::cli::runner::{failed, unexpected};
+use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperdrive::jobs::{DriveView, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended, Goal, MotionRequest, Permit, Phase, Refusal};
@@ -23,6 +23,7 @@ use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, Rules};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, Percent, PositionScale, Value};
 use crate::devices::hiperdrive::state::Measure;
 use crate::devices::hiperdrive::state::explain as words;
+use crate::result_of;
 use crate::units::Moment;
 
 /// Interval at which a motion is refreshed.
@@ -51,10 +52,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     let effort = Effort { speed: percent(wanted.speed), torque: percent(wanted.torque) };
     let mut runner = Runner::open(common)?;
     let drive = drive(&wanted.of);
-    let identity = match runner.run(HiperdriveJob::Identify)? {
-        HiperdriveOutput::Identity(identity) => identity,
-        other => return Err(unexpected(&other)),
-    };
+    let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
     let (permit, scale) = permit(&mut runner, &identity, drive)?;
     // An impossible target is refused before anything is opened.
     let target = within(&permit, target)?;
@@ -62,10 +60,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     if let Some((low, high)) = permit.limits {
         output.remark(&range(drive, target, (low, high), scale));
     }
-    match runner.run(HiperdriveJob::Take)? {
-        HiperdriveOutput::Taken => {}
-        other => return Err(unexpected(&other)),
-    }
+    result_of!(runner.run(HiperdriveJob::Take)?, HiperdriveOutput::Taken => {});
     let came =
         carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
     let stood = lead_off(&runner, drive);

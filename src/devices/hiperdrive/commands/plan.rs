@@ -8,12 +8,12 @@ use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::{Lines, Output};
 use crate::cli::plan::{self, PlanReport, WriteSummary};
-use crate::cli::runner::unexpected;
 use crate::devices::hiperdrive::jobs::{Change, Hiperdrive, HiperdriveJob, HiperdriveOutput, Prepared, WEAR_WARNING};
 use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, warnings};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Operation as _;
+use crate::result_of;
 
 /// Makes a plan for a change; nothing is written. What it brings along is told.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
@@ -21,10 +21,8 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
         Change::SetPosition { position, .. } => Some(i64::from(*position)),
         _ => None,
     };
-    let prepared = match runner.run(HiperdriveJob::Prepare(change))? {
-        HiperdriveOutput::Prepared(prepared) => *prepared,
-        other => return Err(unexpected(&other)),
-    };
+    let prepared =
+        result_of!(runner.run(HiperdriveJob::Prepare(change))?, HiperdriveOutput::Prepared(prepared) => *prepared);
     if let (Some(asked), Some(Op::Write { new, .. })) = (asked, prepared.plan.ops.first())
         && asked != *new
     {
@@ -58,10 +56,7 @@ pub(super) fn commit(
     }
     let text = shown(&prepared).text;
     let agreed = agreed(output, consent, prepared, &[&text])?;
-    let committed = match runner.run(HiperdriveJob::Commit(Box::new(agreed)))? {
-        HiperdriveOutput::Committed(committed) => *committed,
-        other => return Err(unexpected(&other)),
-    };
+    let committed = result_of!(runner.run(HiperdriveJob::Commit(Box::new(agreed)))?, HiperdriveOutput::Committed(committed) => *committed);
     Ok(WriteSummary::of(output, committed))
 }
 

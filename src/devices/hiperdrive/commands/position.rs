@@ -8,11 +8,12 @@ use crate::cli::Result;
 use crate::cli::args::{Common, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
-use crate::cli::runner::{Ended, unexpected};
+use crate::cli::runner::Ended;
 use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, PositionScale, StatusBit, Value};
 use crate::devices::hiperdrive::state::explain as explained;
+use crate::result_of;
 
 /// The scale is read once, since a position is nothing without it; from then on 105 to 107 alone.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
@@ -28,10 +29,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         position,
         || HiperdriveJob::Position(drive),
         |_, came| {
-            let reading = match came.map_err(|error| Ended::<Hiperdrive>::Job(error).into_failure())? {
-                HiperdriveOutput::Position(reading) => reading,
-                other => return Err(unexpected(&other)),
-            };
+            let reading = result_of!(came.map_err(|error| Ended::<Hiperdrive>::Job(error).into_failure())?, HiperdriveOutput::Position(reading) => reading);
             let place = scale.map(|scale| TurnPosition::of(reading.actual.position, scale));
             if position.csv {
                 output.print(&row(&reading, place))?;

@@ -7,12 +7,12 @@ use super::run::Runner;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::profiles::{Left, keep, restore_options, to_restore, write_restore};
-use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
 use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Body;
+use crate::result_of;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common)?;
@@ -30,10 +30,7 @@ pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>
 }
 
 fn saved(common: &Common) -> Result<HiperdriveProfile> {
-    match Runner::open(common)?.run(HiperdriveJob::Save)? {
-        HiperdriveOutput::Saved(profile) => Ok(*profile),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 
 /// Returns a message if two profiles are not of the same device, or of the same drives. One without a serial number

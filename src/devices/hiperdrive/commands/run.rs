@@ -9,13 +9,14 @@ use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::say;
-use crate::cli::runner::{self, Runs, unexpected};
+use crate::cli::runner::{self, Runs};
 use crate::cli::slow_reply_notice::Pace;
 use crate::devices::hiperdrive::jobs::{DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobStep, Motion};
 use crate::devices::hiperdrive::procedures::Station;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
+use crate::result_of;
 use crate::worker::Session;
 
 /// Some of the longest intervals: a stop word is out before the program may end.
@@ -76,10 +77,7 @@ impl Runs for Hiperdrive {
 }
 
 pub(super) fn value(runner: &mut Runner, number: ParameterNumber) -> Result<Value> {
-    match runner.run(HiperdriveJob::Read(number))? {
-        HiperdriveOutput::Value(_, value) => Ok(value),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(HiperdriveJob::Read(number))?, HiperdriveOutput::Value(_, value) => value))
 }
 
 /// The drive that is meant: the first, where none is named.

@@ -3,10 +3,12 @@
 use super::staged::SavedEdit;
 use super::unit::Unit;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Saved, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
+use crate::devices::hiperdrive::jobs::device_key;
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Document;
+use crate::store::DeviceKey;
 
 /// The edits, each with its number.
 pub(crate) type Edits = Vec<SavedEdit>;
@@ -24,8 +26,8 @@ impl HasSession for Unit {
 }
 
 impl Drafted for Unit {
-    fn type_and_serial(&self) -> Option<(String, String)> {
-        self.key().map(|key| (key.device_type, key.serial_number))
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 
     fn edited(&self) -> Edits {

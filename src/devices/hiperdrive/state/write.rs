@@ -10,13 +10,12 @@ use crate::app::review::OpWords;
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared, device_key};
+use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared};
 use crate::devices::hiperdrive::profile::{
     HiperdriveProfile, Image, Item, Op, RestoreOptions, check_device, other_types,
 };
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::{Body, ProfileError};
-use crate::store::DeviceKey;
 
 impl Unit {
     pub(crate) fn plan_restore(&mut self, profile: HiperdriveProfile, services: &mut Services) {
@@ -43,10 +42,6 @@ impl WithMemory for Unit {
     fn is_for_another_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, self.identity()) else { return false };
         !other_types(&profile.identity, &own.profile()).is_empty()
-    }
-
-    fn is_of_another(&self, prepared: &Prepared) -> bool {
-        self.is_another(&prepared.identity)
     }
 
     fn prepare(change: Change) -> HiperdriveJob {
@@ -87,10 +82,6 @@ impl WithMemory for Unit {
 }
 
 impl Saved for Unit {
-    fn key(&self) -> Option<DeviceKey> {
-        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
-    }
-
     fn read_all() -> HiperdriveJob {
         HiperdriveJob::Save
     }

@@ -16,6 +16,7 @@ use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use crate::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step, Verdict};
 use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, KIND};
 use crate::devices::hiperface::state::explain as words;
+use crate::result_of;
 
 const ACTIONS: &str = "reset, check, set-position, synchronise, create-field, resize-field, lock-field, unlock-field, \
                        delete-field, change-code, increment-counter, clear-counter and configure-for-now";
@@ -149,10 +150,8 @@ fn configure_for_now(common: &Common, output: &Output, value: &str) -> Result {
 }
 
 fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
-    let lines = match Runner::open(common)?.run(HiperfaceJob::Check { restart })? {
-        HiperfaceOutput::Check(lines) => lines,
-        other => return Err(unexpected(&other)),
-    };
+    let lines =
+        result_of!(Runner::open(common)?.run(HiperfaceJob::Check { restart })?, HiperfaceOutput::Check(lines) => lines);
     let quality = lines.iter().flat_map(|line| &line.findings).find_map(|finding| match finding {
         Finding::Line(quality) => Some(quality),
         _ => None,

@@ -22,6 +22,7 @@ use crate::devices::hiperface::procedures::{Identity, PositionReading};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, StatusCode};
 use crate::devices::hiperface::state::explain as explained;
+use crate::result_of;
 
 pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     if let Some(url) = &common.link
@@ -162,18 +163,12 @@ fn identity_text(identity: &Identity, runner: &Runner) -> String {
 }
 
 fn identity(runner: &mut Runner) -> Result<Identity> {
-    match runner.run(HiperfaceJob::Identify)? {
-        HiperfaceOutput::Identity(identity) => Ok(identity),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(HiperfaceJob::Identify)?, HiperfaceOutput::Identity(identity) => identity))
 }
 
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    let codes = match runner.run(HiperfaceJob::Status)? {
-        HiperfaceOutput::Status(codes) => codes,
-        other => return Err(unexpected(&other)),
-    };
+    let codes = result_of!(runner.run(HiperfaceJob::Status)?, HiperfaceOutput::Status(codes) => codes);
     let (warnings, errors): (Vec<StatusCode>, Vec<StatusCode>) = codes.iter().partition(|code| code.is_warning());
     output.show(
         &json!({"ok": errors.is_empty(), "errors": code_list(&errors), "warnings": code_list(&warnings)}),
@@ -276,10 +271,7 @@ fn show_no_position(output: &Output, error: &JobError) -> Result<()> {
 pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let item = &super::item(item)?;
     let mut runner = Runner::open(common)?;
-    let value = match runner.run(HiperfaceJob::Read(*item))? {
-        HiperfaceOutput::Value(value) => value,
-        other => return Err(unexpected(&other)),
-    };
+    let value = result_of!(runner.run(HiperfaceJob::Read(*item))?, HiperfaceOutput::Value(value) => value);
     let (json, text) = match &value {
         Value::Bytes(bytes) => {
             (json!({"item": item.to_string(), "value": hex_compact(bytes)}), format!("{}\n", hex(bytes)))

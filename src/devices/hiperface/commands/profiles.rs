@@ -9,7 +9,6 @@ use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
 use crate::cli::profiles::{Left, keep, say_mounting_left, to_restore, write_restore};
-use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
@@ -17,6 +16,7 @@ use crate::devices::hiperface::procedures::SaveOptions;
 use crate::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item, RestoreOptions, UnknownField};
 use crate::devices::hiperface::state::explain as words;
 use crate::profile::Body;
+use crate::result_of;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let mut runner = Runner::open(common)?;
@@ -31,10 +31,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
 }
 
 fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>> {
-    match runner.run(HiperfaceJob::Save(options))? {
-        HiperfaceOutput::Saved(saved) => Ok(saved),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(runner.run(HiperfaceJob::Save(options))?, HiperfaceOutput::Saved(saved) => saved))
 }
 
 fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
@@ -75,10 +72,8 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     };
     let mut runner = Runner::open(common)?;
     let change = Change::Restore { profile: Box::new(profile), options };
-    let prepared = match runner.run(HiperfaceJob::Prepare(change))? {
-        HiperfaceOutput::Prepared(prepared) => *prepared,
-        other => return Err(unexpected(&other)),
-    };
+    let prepared =
+        result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
     if let Some(types) = prepared.other_type {
         output.remark(&words::other_type(types).terminal());
     }

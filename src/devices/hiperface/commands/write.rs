@@ -9,13 +9,13 @@ use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output, count as plural};
 use crate::cli::plan::{self, WriteSummary};
 use crate::cli::profiles::show_changed;
-use crate::cli::runner::unexpected;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, Hiperface, HiperfaceJob, HiperfaceOutput, Prepared};
 use crate::devices::hiperface::profile::{HiperfacePlan, Item, Op};
 use crate::devices::hiperface::protocol::{DataFieldStatus, DeviceAddress, LineSettings};
 use crate::devices::hiperface::state::explain as words;
+use crate::result_of;
 
 pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = super::item(&write.item)?;
@@ -33,10 +33,8 @@ pub(super) fn change_and_show(
 ) -> Result {
     require_consent(consent)?;
     let mut runner = Runner::open(common)?;
-    let prepared = match runner.run(HiperfaceJob::Prepare(change))? {
-        HiperfaceOutput::Prepared(prepared) => *prepared,
-        other => return Err(unexpected(&other)),
-    };
+    let prepared =
+        result_of!(runner.run(HiperfaceJob::Prepare(change))?, HiperfaceOutput::Prepared(prepared) => *prepared);
     let operations = operations(&prepared.plan);
     let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
     let spent = commit(&mut runner, output, prepared, consent)?;
@@ -115,10 +113,7 @@ pub(super) fn commit(
     check_wear::<Hiperface>(consent, &prepared)?;
     let text = plan_text(&prepared);
     let agreed = agreed(output, consent, prepared, &[&text])?;
-    let committed = match runner.run(HiperfaceJob::Commit(Box::new(agreed)))? {
-        HiperfaceOutput::Committed(committed) => committed,
-        other => return Err(unexpected(&other)),
-    };
+    let committed = result_of!(runner.run(HiperfaceJob::Commit(Box::new(agreed)))?, HiperfaceOutput::Committed(committed) => committed);
     Ok(WriteSummary::of(output, committed))
 }
 

@@ -4,8 +4,10 @@ use super::encoder::Encoder;
 use crate::app::PendingEdits;
 use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
 use crate::devices::hiperface::jobs::Hiperface;
+use crate::devices::hiperface::jobs::device_key;
 use crate::devices::hiperface::profile::HiperfaceProfile;
 use crate::profile::Document;
+use crate::store::DeviceKey;
 
 /// Edited bytes: field, address, byte.
 pub(crate) type Edits = Vec<(u8, usize, u8)>;
@@ -23,6 +25,10 @@ impl HasSession for Encoder {
 }
 
 impl Drafted for Encoder {
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
+    }
+
     fn type_and_serial(&self) -> Option<(String, String)> {
         let identity = self.identity.as_ref()?;
         Some((format!("{:02X}", identity.label.encoder_type), identity.serial.serial_number.clone()))

@@ -8,11 +8,10 @@ use crate::app::review::Permit;
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, Known, Saved, SessionEvents, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared, device_key};
+use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
 use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
 use crate::devices::hiperface::profile::{HiperfaceProfile, Recorded, RestoreOptions, check_device};
 use crate::profile::{Body, ProfileError};
-use crate::store::DeviceKey;
 
 impl Encoder {
     pub(crate) fn plan_restore(&mut self, profile: HiperfaceProfile, services: &mut Services) {
@@ -46,10 +45,6 @@ impl WithMemory for Encoder {
     fn is_for_another_type(&self, change: &Change) -> bool {
         let (Change::Restore { profile, .. }, Some(own)) = (change, &self.identity) else { return false };
         profile.identity.encoder_type != own.label.encoder_type
-    }
-
-    fn is_of_another(&self, prepared: &Prepared) -> bool {
-        self.is_another(&prepared.identity)
     }
 
     fn prepare(change: Change) -> HiperfaceJob {
@@ -98,10 +93,6 @@ impl WithMemory for Encoder {
 }
 
 impl Saved for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
-        self.identity.as_ref().map(|identity| device_key(identity, self.session.is_virtual()))
-    }
-
     fn read_all() -> HiperfaceJob {
         HiperfaceJob::Save(SaveOptions::default())
     }

@@ -12,13 +12,13 @@ use crate::cli::args::{Common, Do};
 use crate::cli::consent::require_consent;
 use crate::cli::output::Output;
 use crate::cli::profiles::show_done;
-use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
 use crate::devices::interbus::profile::{Item, ItemValue};
 use crate::devices::interbus::protocol::{KIND, Reply};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
+use crate::result_of;
 
 const ACTIONS: &str = "check, preset, default and lead-back";
 
@@ -46,32 +46,22 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
 
 /// The preset that the encoder has.
 fn preset(runner: &mut Runner) -> Result<u32> {
-    match runner.run(InterbusJob::Read(Item::Preset))? {
-        InterbusOutput::Item(ItemValue::Number(preset)) => Ok(preset),
-        other => Err(unexpected(&other)),
-    }
+    Ok(
+        result_of!(runner.run(InterbusJob::Read(Item::Preset))?, InterbusOutput::Item(ItemValue::Number(preset)) => preset),
+    )
 }
 
 fn check_device(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     Disturbs::Reading.say(output);
-    match runner.run(InterbusJob::Check)? {
-        InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)),
-        other => Err(unexpected(&other)),
-    }
+    result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }
 
 fn lead_back(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     Disturbs::LeadingBack.say(output);
-    let now = match runner.run(InterbusJob::LeadBack)? {
-        InterbusOutput::LedBack(now) => now,
-        other => return Err(unexpected(&other)),
-    };
-    let reading = match runner.run(InterbusJob::Position)? {
-        InterbusOutput::Position(reading) => reading,
-        other => return Err(unexpected(&other)),
-    };
+    let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
+    let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (words::startup(now).terminal(), format!("0x{:08X}", reading.word));
     let json = json!({"done": "lead-back", "mode": mode(now), "word": word});
     let Reply::Error(error) = reading.reply() else {

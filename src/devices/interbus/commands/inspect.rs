@@ -6,13 +6,13 @@ use super::Disturbs;
 use super::run::{Runner, identity};
 use crate::cli::args::Common;
 use crate::cli::output::{Lines, Output};
-use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::{Identity, Status};
 use crate::devices::interbus::profile::ItemValue;
 use crate::devices::interbus::protocol::{KIND, Reply, StartupMode, Value};
 use crate::devices::interbus::state::explain as words;
+use crate::result_of;
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
@@ -67,10 +67,7 @@ pub(super) fn mode(mode: StartupMode) -> String {
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     Disturbs::Reading.say(output);
-    let status = match runner.run(InterbusJob::Status)? {
-        InterbusOutput::Status(status) => *status,
-        other => return Err(unexpected(&other)),
-    };
+    let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
     let errors: Vec<Json> = status
         .error
         .iter()
@@ -124,10 +121,7 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     let disturbs =
         if item.parameter().is_some() || !item.is_writable() { Disturbs::Reading } else { Disturbs::Programs };
     disturbs.begin(common, output, None)?;
-    let value = match runner.run(InterbusJob::Read(item))? {
-        InterbusOutput::Item(value) => value,
-        other => return Err(unexpected(&other)),
-    };
+    let value = result_of!(runner.run(InterbusJob::Read(item))?, InterbusOutput::Item(value) => value);
     let own = match value {
         ItemValue::Number(number) | ItemValue::Minutes(number) => json!(number),
         ItemValue::Mask(mask) => json!(mask),

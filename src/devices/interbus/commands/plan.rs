@@ -8,13 +8,13 @@ use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
 use crate::cli::plan::{self, PlanReport, Step, WriteSummary};
-use crate::cli::runner::unexpected;
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 use crate::profile::Operation as _;
+use crate::result_of;
 
 /// Makes a plan for a change; nothing is written.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
@@ -24,10 +24,8 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
         Change::Item(..) => false,
         Change::Preset { .. } | Change::Default => true,
     };
-    let prepared = match runner.run(InterbusJob::Prepare(change))? {
-        InterbusOutput::Prepared(prepared) => *prepared,
-        other => return Err(unexpected(&other)),
-    };
+    let prepared =
+        result_of!(runner.run(InterbusJob::Prepare(change))?, InterbusOutput::Prepared(prepared) => *prepared);
     if !reads_all && prepared.plan.ops.iter().any(is_shorter) {
         output.remark(&TEXTS.text("ib_disturbs.shorter").terminal());
     }
@@ -64,10 +62,7 @@ pub(super) fn commit(
         texts.push(said);
     }
     let agreed = agreed(output, consent, prepared, &texts)?;
-    let committed = match runner.run(InterbusJob::Commit(Box::new(agreed)))? {
-        InterbusOutput::Committed(committed) => *committed,
-        other => return Err(unexpected(&other)),
-    };
+    let committed = result_of!(runner.run(InterbusJob::Commit(Box::new(agreed)))?, InterbusOutput::Committed(committed) => *committed);
     Ok(WriteSummary::of(output, committed))
 }
 

@@ -9,10 +9,11 @@ use crate::cli::Result;
 use crate::cli::args::{Common, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
-use crate::cli::runner::{Ended, unexpected};
+use crate::cli::runner::Ended;
 use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
+use crate::result_of;
 
 /// Reads positions. The encoder is identified once, since a position needs its gear; then only the IN word is read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
@@ -31,10 +32,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         position,
         || InterbusJob::Position,
         |_, came| {
-            let reading = match came.map_err(|error| Ended::<Interbus>::Job(error).into_failure())? {
-                InterbusOutput::Position(reading) => reading,
-                other => return Err(unexpected(&other)),
-            };
+            let reading = result_of!(came.map_err(|error| Ended::<Interbus>::Job(error).into_failure())?, InterbusOutput::Position(reading) => reading);
             if position.csv {
                 output.print(&row(&reading))?;
             } else {
@@ -91,10 +89,10 @@ fn words(reading: &Reading, cams: Option<&[u8]>) -> String {
     };
     match cams {
         None => position,
-        Some([]) => format!("{position}; no cam on"),
+        Some([]) => "position; no cam on".to_string(),
         Some(cams) => {
             let cams = cams.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
-            format!("{position}; cams on: {cams}")
+            format!("position; cams on: {cams}")
         }
     }
 }

@@ -4,11 +4,12 @@ use super::InterbusCommands;
 use crate::app::Given;
 use crate::cli::Result;
 use crate::cli::commands::DeviceCommands;
-use crate::cli::runner::{self, Runs, failed, unexpected};
+use crate::cli::runner::{self, Runs, failed};
 use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobStep};
 use crate::devices::interbus::procedures::{Identity, Survey};
 use crate::devices::interbus::protocol::{Program, ProgramNumber, WindowShift};
 use crate::devices::interbus::state::explain as words;
+use crate::result_of;
 use crate::worker::Session;
 
 /// A session with an INTERBUS encoder on its thread.
@@ -30,20 +31,14 @@ impl Runs for Interbus {
 
 /// Identifies the encoder; refuses implausible data.
 pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
-    let identity = match runner.run(InterbusJob::Identify)? {
-        InterbusOutput::Identity(identity) => identity,
-        other => return Err(unexpected(&other)),
-    };
+    let identity = result_of!(runner.run(InterbusJob::Identify)?, InterbusOutput::Identity(identity) => identity);
     identity.gear().map_err(|why| failed(&words::implausible(why)))?;
     Ok(identity)
 }
 
 /// All that can be read without selecting a cam program.
 pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
-    let survey = match runner.run(InterbusJob::Survey)? {
-        InterbusOutput::Surveyed(survey) => survey,
-        other => return Err(unexpected(&other)),
-    };
+    let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
     survey.identity.gear().map_err(|why| failed(&words::implausible(why)))?;
     Ok(survey)
 }
@@ -53,8 +48,7 @@ pub(super) fn programs(
     runner: &mut Runner,
     wanted: Vec<ProgramNumber>,
 ) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift)> {
-    match runner.run(InterbusJob::Programs(wanted))? {
-        InterbusOutput::Programs(programs, shift) => Ok((programs, shift)),
-        other => Err(unexpected(&other)),
-    }
+    Ok(
+        result_of!(runner.run(InterbusJob::Programs(wanted))?, InterbusOutput::Programs(programs, shift) => (programs, shift)),
+    )
 }

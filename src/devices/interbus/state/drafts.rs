@@ -3,10 +3,12 @@
 use super::encoder::Encoder;
 use super::staged::SavedEdit;
 use crate::app::PendingEdits;
-use crate::app::session::{Drafted, HasSession, ProfileFile, Saved, Session};
+use crate::app::session::{Drafted, HasSession, ProfileFile, Session};
 use crate::devices::interbus::jobs::Interbus;
+use crate::devices::interbus::jobs::device_key;
 use crate::devices::interbus::profile::InterbusProfile;
 use crate::profile::Document;
+use crate::store::DeviceKey;
 
 /// The edits, each with its place.
 pub(crate) type Edits = Vec<SavedEdit>;
@@ -24,8 +26,8 @@ impl HasSession for Encoder {
 }
 
 impl Drafted for Encoder {
-    fn type_and_serial(&self) -> Option<(String, String)> {
-        self.key().map(|key| (key.device_type, key.serial_number))
+    fn key(&self) -> Option<DeviceKey> {
+        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
     }
 
     fn edited(&self) -> Edits {

@@ -6,14 +6,13 @@ use super::review::Review;
 use crate::app::services::Services;
 use crate::app::session::{ApprovedPlanOf, Known, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
-use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, Prepared, device_key};
+use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Op, RestoreOptions, check_device, other_type,
 };
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
-use crate::store::DeviceKey;
 
 impl Encoder {
     /// Returns the edited values. Of programs only edited ones, since each program of a plan is selected to be read. If
@@ -54,10 +53,6 @@ impl WithMemory for Encoder {
         other_type(&profile.identity, &own.profile()).is_some()
     }
 
-    fn is_of_another(&self, prepared: &Prepared) -> bool {
-        self.is_another(&prepared.identity)
-    }
-
     fn prepare(change: Change) -> InterbusJob {
         InterbusJob::Prepare(change)
     }
@@ -80,10 +75,6 @@ impl WithMemory for Encoder {
 }
 
 impl Saved for Encoder {
-    fn key(&self) -> Option<DeviceKey> {
-        self.identity().map(|identity| device_key(identity, self.session.is_virtual()))
-    }
-
     fn read_all() -> InterbusJob {
         InterbusJob::Save { programs: true }
     }

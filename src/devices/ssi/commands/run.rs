@@ -9,11 +9,12 @@ use crate::cli::Result;
 use crate::cli::args::Common;
 use crate::cli::commands::DeviceCommands;
 use crate::cli::output::Output;
-use crate::cli::runner::{self, Runs, unexpected};
+use crate::cli::runner::{self, Runs};
 use crate::devices::ssi::jobs::{JobStep, Ssi, SsiJob, SsiOutput};
 use crate::devices::ssi::procedures::{Asking, Words};
 use crate::devices::ssi::protocol::Reads;
 use crate::devices::ssi::state::explain as words;
+use crate::result_of;
 use crate::worker::Session;
 
 /// A session with an adapter before an SSI encoder on its thread.
@@ -48,10 +49,7 @@ pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result
         clock_hz: if names("clock") { own.clock_hz } else { reading.clock_hz },
         pause_us: if names("pause") { own.pause_us } else { reading.pause_us },
     };
-    let identity = match runner.run(SsiJob::Set(asking))? {
-        SsiOutput::Set(identity) => identity,
-        other => return Err(unexpected(&other)),
-    };
+    let identity = result_of!(runner.run(SsiJob::Set(asking))?, SsiOutput::Set(identity) => identity);
     if let Some(times) = &chosen.times {
         let reads = Reads {
             clock_hz: identity.clock_hz.into(),
@@ -67,8 +65,5 @@ pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result
 
 /// The word that a job gave.
 pub(super) fn words(came: SsiOutput) -> Result<Words> {
-    match came {
-        SsiOutput::Read(words) => Ok(words),
-        other => Err(unexpected(&other)),
-    }
+    Ok(result_of!(came, SsiOutput::Read(words) => words))
 }

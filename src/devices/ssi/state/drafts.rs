@@ -8,6 +8,7 @@ use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::profile::SsiProfile;
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Change, Document, Profile};
+use crate::store::DeviceKey;
 
 /// The changes, an entry each; empty if the layout is as saved. Earlier versions kept the whole layout, as the text of
 /// a profile.
@@ -26,6 +27,11 @@ impl HasSession for Encoder {
 }
 
 impl Drafted for Encoder {
+    /// An SSI encoder does not say who it is.
+    fn key(&self) -> Option<DeviceKey> {
+        None
+    }
+
     /// SSI encoders do not say who they are: a layout belongs to the wire at which it was used; a virtual encoder is the one
     /// that its link describes.
     fn type_and_serial(&self) -> Option<(String, String)> {
