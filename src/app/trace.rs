@@ -70,16 +70,10 @@ pub struct TraceLog {
 impl TraceLog {
     const CAPACITY: usize = 5_000;
 
-    /// Adds frames; `explain` says what each means. `dropped` came too fast to be shown.
-    pub fn add<E: Into<Explained>>(
-        &mut self,
-        entries: Vec<TraceEntry>,
-        dropped: u64,
-        mut explain: impl FnMut(&TraceEntry) -> E,
-    ) {
+    /// Adds frames with their meanings. `dropped` came too fast to be shown.
+    pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
-        for entry in entries {
-            let Explained { meaning, fault } = explain(&entry).into();
+        for (entry, Explained { meaning, fault }) in entries {
             let bytes = entry.bytes.to_string();
             self.lines.push_back(TraceLine { at: entry.at, direction: entry.direction, bytes, meaning, fault });
         }

@@ -25,7 +25,7 @@ pub use args::{Command, Common, Consenting, Decode, Do, Find, Position, Read, Re
 pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, ProtocolDecoder};
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
-pub use positions::readings;
+pub use positions::{readings, try_readings};
 pub use profiles::{Left, keep, restore_options, to_restore, write_restore};
 pub use runner::{Ended, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};

@@ -19,6 +19,23 @@ pub struct PlanReport {
     pub write_cycles: u64,
 }
 
+impl PlanReport {
+    /// The report of a plan whose operations a person and a script see as the same steps.
+    pub fn of<Base, Op: Operation>(
+        plan: &Plan<Base, Op>,
+        steps: Vec<Step>,
+        seen: Option<u64>,
+        limit: Option<u64>,
+    ) -> Self {
+        let operations = steps.iter().map(Step::json).collect();
+        PlanReport {
+            operations,
+            text: text(plan, lines(steps.into_iter()), seen, limit),
+            write_cycles: plan.write_cycles(),
+        }
+    }
+}
+
 /// A line of a plan.
 pub struct Step {
     /// The item that changes.

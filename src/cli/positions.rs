@@ -7,8 +7,20 @@ use super::runner::{Ended, Runner, Runs};
 use super::{Done, Result};
 use crate::worker::EndedEarly as _;
 
-/// Runs `job` again and again, and lets `show` print what came of it; it says whether that was a line, or that it is over.
+/// Runs `job` repeatedly and prints each result with `show`; a job that fails ends it.
 pub fn readings<D: Runs>(
+    runner: &mut Runner<D>,
+    position: &Position,
+    job: impl Fn() -> D::Job,
+    mut show: impl FnMut(D::Output) -> Result<()>,
+) -> Result {
+    try_readings(runner, position, job, |_, came| {
+        show(came.map_err(|error| Ended::<D>::Job(error).into_failure())?).map(|()| true)
+    })
+}
+
+/// Runs `job` repeatedly and lets `show` print each result or error; it returns whether that was a line.
+pub fn try_readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
     job: impl Fn() -> D::Job,

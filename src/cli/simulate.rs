@@ -23,9 +23,11 @@ const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait Simulated: ByteDevice {
-    /// Returns the setting of its line at a moment; `None` if there is no setting, and while the device does not
+    /// Returns the setting of its line at a moment; `None` if there is no serial line, and while the device does not
     /// listen.
-    fn format(&self, now: Moment) -> Option<CharacterFormat>;
+    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
+        None
+    }
 
     /// The same device for another client beside this one, at this address; `None` where there is one line to it, and clients come one
     /// after the other.

@@ -34,8 +34,8 @@ pub trait ByteDevice: Send {
     fn poll_at(&self) -> Option<Moment>;
 
     /// Sets the format of the host's UART. If it differs from the device's setting, bytes arrive garbled in both
-    /// directions, and no valid frame results.
-    fn set_host_format(&mut self, now: Moment, format: CharacterFormat);
+    /// directions, and no valid frame results. A device without a serial line has no setting.
+    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
     /// The host opened the link (again): what arrived before has no reader, and a device that lost its power gets it
     /// back now.

@@ -359,8 +359,8 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
     desk.until("the question again", |studio| studio.question.is_some());
     desk.act(Action::Confirm);
     desk.until("it is saved", |_| std::fs::read_to_string(&path).unwrap() != "dear");
-    // The file is there before the job that has written it has ended.
-    desk.until_ready();
+    // The file is there before the window knows that it was written.
+    desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "session.saved"));
     let new = folder.path().join("new.ron");
     desk.act(typed(&new));
     desk.until("a new file needs no question", |_| new.exists());

@@ -6,6 +6,7 @@
 use super::{HasSession, Kind};
 use crate::app::live_session::LiveSession;
 use crate::app::services::{JobEnd, Services};
+use crate::app::trace::Explained;
 use crate::app::{Severity, Text, explain};
 use crate::link::TraceEntry;
 use crate::worker::{Device, EndedEarly as _, Event, JobId};
@@ -32,8 +33,11 @@ pub trait SessionEvents: HasSession {
     /// Samples, and how many were dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Frames that have passed, and how many are missing before them.
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64);
+    /// Returns what a frame in the trace means; nothing where the bytes speak for themselves. Called once a frame, in
+    /// their order.
+    fn meaning_of(&mut self, _frame: &TraceEntry) -> Explained {
+        Explained::default()
+    }
 
     /// Handles a message that the device sent meanwhile.
     fn remarked(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
@@ -103,7 +107,8 @@ pub trait SessionEvents: HasSession {
             self.session_mut().answers();
         }
         if !frames.is_empty() {
-            self.passed(frames, missed);
+            let meanings: Vec<_> = frames.iter().map(|frame| self.meaning_of(frame)).collect();
+            self.session_mut().trace.add(frames.into_iter().zip(meanings), missed);
         }
     }
 

@@ -39,6 +39,14 @@ pub struct DeviceKey {
     pub is_virtual: bool,
 }
 
+impl DeviceKey {
+    /// Returns the key of a device of this kind and type.
+    pub fn of(kind: &str, device_type: &str, serial_number: &str, is_virtual: bool) -> Self {
+        let [kind, device_type, serial_number] = [kind, device_type, serial_number].map(str::to_owned);
+        DeviceKey { kind, device_type, serial_number, is_virtual }
+    }
+}
+
 /// Identifies an entry of the logbook.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EntryId(i64);

@@ -4,9 +4,8 @@ use std::convert::Infallible;
 
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
-    Command, Common, DeviceCommands, Done, Ended, Failure, Left, Output, Position, Restore, Result, Runs, Save,
-    Simulate, Simulated, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore,
-    write_restore,
+    Command, Common, DeviceCommands, Done, Failure, Left, Output, Position, Restore, Result, Runs, Save, Simulate,
+    Simulated, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -63,9 +62,8 @@ impl DeviceCommands for NovoCommands {
         write_restore(output, restore, &shown, &left, || {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
-            Ok(
-                result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(done) => plan::WriteSummary::of(output, *done)),
-            )
+            let written = result_of!(runner.run(Job::Commit(Box::new(agreed)))?, Came::Committed(written) => *written);
+            Ok(plan::WriteSummary::of(output, written))
         })
     }
     fn simulated(&self, output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
@@ -88,17 +86,11 @@ fn position(common: &Common, output: &Output, position: &Position) -> Result {
     if position.csv {
         output.print("position\n")?;
     }
-    readings(
-        &mut runner,
-        position,
-        || Job::Position,
-        |_, came| {
-            let came = came.map_err(|error| Ended::<Novo>::Job(error).into_failure())?;
-            let (_, position) = result_of!(came, Came::Position(sample) => sample);
-            output.show(&json!({ "position": position }), &format!("{position}\n"))?;
-            Ok(true)
-        },
-    )
+    let job = || Job::Position;
+    readings(&mut runner, position, job, |came| {
+        let (_, position) = result_of!(came, Came::Position(sample) => sample);
+        output.show(&json!({ "position": position }), &format!("{position}\n"))
+    })
 }
 
 fn save(common: &Common, output: &Output, save: &Save) -> Result {
@@ -116,7 +108,5 @@ fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::PlanReport {
         let (old, new) = (Some(op.from.to_string()), Some(op.to.to_string()));
         plan::Step { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
     };
-    let text = plan::text(plan, plan::lines(plan.ops.iter().map(step)), *seen, Some(LIFE));
-    let operations = plan.ops.iter().map(|op| step(op).json()).collect();
-    plan::PlanReport { operations, text, write_cycles: plan.write_cycles() }
+    plan::PlanReport::of(plan, plan.ops.iter().map(step).collect(), *seen, Some(LIFE))
 }

@@ -98,8 +98,7 @@ pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Novo>, OpenErr
 }
 
 pub(crate) fn device_key(serial: u16, is_virtual: bool) -> DeviceKey {
-    let (kind, device_type) = (KIND.to_owned(), "N1".to_owned());
-    DeviceKey { kind, device_type, serial_number: serial.to_string(), is_virtual }
+    DeviceKey::of(KIND, "N1", &serial.to_string(), is_virtual)
 }
 
 impl Novo {

@@ -5,7 +5,7 @@ use encoder_studio::expected::Quantity;
 use encoder_studio::parameter::{Maybe, Whole};
 use encoder_studio::parameters;
 use encoder_studio::sim::{ByteDevice, ConfigError, RPM, VirtualDevice, setting};
-use encoder_studio::units::{CharacterFormat, Moment};
+use encoder_studio::units::Moment;
 
 use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
 
@@ -69,15 +69,9 @@ impl ByteDevice for Virtual {
     fn poll_at(&self) -> Option<Moment> {
         (!self.answers.is_empty()).then_some(Moment::START)
     }
-    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
-
     fn connect(&mut self, _now: Moment) {
         (self.asked, self.answers) = (vec![], vec![]);
     }
 }
 
-impl Simulated for Virtual {
-    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
-        None
-    }
-}
+impl Simulated for Virtual {}

@@ -8,7 +8,6 @@ use encoder_studio::app::{
     ActContext, Catalogue, DeviceAction, DeviceMemory, DeviceModel, EditBase, Edits, JobEnd, Opened, PendingEdits,
     Recording, Services, Tab, Text,
 };
-use encoder_studio::link::TraceEntry;
 use encoder_studio::profile::Body;
 
 use super::jobs::{Error, Job, JobError, Novo, Output, Sample};
@@ -116,9 +115,6 @@ impl HasSession for Encoder {
 impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.see(&samples, dropped);
-    }
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
-        self.session.trace.add(frames, missed, |_| Vec::new());
     }
     fn remarked(&mut self, remark: Infallible, _: &mut Services) {
         match remark {}

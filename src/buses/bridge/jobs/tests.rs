@@ -229,8 +229,6 @@ impl ByteDevice for Puppet {
         None
     }
 
-    fn set_host_format(&mut self, _: Moment, _: CharacterFormat) {}
-
     fn connect(&mut self, _: Moment) {}
 }
 

@@ -9,7 +9,7 @@ use super::words;
 use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Position};
 use crate::cli::output::{Lines, Output, say};
-use crate::cli::positions::readings;
+use crate::cli::positions::try_readings;
 use crate::cli::runner::{Ended, unexpected};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
@@ -157,7 +157,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         output.print("t_s,raw,turns,steps,degrees,valid,warning\n")?;
     }
     let (mut wrong, mut good_at) = (0, Instant::now());
-    let ended = readings(
+    let ended = try_readings(
         &mut runner,
         position,
         || BissJob::Position,

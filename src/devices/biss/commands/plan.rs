@@ -11,7 +11,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{self, PlanReport, Step, WriteSummary, warn};
+use crate::cli::plan::{PlanReport, Step, WriteSummary, warn};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
 use crate::devices::biss::procedures::write::Written;
@@ -59,9 +59,7 @@ pub(super) fn commit(
 /// The plan for a person and for a script: each operation old → new, and what it costs.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
-    let lines = plan::lines(plan.ops.iter().flat_map(steps));
-    let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
-    PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+    PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
 /// The operations as JSON; registers that are saved together cost nothing by themselves.

@@ -256,10 +256,5 @@ impl From<PlanError> for JobError {
 /// id.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     let (manufacturer, device) = (hex_compact(&identity.kind.manufacturer), hex_compact(&identity.kind.device_id));
-    DeviceKey {
-        kind: KIND.to_owned(),
-        device_type: format!("{manufacturer}-{device}"),
-        serial_number: identity.serial_number.clone(),
-        is_virtual,
-    }
+    DeviceKey::of(KIND, &format!("{manufacturer}-{device}"), &identity.serial_number, is_virtual)
 }

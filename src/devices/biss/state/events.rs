@@ -3,6 +3,7 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::words;
+use crate::app::Explained;
 use crate::app::review::{Review, told};
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory, first};
@@ -77,9 +78,8 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
-        let meaning = &mut self.meaning;
-        self.session.trace.add(frames, missed, |entry| meaning.of(entry));
+    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+        self.meaning.of(frame)
     }
 
     fn progressed(&mut self, what: JobStep) {

@@ -8,8 +8,7 @@ use crate::cli::Result;
 use crate::cli::args::{Common, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
-use crate::cli::runner::Ended;
-use crate::devices::hiperdrive::jobs::{Hiperdrive, HiperdriveJob, HiperdriveOutput};
+use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::Reading;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, PositionScale, StatusBit, Value};
 use crate::devices::hiperdrive::state::explain as explained;
@@ -24,21 +23,12 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,valid\n")?;
     }
-    readings(
-        &mut runner,
-        position,
-        || HiperdriveJob::Position(drive),
-        |_, came| {
-            let reading = result_of!(came.map_err(|error| Ended::<Hiperdrive>::Job(error).into_failure())?, HiperdriveOutput::Position(reading) => reading);
-            let place = scale.map(|scale| TurnPosition::of(reading.actual.position, scale));
-            if position.csv {
-                output.print(&row(&reading, place))?;
-            } else {
-                show(output, &reading, place)?;
-            }
-            Ok(true)
-        },
-    )
+    let job = || HiperdriveJob::Position(drive);
+    readings(&mut runner, position, job, |came| {
+        let reading = result_of!(came, HiperdriveOutput::Position(reading) => reading);
+        let place = scale.map(|scale| TurnPosition::of(reading.actual.position, scale));
+        if position.csv { output.print(&row(&reading, place)) } else { show(output, &reading, place) }
+    })
 }
 
 /// A part of the scale.

@@ -8,7 +8,6 @@ use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::sim::{Config, Target};
 use crate::sim::DatagramDevice;
-use crate::units::{CharacterFormat, Moment};
 
 pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
@@ -24,11 +23,6 @@ pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn
 }
 
 impl Simulated for Target {
-    /// There is no serial line.
-    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
-        None
-    }
-
     /// A target has several originators at once.
     fn another(&self, peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection(peer)))

@@ -201,10 +201,5 @@ impl From<PlanError> for JobError {
 /// Returns the key of a device for backups and the logbook: saves are those of the adapter or hub, whatever is plugged
 /// into it.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    DeviceKey {
-        kind: KIND.to_owned(),
-        device_type: identity.category.clone(),
-        serial_number: identity.serial_number.clone(),
-        is_virtual,
-    }
+    DeviceKey::of(KIND, &identity.category, &identity.serial_number, is_virtual)
 }

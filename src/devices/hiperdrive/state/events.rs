@@ -6,6 +6,7 @@ use super::drafts::Edits;
 use super::job;
 use super::review::ReviewState;
 use super::unit::Unit;
+use crate::app::Explained;
 use crate::app::review::{Review, told};
 use crate::app::services::Services;
 use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory};
@@ -171,8 +172,8 @@ impl SessionEvents for Unit {
         }
     }
 
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
-        self.session.trace.add(frames, missed, super::trace::meaning);
+    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+        super::trace::meaning(frame)
     }
 
     /// Takes what has come over the line since the last time, and keeps alive what pictures keep alive.

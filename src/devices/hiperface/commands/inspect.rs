@@ -9,7 +9,7 @@ use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Find, Position};
 use crate::cli::consent::can_ask;
 use crate::cli::output::{Lines, Output};
-use crate::cli::positions::readings;
+use crate::cli::positions::try_readings;
 use crate::cli::runner::{Ended, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::{Runner, codes_met};
@@ -206,7 +206,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     // A code that the encoder announced while it was identified is about this position too.
     let mut codes_before = codes_met(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
-    readings(&mut runner, position, job, |runner, came| {
+    try_readings(&mut runner, position, job, |runner, came| {
         show(runner, output, came, table.as_ref(), &mut codes_before).map(|()| true)
     })
 }

@@ -23,12 +23,8 @@ pub(super) fn commit(
 
 /// Returns the key of an encoder for backups and the logbook.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
-    DeviceKey {
-        kind: KIND.to_owned(),
-        device_type: format!("{:02X}h", identity.label.encoder_type),
-        serial_number: identity.serial.serial_number.clone(),
-        is_virtual,
-    }
+    let device_type = format!("{:02X}h", identity.label.encoder_type);
+    DeviceKey::of(KIND, &device_type, &identity.serial.serial_number, is_virtual)
 }
 
 impl Planned for Prepared {

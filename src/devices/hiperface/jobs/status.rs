@@ -44,8 +44,7 @@ pub(super) fn keep(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
 
 /// An encoder that did not tell who it is.
 pub(super) fn unknown_device(is_virtual: bool) -> DeviceKey {
-    let (device_type, serial_number) = (String::new(), String::new());
-    DeviceKey { kind: KIND.to_owned(), device_type, serial_number, is_virtual }
+    DeviceKey::of(KIND, "", "", is_virtual)
 }
 
 #[cfg(test)]

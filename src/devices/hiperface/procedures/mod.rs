@@ -29,7 +29,7 @@ pub use position::{
 pub use reset::{change_line_for_now, reset};
 pub use rest::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
-pub use station::{AccessCodes, Codes, LinkParameters, Station};
+pub use station::{AccessCodes, Codes, LinkParameters, MOST_PERIODS, Station};
 
 use survey::{Reading, look_around};
 pub use survey::{Survey, survey};

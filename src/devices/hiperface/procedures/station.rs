@@ -212,7 +212,7 @@ fn read_timeout(text: &str) -> Option<bool> {
 }
 
 /// 32 steps a period in a word of 32 bits.
-const MOST_PERIODS: u32 = 1 << 27;
+pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
     number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))

@@ -14,6 +14,12 @@ impl DeviceAddress {
     /// 40h, the factory setting.
     pub const FACTORY: DeviceAddress = DeviceAddress(0x40);
 
+    /// 40h, the lowest.
+    pub const FIRST: DeviceAddress = DeviceAddress(0x40);
+
+    /// 5Fh, the highest.
+    pub const LAST: DeviceAddress = DeviceAddress(0x5F);
+
     /// An address byte 40h…5Fh; `None` for any other.
     pub const fn new(byte: u8) -> Option<Self> {
         if byte & 0xE0 == 0x40 { Some(DeviceAddress(byte)) } else { None }
@@ -21,7 +27,7 @@ impl DeviceAddress {
 
     /// All 32 addresses, 40h first.
     pub fn all() -> impl Iterator<Item = DeviceAddress> {
-        (0x40..=0x5F).map(DeviceAddress)
+        (Self::FIRST.0..=Self::LAST.0).map(DeviceAddress)
     }
 
     /// The byte on the line.

@@ -18,7 +18,7 @@ parameters! {
         pub(super) model: Model = usual_model(), "model" => Models;
         pub(super) encoder_type: Option<u8> = None, "type" => Maybe(Checked(Expected::TypeByte, number::<u8>));
         pub(super) serial_number: Option<String> = None, "serial" => Maybe(Checked(Expected::SerialNumber, serial));
-        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => Checked(Expected::BusAddress { last: 0x5F }, address);
+        pub(super) address: DeviceAddress = DeviceAddress::FACTORY, "address" => Checked(Expected::BusAddress { last: DeviceAddress::LAST.byte() }, address);
         pub(super) settings: LineSettings = LineSettings::FACTORY,
             "settings" => Checked(Expected::SettingsByte, settings);
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
@@ -82,7 +82,7 @@ impl Config {
             let allowed = Expected::range(Quantity::Position, 0, range - 1);
             return Err(Refused::new("position", position, allowed).into());
         }
-        let last_first = 0x5F - (self.encoders - 1);
+        let last_first = DeviceAddress::LAST.byte() - (self.encoders - 1);
         if self.address.byte() > last_first {
             let allowed = Expected::FirstAddress { last: last_first };
             let address = format!("{:#04X}", self.address.byte());

@@ -9,10 +9,11 @@ use crate::app::connect::form::FormModel;
 use crate::app::connect::parameters::{Parameters, without_entry};
 use crate::app::connect::target::{entered, filled, host_and_port, parted, refused};
 use crate::devices::hiperface::jobs::check;
-use crate::devices::hiperface::procedures::{Echo, LinkParameters, Station};
+use crate::devices::hiperface::procedures::{Echo, LinkParameters, MOST_PERIODS, Station};
 use crate::devices::hiperface::protocol::{BROADCAST, DeviceAddress};
 use crate::devices::hiperface::sim::{Config, MODELS};
 use crate::devices::hiperface::state::TEXTS;
+use crate::devices::hiperface::state::forms::with_addresses;
 use crate::link::{LinkUrl, Query, Scheme, UrlError};
 use crate::sim::ConfigError;
 use crate::units::{Baud, CharacterFormat, Parity};
@@ -227,7 +228,7 @@ impl LinkForm {
         }
         let digits = entry.strip_prefix("0x").or_else(|| entry.strip_prefix("0X")).unwrap_or(entry);
         let digits = digits.strip_suffix(['h', 'H']).unwrap_or(digits);
-        u8::from_str_radix(digits, 16).map_err(|_| TEXTS.text("form.address").with("value", entry))
+        u8::from_str_radix(digits, 16).map_err(|_| with_addresses(TEXTS.text("form.address")).with("value", entry))
     }
 
     fn refused(&self, url: &LinkUrl, error: &OpenError) -> Text {
@@ -240,7 +241,7 @@ impl LinkForm {
             "address" => {
                 let of_the_virtual = matches!(error, OpenError::Sim(_));
                 let id = if of_the_virtual { "form.address_virtual" } else { "form.address" };
-                return TEXTS.text(id).with("value", self.address.trim());
+                return with_addresses(TEXTS.text(id)).with("value", self.address.trim());
             }
             "model" => {
                 let models = Self::models().collect::<Vec<_>>().join(", ");
@@ -251,7 +252,7 @@ impl LinkForm {
             "turns" => "form.turns",
             _ => return refused(url, error),
         };
-        TEXTS.text(id).with("value", value)
+        TEXTS.text(id).with("value", value).with("most", MOST_PERIODS)
     }
 }
 

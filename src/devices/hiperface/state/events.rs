@@ -4,6 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::review::Review;
 use super::words;
+use crate::app::Explained;
 use crate::app::review::told;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, SessionEvents, Source, WithMemory, first};
@@ -174,9 +175,8 @@ impl SessionEvents for Encoder {
         self.add_samples(samples, dropped);
     }
 
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
-        let meaning = &mut self.meaning;
-        self.session.trace.add(frames, missed, |entry| meaning.of(entry));
+    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+        self.meaning.of(frame)
     }
 
     fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {

@@ -30,7 +30,15 @@ pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
 /// # Errors
 /// In words.
 pub fn address(text: &str) -> Result<DeviceAddress, Text> {
-    byte(text).and_then(DeviceAddress::new).ok_or_else(|| TEXTS.text("entry.address").with("entry", text))
+    byte(text)
+        .and_then(DeviceAddress::new)
+        .ok_or_else(|| with_addresses(TEXTS.text("entry.address")).with("entry", text))
+}
+
+/// Adds the first and the last address of an encoder, in hexadecimal.
+pub(super) fn with_addresses(text: Text) -> Text {
+    let [first, last] = [DeviceAddress::FIRST, DeviceAddress::LAST].map(|own| format!("{:02X}", own.byte()));
+    text.with("first", first).with("last", last)
 }
 
 /// An analogue channel in hexadecimal.

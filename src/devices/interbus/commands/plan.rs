@@ -7,7 +7,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{self, PlanReport, Step, WriteSummary};
+use crate::cli::plan::{PlanReport, Step, WriteSummary};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
@@ -69,9 +69,7 @@ pub(super) fn commit(
 /// The plan for a person and for a script: each item old → new, and what it costs.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
-    let lines = plan::lines(plan.ops.iter().flat_map(steps));
-    let text = plan::text(plan, lines, prepared.cycles_seen, Some(WEAR_LIMIT));
-    PlanReport { operations: operations(plan), text, write_cycles: plan.write_cycles() }
+    PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
 /// The operations as JSON; what is stored together costs nothing by itself.

@@ -9,8 +9,7 @@ use crate::cli::Result;
 use crate::cli::args::{Common, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
-use crate::cli::runner::Ended;
-use crate::devices::interbus::jobs::{Interbus, InterbusJob, InterbusOutput};
+use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
 use crate::devices::interbus::procedures::Reading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::result_of;
@@ -27,20 +26,11 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,valid\n")?;
     }
-    readings(
-        &mut runner,
-        position,
-        || InterbusJob::Position,
-        |_, came| {
-            let reading = result_of!(came.map_err(|error| Ended::<Interbus>::Job(error).into_failure())?, InterbusOutput::Position(reading) => reading);
-            if position.csv {
-                output.print(&row(&reading))?;
-            } else {
-                show(output, &reading)?;
-            }
-            Ok(true)
-        },
-    )
+    let job = || InterbusJob::Position;
+    readings(&mut runner, position, job, |came| {
+        let reading = result_of!(came, InterbusOutput::Position(reading) => reading);
+        if position.csv { output.print(&row(&reading)) } else { show(output, &reading) }
+    })
 }
 
 fn show(output: &Output, reading: &Reading) -> Result<()> {

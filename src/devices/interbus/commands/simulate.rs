@@ -7,7 +7,6 @@ use crate::cli::output::Output;
 use crate::cli::simulate::{Simulated, settings};
 use crate::cli::{Failure, Result};
 use crate::devices::interbus::sim::{Config, Gateway};
-use crate::units::{CharacterFormat, Moment};
 
 pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.pty.is_some() {
@@ -25,11 +24,6 @@ pub(super) fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn
 }
 
 impl Simulated for Gateway {
-    /// There is no serial line.
-    fn format(&self, _now: Moment) -> Option<CharacterFormat> {
-        None
-    }
-
     /// A gateway has several masters at once.
     fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         Some(Box::new(self.connection()))

@@ -236,8 +236,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
 
 /// The same by the serial number alone.
 pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
-    let serial_number = serial_number.to_owned();
-    DeviceKey { kind: KIND.to_owned(), device_type: "K3".to_owned(), serial_number, is_virtual }
+    DeviceKey::of(KIND, "K3", serial_number, is_virtual)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::frame::{self, Exception, Registers};
 use super::registers::{Encoders, Map};
 use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, Faults, Motor};
-use crate::units::{CharacterFormat, Moment};
+use crate::units::Moment;
 
 /// A client's connection to a virtual gateway. Made of a [`Config`]; [`connection`](Self::connection) gives another
 /// client's.
@@ -155,9 +155,6 @@ impl ByteDevice for Gateway {
     fn poll_at(&self) -> Option<Moment> {
         self.to_host.due()
     }
-
-    /// There is no serial line.
-    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
     /// Connects a client: replies to another connection are dropped; encoders that lost their power get it back.
     fn connect(&mut self, now: Moment) {

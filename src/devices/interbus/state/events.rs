@@ -3,6 +3,7 @@
 use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::job;
+use crate::app::Explained;
 use crate::app::review::{Review, told};
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, Saved, SessionEvents, WithMemory};
@@ -81,10 +82,9 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
+    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
         self.trace.shift = self.shift();
-        let trace = &mut self.trace;
-        self.session.trace.add(frames, missed, |entry| trace.of(entry));
+        self.trace.of(frame)
     }
 
     fn remarked(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {

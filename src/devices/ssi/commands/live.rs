@@ -10,9 +10,8 @@ use crate::analysis::Time;
 use crate::cli::args::{Common, Position, Status};
 use crate::cli::output::{Lines, Output, count, say};
 use crate::cli::positions::readings;
-use crate::cli::runner::Ended;
 use crate::cli::{Done, Failure, Result};
-use crate::devices::ssi::jobs::{Ssi, SsiJob};
+use crate::devices::ssi::jobs::SsiJob;
 use crate::devices::ssi::protocol::{Finding, Layout, Location, Meaning, Tally};
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
@@ -34,28 +33,23 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     }
     let mut tally = Tally::default();
     let mut first = None;
-    let ended = readings(
-        &mut runner,
-        position,
-        || SsiJob::Read,
-        |_, came| {
-            let came = came.map_err(|error| Ended::<Ssi>::Job(error).into_failure())?;
-            for (at, word) in words(came)?.timed() {
-                let told = DecodedFrame::new(&chosen.layout, word);
-                let first = *first.get_or_insert(Time::from(at));
-                let begun = tally.note(&chosen.layout, told.reading, at.into());
-                for finding in begun.iter().filter(|one| is_told(one, first == at.into())) {
-                    say(&format!("{}: {}\n", seconds(at.into()), explained::finding(finding).terminal()));
-                }
-                if position.csv {
-                    output.print(&row(at, &told))?;
-                } else {
-                    show(output, at, &told)?;
-                }
+    let job = || SsiJob::Read;
+    let ended = readings(&mut runner, position, job, |came| {
+        for (at, word) in words(came)?.timed() {
+            let told = DecodedFrame::new(&chosen.layout, word);
+            let first = *first.get_or_insert(Time::from(at));
+            let begun = tally.note(&chosen.layout, told.reading, at.into());
+            for finding in begun.iter().filter(|one| is_told(one, first == at.into())) {
+                say(&format!("{}: {}\n", seconds(at.into()), explained::finding(finding).terminal()));
             }
-            Ok(true)
-        },
-    );
+            if position.csv {
+                output.print(&row(at, &told))?;
+            } else {
+                show(output, at, &told)?;
+            }
+        }
+        Ok(())
+    });
     for noted in tally.noted().iter().filter(|noted| is_told(&noted.finding, Some(noted.first) == first)) {
         let times = count(usize::try_from(noted.count).unwrap_or(usize::MAX), "time");
         say(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));

@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use super::drafts::Drafts;
 use super::encoder::Encoder;
 use super::{trace, words};
+use crate::app::Explained;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Kind, SessionEvents};
 use crate::app::{Severity, Text};
@@ -93,8 +94,8 @@ impl SessionEvents for Encoder {
         self.record.add(samples, dropped);
     }
 
-    fn passed(&mut self, frames: Vec<TraceEntry>, missed: u64) {
-        self.session.trace.add(frames, missed, trace::meaning);
+    fn meaning_of(&mut self, frame: &TraceEntry) -> Explained {
+        trace::meaning(frame)
     }
 
     fn pump(&mut self, services: &mut Services) {

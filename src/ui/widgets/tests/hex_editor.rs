@@ -82,7 +82,7 @@ fn digits_overwrite_nibble_by_nibble() {
 fn what_is_no_digit_is_told_until_the_next_key() {
     let mut harness = editor(64, None);
     type_in(&mut harness, "g");
-    harness.get_by_label_contains("“g” is not a hexadecimal digit");
+    harness.get_by_label_contains("\"g\" is not a hexadecimal digit");
     press(&mut harness, &[(NONE, Key::ArrowRight)]);
     assert!(harness.query_by_label_contains("not a hexadecimal digit").is_none());
     assert!(harness.state().edits.is_empty());
@@ -141,8 +141,8 @@ fn hex_is_pasted_where_it_fits() {
     let cases = [
         ("0x41, 42\n43", "", Some(put(0, b"ABC"))),
         ("4142 4", "", Some(put(0, &[0x41, 0x42, 4]))),
-        ("41 4G", "“G” is not a hexadecimal digit", None),
-        ("414", "“414” has an odd number of digits", None),
+        ("41 4G", "\"G\" is not a hexadecimal digit", None),
+        ("414", "\"414\" has an odd number of digits", None),
         ("", "no bytes", None),
     ];
     for (text, problem, edit) in cases {
@@ -170,7 +170,7 @@ fn text_is_typed_and_copied_in_its_column() {
     type_in(&mut harness, "Hi");
     assert_eq!(harness.state().edits, [put(0, b"Hi")]);
     type_in(&mut harness, "ä");
-    harness.get_by_label_contains("“ä” is not an ASCII character");
+    harness.get_by_label_contains("\"ä\" is not an ASCII character");
     harness.state_mut().view.select(0..3);
     for (expected, key) in [("Hi·", SHIFT), ("48 69 02", NONE)] {
         harness.event(Event::Copy);

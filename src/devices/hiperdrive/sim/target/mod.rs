@@ -32,7 +32,7 @@ use super::station::Station;
 use crate::buses::ethernet_ip::protocol::Receiver;
 use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, DatagramDevice, Faults};
-use crate::units::{CharacterFormat, Moment};
+use crate::units::Moment;
 
 /// A TCP connection to a virtual adapter or hub, and the datagrams of all of them. Made of a [`Config`];
 /// [`connection`](Self::connection) gives another originator's, and so does a clone.
@@ -162,9 +162,6 @@ impl ByteDevice for Target {
     fn poll_at(&self) -> Option<Moment> {
         self.to_host.due()
     }
-
-    /// There is no serial line.
-    fn set_host_format(&mut self, _now: Moment, _format: CharacterFormat) {}
 
     fn connect(&mut self, now: Moment) {
         (self.receiver, self.to_host, self.ended) = (Receiver::default(), Queue::default(), false);
