@@ -1,69 +1,100 @@
-//! Edits outlive a crash: they are on disk as they are made, and come back with their encoder or profile.
+//! Edits outlive a crash: they are on disk as they are made, and come back with their device or profile. The invented kind
+//! stands for all; what needs a type, or a device without a serial number, is told with HIPERFACE.
 
-use crate::tabs::Tabs as _;
-use encoder_studio::app::DeviceCommand;
 use std::fs;
 
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, PendingEdits, Severity};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::app::{Action, DeviceCommand, Severity};
 
+use crate::each_kind::{NOVO, command, shown, until_ready, write};
+use crate::novo::state::Encoder;
 use crate::support::Desk;
+use crate::tabs::Tabs as _;
 
-const DRAFT: &str = "data/drafts/hiperface-virtual/37-GB0450179.ron";
+const DRAFT: &str = "data/drafts/novo-virtual/N1-1001.ron";
+
+/// With its virtual encoder, which is read.
+fn connected() -> Desk {
+    let mut desk = Desk::with_novo();
+    connect(&mut desk);
+    desk
+}
+
+/// The studio is gone without being closed, and starts again.
+fn crash(desk: Desk) -> Desk {
+    let mut desk = desk.crash();
+    connect(&mut desk);
+    desk
+}
+
+fn connect(desk: &mut Desk) {
+    desk.act(Action::ShowTab(crate::tabs::NOVEL));
+    desk.open("sim:");
+    until_ready(desk);
+}
+
+fn edits(desk: &Desk) -> usize {
+    shown(&desk.studio).unwrap().edits()
+}
+
+/// The value that [`NOVO`] edits first.
+fn value(desk: &Desk) -> u16 {
+    shown(&desk.studio).unwrap().get::<Encoder>().unwrap().wanted().unwrap()[1]
+}
+
+fn until_kept(desk: &mut Desk) {
+    let path = desk.outside.path(DRAFT);
+    desk.until("the draft is kept", |_| path.exists());
+}
 
 #[test]
 fn edits_taken_back_are_no_draft() {
-    let mut desk = Desk::begun("");
+    let mut desk = connected();
     let path = desk.outside.path(DRAFT);
-    desk.put(0, 0, b"X");
-    desk.until("the draft is kept", |_| path.exists());
-    desk.command(DeviceCommand::RevertAll);
+    NOVO.edit(&mut desk, &[7]);
+    until_kept(&mut desk);
+    command(&mut desk, DeviceCommand::RevertAll);
     desk.until("the draft is gone", |_| !path.exists());
-    desk.command(DeviceCommand::Undo);
-    desk.until("the draft is kept", |_| path.exists());
+    command(&mut desk, DeviceCommand::Undo);
+    until_kept(&mut desk);
 }
 
 #[test]
 fn a_draft_that_cannot_be_read_is_told() {
-    let desk = Desk::begun("");
+    let desk = connected();
     let path = desk.outside.path(DRAFT);
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     fs::write(&path, "(no draft").unwrap();
-    let mut desk = desk.crash();
-    desk.studio.begin(None, None);
-    desk.until_read();
+    let desk = crash(desk);
     assert_eq!(desk.told(Severity::Warning), ["session.draft_broken"]);
-    assert!(desk.edits().is_empty());
+    assert_eq!(edits(&desk), 0);
 }
 
 #[test]
 fn a_draft_that_cannot_be_kept_is_told_once() {
-    let mut desk = Desk::begun("");
+    let mut desk = connected();
     fs::create_dir_all(desk.outside.path("data")).unwrap();
     fs::write(desk.outside.path("data/drafts"), "a file in the way").unwrap();
-    for byte in [1, 2, 3] {
-        desk.put(0, 0, &[byte]);
+    for byte in [1, 2, 4] {
+        NOVO.edit(&mut desk, &[byte]);
         desk.until("it is told", |studio| studio.services.log.standing().is_some());
         desk.settle();
     }
     assert_eq!(desk.told(Severity::Warning), ["session.draft_not_kept"]);
-    desk.write();
-    assert_eq!(desk.wire().field(0)[0], 3);
+    write(&mut desk);
+    assert_eq!(value(&desk), 4);
 }
 
 /// The notice of edits that came back is over once they are written; the result stands in the review and in the log.
 #[test]
 fn a_write_ends_the_notice_of_edits_that_came_back() {
-    let mut desk = Desk::begun("");
-    desk.put(0, 0, b"X");
-    desk.until_kept();
-    let mut desk = desk.crash();
-    desk.studio.begin(None, None);
+    let mut desk = connected();
+    NOVO.edit(&mut desk, &[7]);
+    until_kept(&mut desk);
+    let mut desk = crash(desk);
     desk.until("it is told", |studio| studio.services.log.standing().is_some());
     assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
-    desk.until_read();
-    desk.write();
+    write(&mut desk);
     assert!(desk.studio.services.log.standing().is_none());
     assert_eq!(desk.times_told("session.written"), 1);
 }
@@ -71,49 +102,50 @@ fn a_write_ends_the_notice_of_edits_that_came_back() {
 /// What was edited for a profile belongs to that file.
 #[test]
 fn the_draft_of_a_profile_ends_where_it_is_saved() {
-    let mut desk = Desk::begun("");
+    let mut desk = connected();
     let path = desk.outside.path("mine.ron");
-    desk.ask(Hiperface::Save(path.clone()));
-    desk.until("it is saved", |_| path.exists());
+    NOVO.save(&mut desk, &path);
     desk.act(Action::Open(path.clone()));
-    desk.until("it is open", |studio| studio.hiperface().unwrap().session.phase == Phase::Offline);
+    desk.until("it is open", |studio| *shown(studio).unwrap().phase() == Phase::Offline);
     desk.settle();
-    desk.put(0, 0, b"X");
-    desk.until_kept();
+    NOVO.edit(&mut desk, &[7]);
+    let drafts = desk.outside.path("data/drafts/novo-files");
+    let kept = |folder: &std::path::Path| {
+        let files = fs::read_dir(folder).into_iter().flatten().map(|file| file.unwrap().path());
+        files.filter(|path| path.extension().is_some_and(|own| own == "ron")).count()
+    };
+    desk.until("the edit is kept", |_| kept(&drafts) == 1);
 
     let mut desk = desk.crash();
     desk.studio.begin(None, Some(path.clone()));
-    desk.until("the edit is back", |studio| studio.hiperface().is_some_and(|own| own.staged.is_dirty()));
+    desk.until("the edit is back", |studio| shown(studio).is_some_and(|own| own.edits() == 1));
     let other = desk.outside.path("other.ron");
-    desk.ask(Hiperface::Save(other.clone()));
-    desk.until("it is saved", |studio| !studio.hiperface().unwrap().staged.is_dirty());
-    let drafts = desk.outside.path("data/drafts/hiperface-files");
+    NOVO.save(&mut desk, &other);
+    desk.until("it is saved", |studio| shown(studio).unwrap().edits() == 0);
     desk.until("there is no draft", |_| fs::read_dir(&drafts).unwrap().count() == 0);
-    for (path, first) in [(path, b'E'), (other, b'X')] {
+    for (path, expected) in [(path, 3), (other, 7)] {
         desk = desk.crash();
         desk.studio.begin(None, Some(path));
-        desk.until("it is open", |studio| studio.hiperface().is_some());
+        desk.until("it is open", |studio| shown(studio).is_some());
         desk.settle();
-        assert_eq!(desk.encoder().staged.byte(0, 0), Some(first));
-        assert!(desk.edits().is_empty());
+        assert_eq!((value(&desk), edits(&desk)), (expected, 0));
     }
 }
 
 /// A second window with the same encoder neither takes nor overwrites what the first one keeps.
 #[test]
 fn a_draft_has_one_owner() {
-    let mut desk = Desk::begun("");
-    desk.put(0, 0, b"X");
-    desk.until_kept();
+    let mut desk = connected();
+    NOVO.edit(&mut desk, &[7]);
+    until_kept(&mut desk);
     let first = std::mem::replace(&mut desk.studio, desk.outside.studio());
-    desk.studio.begin(None, None);
+    connect(&mut desk);
     desk.until("it is told", |studio| {
         studio.services.log.notices().any(|own| own.texts[0].id() == "session.draft_elsewhere")
     });
-    desk.until_ready();
-    assert!(desk.edits().is_empty());
+    assert_eq!(edits(&desk), 0);
     let draft = fs::read_to_string(desk.outside.path(DRAFT)).unwrap();
-    desk.put(0, 1, b"YZ");
+    NOVO.edit(&mut desk, &[8, 9]);
     desk.settle();
     assert_eq!(fs::read_to_string(desk.outside.path(DRAFT)).unwrap(), draft);
     assert_eq!(desk.times_told("session.draft_elsewhere"), 1);
@@ -121,10 +153,24 @@ fn a_draft_has_one_owner() {
     assert_eq!(desk.studio.question.as_ref().unwrap().text.id(), "question.session_lost", "they would not come back");
     desk.act(Action::Escape);
     drop(first);
-    let mut desk = desk.crash();
-    desk.studio.begin(None, None);
-    desk.until("the edit is back", |studio| studio.hiperface().unwrap().staged.is_dirty());
-    assert_eq!(desk.edits(), [(0, 0, b'X')]);
+    let desk = crash(desk);
+    assert_eq!((value(&desk), edits(&desk)), (7, 1));
+}
+
+#[cfg(unix)]
+#[test]
+fn two_ways_to_a_file_lead_to_one_session() {
+    let mut desk = connected();
+    let path = desk.outside.path("mine.ron");
+    NOVO.save(&mut desk, &path);
+    let other = desk.outside.path("other.ron");
+    std::os::unix::fs::symlink(&path, &other).unwrap();
+    for path in [path, other] {
+        desk.act(Action::Open(path.clone()));
+        assert_eq!(desk.studio.opening_files(), [path]);
+        desk.until("it is open", |studio| studio.opening_files().is_empty());
+    }
+    assert_eq!(desk.studio.devices().len(), 2);
 }
 
 #[test]
@@ -176,21 +222,4 @@ fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
     replug(&mut desk, Some("serial= "));
     assert!(desk.edits().is_empty());
     assert_eq!(desk.times_told("session.edits_gone"), 1);
-}
-
-#[cfg(unix)]
-#[test]
-fn two_ways_to_a_file_lead_to_one_session() {
-    let mut desk = Desk::begun("");
-    let path = desk.outside.path("mine.ron");
-    desk.ask(Hiperface::Save(path.clone()));
-    desk.until("it is saved", |_| path.exists());
-    let other = desk.outside.path("other.ron");
-    std::os::unix::fs::symlink(&path, &other).unwrap();
-    for path in [path, other] {
-        desk.act(Action::Open(path.clone()));
-        assert_eq!(desk.studio.opening_files(), [path]);
-        desk.until("it is open", |studio| studio.opening_files().is_empty());
-    }
-    assert_eq!(desk.studio.devices().len(), 2);
 }

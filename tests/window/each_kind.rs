@@ -24,7 +24,7 @@ use crate::support::{ADAPTER, DRIVE, Desk, GATE, KIT, NOVO_PORT, PORT};
 use crate::wire::Wire;
 
 /// A kind of device at a cable.
-struct Case {
+pub(crate) struct Case {
     tab: Tab,
     scheme: &'static str,
     port: &'static str,
@@ -48,10 +48,14 @@ const CASES: [Case; 5] = [
     Case { tab: crate::tabs::BISS, scheme: "serial", port: KIT, writes: 0x02, reads: 0x01, other: "serial=42" },
     // The preset is a parameter of code 4, in bits 28 to 25 of its word; function 4 reads a word.
     Case { tab: crate::tabs::INTERBUS, scheme: "modbus", port: GATE, writes: 0x08, reads: 4, other: "serial=42" },
-    Case { tab: crate::tabs::NOVEL, scheme: "serial", port: NOVO_PORT, writes: b'W', reads: b'R', other: "serial=42" },
+    NOVO,
     // Services that set and get an attribute.
     Case { tab: crate::tabs::HIPERDRIVE, scheme: "enip", port: DRIVE, writes: 0x10, reads: 0x0E, other: "serial=42" },
 ];
+
+/// The invented kind, which stands for all where one is enough.
+pub(crate) const NOVO: Case =
+    Case { tab: crate::tabs::NOVEL, scheme: "serial", port: NOVO_PORT, writes: b'W', reads: b'R', other: "serial=42" };
 
 impl Case {
     /// Its encoder is connected and read.
@@ -74,7 +78,7 @@ impl Case {
         until_ready(desk);
         self.stands(desk);
         if self.tab == crate::tabs::INTERBUS {
-            wish(desk, DeviceCommand::Read);
+            command(desk, DeviceCommand::Read);
             desk.until("it is read", |studio| studio.interbus().unwrap().survey.is_some());
             until_ready(desk);
         }
@@ -82,7 +86,7 @@ impl Case {
 
     /// Connects again, which tells nothing of whether the machine still stands.
     fn reconnect(&self, desk: &mut Desk) {
-        wish(desk, DeviceCommand::Reconnect);
+        command(desk, DeviceCommand::Reconnect);
         until_ready(desk);
         self.stands(desk);
     }
@@ -109,7 +113,7 @@ impl Case {
     }
 
     /// Edits the first bytes that can be edited.
-    fn edit(&self, desk: &mut Desk, bytes: &[u8]) {
+    pub(crate) fn edit(&self, desk: &mut Desk, bytes: &[u8]) {
         let id = shown(&desk.studio).unwrap().id();
         match self.tab {
             crate::tabs::BISS => {
@@ -147,7 +151,7 @@ impl Case {
 
 impl Case {
     /// Saves what the device keeps, as a profile.
-    fn save(&self, desk: &mut Desk, path: &Path) {
+    pub(crate) fn save(&self, desk: &mut Desk, path: &Path) {
         self.ask_to_save(desk, path);
         desk.until("it is saved", |_| path.exists());
     }
@@ -172,7 +176,7 @@ impl Case {
     }
 
     fn ask_to_save(&self, desk: &mut Desk, path: &Path) {
-        wish(desk, DeviceCommand::AskSave);
+        command(desk, DeviceCommand::AskSave);
         let question = desk.studio.take_file_question().unwrap();
         desk.act(Action::Chosen(question, path.to_path_buf()));
     }
@@ -194,12 +198,12 @@ fn compared(one: &Body, other: &Body) -> Comparison {
     one.compare(other).unwrap()
 }
 
-fn shown(studio: &Studio) -> Option<&AnyDevice> {
+pub(crate) fn shown(studio: &Studio) -> Option<&AnyDevice> {
     studio.shown()
 }
 
-fn wish(desk: &mut Desk, wish: DeviceCommand) {
-    let action = shown(&desk.studio).unwrap().command(wish);
+pub(crate) fn command(desk: &mut Desk, command: DeviceCommand) {
+    let action = shown(&desk.studio).unwrap().command(command);
     desk.act(action);
 }
 
@@ -209,7 +213,7 @@ fn review(desk: &mut Desk, action: ReviewAction) {
 }
 
 #[track_caller]
-fn until_ready(desk: &mut Desk) {
+pub(crate) fn until_ready(desk: &mut Desk) {
     desk.until("it is read", |studio| {
         // There are no backups of what is never written, nor of what may not be disturbed yet.
         let has_word = |own: &AnyDevice| {
@@ -241,7 +245,7 @@ fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
 /// Reviews what is edited: the plan.
 #[track_caller]
 fn planned(desk: &mut Desk) -> PlanId {
-    wish(desk, DeviceCommand::Review);
+    command(desk, DeviceCommand::Review);
     until_stage(desk, |stage| matches!(stage, Stage::Ready(_)));
     until_ready(desk);
     let Stage::Ready(plan) = shown(&desk.studio).unwrap().sheet().unwrap().stage else { panic!("no plan") };
@@ -249,7 +253,7 @@ fn planned(desk: &mut Desk) -> PlanId {
 }
 
 #[track_caller]
-fn write(desk: &mut Desk) {
+pub(crate) fn write(desk: &mut Desk) {
     let plan = planned(desk);
     review(desk, ReviewAction::Write(plan));
     until_stage(desk, |stage| matches!(stage, Stage::Done { .. }));
@@ -299,22 +303,22 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
         until_lost(&mut desk);
         assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
         case.edit(&mut desk, &[0x5A, 0x5B]);
-        wish(&mut desk, DeviceCommand::Review);
+        command(&mut desk, DeviceCommand::Review);
         assert_eq!(desk.times_told("session.not_connected"), 1);
-        wish(&mut desk, DeviceCommand::Reconnect);
+        command(&mut desk, DeviceCommand::Reconnect);
         until_lost(&mut desk);
         wire.plug();
         case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edits(), 2);
         // Another one is behind the same adapter now, and nobody has told us.
         wire.exchange(case.other);
-        wish(&mut desk, DeviceCommand::Review);
+        command(&mut desk, DeviceCommand::Review);
         desk.until("it is noticed", |studio| !shown(studio).unwrap().is_dirty());
         until_ready(&mut desk);
         assert_eq!(desk.times_told("session.other_encoder"), 1);
         assert!(!shown(&desk.studio).unwrap().is_reviewing());
         wire.exchange("");
-        wish(&mut desk, DeviceCommand::Read);
+        command(&mut desk, DeviceCommand::Read);
         desk.until("the edits are back", |studio| shown(studio).unwrap().edits() == 2);
         until_ready(&mut desk);
         write(&mut desk);
@@ -390,7 +394,7 @@ fn escape_stops_what_runs_before_it_closes_anything() {
         let mut desk = case.desk();
         let wire = case.wire(&desk);
         wire.hold_at(case.reads, 1);
-        wish(&mut desk, DeviceCommand::Read);
+        command(&mut desk, DeviceCommand::Read);
         desk.connect(Connect::Open);
         wire.wait_until_held();
         desk.act(Action::Escape);
@@ -473,7 +477,7 @@ fn another_type_of_device_needs_a_permit_of_its_own() {
         let text = std::fs::read_to_string(&path).unwrap();
         let old = text.lines().find(|line| line.trim().starts_with(&format!("{entry}: "))).unwrap();
         std::fs::write(&path, text.replacen(old, &format!("        {entry}: {value},"), 1)).unwrap();
-        wish(&mut desk, DeviceCommand::Restore(path));
+        command(&mut desk, DeviceCommand::Restore(path));
         until_stage(&mut desk, |stage| matches!(stage, Stage::Failed { .. }));
         until_ready(&mut desk);
         let sheet = shown(&desk.studio).unwrap().sheet().unwrap();
@@ -546,7 +550,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
                     }
                 }
             }
-            wish(&mut desk, DeviceCommand::RevertAll);
+            command(&mut desk, DeviceCommand::RevertAll);
             case.wire(&desk).plug();
             case.reconnect(&mut desk);
             desk.settle();
