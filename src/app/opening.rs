@@ -6,7 +6,7 @@ use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::given::Opener;
 use super::question::{Question, Then};
 use super::services::{JobEnd, Services, World};
-use super::session::{Kind, Opening, Phase, Source, without_codes};
+use super::session::{Kind, Opening, Phase, Source, without_secrets};
 use super::shutdown::same_wire;
 use super::studio::{SessionId, Studio};
 use super::tab::Tab;
@@ -165,7 +165,7 @@ impl Studio {
         match result {
             Ok(opened) => {
                 if let Source::Link(url) = device.source() {
-                    self.settings.use_link(device.tab(), &without_codes(url));
+                    self.settings.use_link(device.tab(), &without_secrets(url));
                 }
                 let taken = device.connect(opened, &mut self.services);
                 self.check_kind(taken, session);

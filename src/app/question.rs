@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::Text;
 use super::action::RecorderOwner;
 use super::file_question::FileQuestion;
-use super::session::{Saving, without_codes};
+use super::session::{Saving, without_secrets};
 use super::studio::SessionId;
 use super::tab::Tab;
 use crate::link::LinkUrl;
@@ -44,7 +44,7 @@ impl Question {
     /// Returns the question whether another master may be on the line behind a link.
     pub(crate) fn other_master(link: &LinkUrl, then: Then) -> Self {
         Question {
-            text: Text::new("question.drive").with("link", without_codes(link)),
+            text: Text::new("question.drive").with("link", without_secrets(link)),
             confirm: Text::new("question.no_drive"),
             decline: Text::new("question.maybe_drive"),
             then,

@@ -97,10 +97,13 @@ pub(crate) struct Opening {
     pub(crate) over: crossbeam_channel::Receiver<()>,
 }
 
-/// A link as it may be shown and kept: the access codes of a virtual encoder are no part of that.
-pub(in crate::app) fn without_codes(url: &LinkUrl) -> String {
+/// Parameters of links that are neither shown nor kept, whatever the kind of device: the access codes of a virtual encoder.
+const SECRETS: &[&str] = &["codes"];
+
+/// Returns a link as it may be shown and kept.
+pub(in crate::app) fn without_secrets(url: &LinkUrl) -> String {
     let query: Vec<String> =
-        url.query.without(&["codes"]).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
+        url.query.without(SECRETS).into_iter().map(|(name, value)| format!("{name}={value}")).collect();
     let question = if query.is_empty() { "" } else { "?" };
     format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::{Opening, Phase, Source, first, without_codes};
+use super::{Opening, Phase, Source, first, without_secrets};
 use crate::app::services::Services;
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
@@ -62,7 +62,7 @@ impl SessionState {
     /// Returns the source of the data, without secrets.
     pub fn place(&self) -> String {
         match &self.source {
-            Source::Link(url) => without_codes(url),
+            Source::Link(url) => without_secrets(url),
             Source::File { path, .. } => path.display().to_string(),
             Source::New { .. } => String::new(),
         }
@@ -76,14 +76,14 @@ impl SessionState {
             }
             (Source::Link(_) | Source::New { .. }, Some(title)) => title.clone(),
             (Source::New { suggested }, None) => suggested.display().to_string(),
-            (Source::Link(url), None) => without_codes(url),
+            (Source::Link(url), None) => without_secrets(url),
         }
     }
 
     /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
     pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
-        let texts = std::iter::once(Text::new("log.answers").with("link", without_codes(url))).chain(facts).collect();
+        let texts = std::iter::once(Text::new("log.answers").with("link", without_secrets(url))).chain(facts).collect();
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 

@@ -7,6 +7,9 @@ use std::time::Duration;
 
 use super::dead_man::{Lock, Permit};
 use super::rules::{GROUPS, Rules};
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, NO_TIMEOUT, NUMERATOR, TIMEOUT, UPPER,
+};
 use crate::devices::hiperdrive::protocol::{ParameterNumber, PositionScale, Topology, Variant};
 use crate::units::Moment;
 
@@ -34,13 +37,11 @@ pub struct LimitsSeen {
 
 /// How long a reading of the limits stays valid: longer than a slow device may take to answer for all of them.
 const VALID: Duration = Duration::from_secs(4);
-/// Parameter 186: a drive that hears nothing goes on.
-const NEVER: i64 = 255;
 
 /// A drive with this parameter 186 stops where it hears nothing any more: what the manual does not know proves nothing.
 pub(super) fn ends_by_itself(timeout: i64) -> bool {
-    let row = ParameterNumber::new(186).and_then(ParameterNumber::row);
-    timeout != NEVER && row.is_some_and(|row| row.range.holds(timeout))
+    let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
+    timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.holds(timeout))
 }
 
 impl DriveLimits {
@@ -170,7 +171,7 @@ impl Rules {
             let row = ParameterNumber::new(number).and_then(ParameterNumber::row)?;
             row.factory_value(topology, variant.row()?.family)
         };
-        let (scale, limits) = (factory(154).zip(factory(156)), factory(158).zip(factory(160)));
+        let (scale, limits) = (factory(NUMERATOR).zip(factory(DENOMINATOR)), factory(LOWER).zip(factory(UPPER)));
         scale.is_some() && limits.is_some() && (self.scale, self.limits) == (scale, limits)
     }
 }

@@ -10,7 +10,9 @@ use super::network::settings;
 use super::{Error, Identity, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration};
 use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, Item, NetworkSettings, Op, Service};
-use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    ACKNOWLEDGE, DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, UPPER,
+};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, ParameterNumber, State, StatusBit, StatusWord, nearest_reference,
 };
@@ -113,7 +115,7 @@ fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
 /// lie elsewhere, so a write must not end in between.
 fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
-        Op::Write { number, .. } if matches!(number.base(), 154 | 156 | 158 | 160) => number.drive(),
+        Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
         _ => None,
     };
     let (begun, left) = ops.split_at_checked(at).unwrap_or((ops, &[]));
@@ -147,8 +149,9 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
     if reads != rounded && reads != wanted {
         return Err(Error::NotTaken { number, wanted, reads });
     }
-    let number = of(107, drive)?;
-    let (numerator, denominator) = (master.read_number(of(154, drive)?)?, master.read_number(of(156, drive)?)?);
+    let number = of(POSITION, drive)?;
+    let (numerator, denominator) =
+        (master.read_number(of(NUMERATOR, drive)?)?, master.read_number(of(DENOMINATOR, drive)?)?);
     // A drive that stands re-adjusts by less than five degrees: 1/72 of a turn of 256 · 154 / 156 steps.
     let near = (256 * numerator / denominator.max(1) / 72).max(64);
     let position = master.read_number(number)?;
@@ -225,7 +228,7 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Err
 
 /// Ends the fault of a drive: 197 = 0. What it needs before it is an operation of its own.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
-    let number = of(197, drive)?;
+    let number = of(ACKNOWLEDGE, drive)?;
     master.set(number, 0)?;
     match master.read_number(number)? {
         0 => Ok(()),

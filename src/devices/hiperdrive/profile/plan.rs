@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::{Image, Item, NetworkSettings};
 use crate::buses::ethernet_ip::protocol::AddressSource;
+use crate::devices::hiperdrive::protocol::drive_parameter::ACKNOWLEDGE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
 use crate::profile::{Operation, Plan};
 
@@ -127,8 +128,8 @@ impl Op {
     pub fn item(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
-            Op::Service(Service::Acknowledge(drive)) => ParameterNumber::of_drive(197, *drive)
-                .map_or_else(|| "197".to_owned(), |number| Item(number).to_string()),
+            Op::Service(Service::Acknowledge(drive)) => ParameterNumber::of_drive(ACKNOWLEDGE, *drive)
+                .map_or_else(|| ACKNOWLEDGE.to_string(), |number| Item(number).to_string()),
             Op::Service(_) => Item(ParameterNumber::SAVE).to_string(),
             Op::Network { .. } => "network".to_owned(),
         }

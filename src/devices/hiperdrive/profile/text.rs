@@ -4,6 +4,7 @@
 //! which are below 100; there a number of another drive is its own.
 
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
+use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, UPPER};
 use crate::devices::hiperdrive::protocol::{self, DriveNumber, ParameterNumber, Topology, Travel, Variant};
 use crate::expected::Expected;
 use crate::profile::ron_text::{Entries, Writer, value_text};
@@ -108,7 +109,7 @@ impl HiperdriveProfile {
         let Some(row) = number.row() else { return String::new() };
         let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
         let scale =
-            number.drive().filter(|_| matches!(row.number, 158 | 160)).and_then(|drive| self.image.scale(drive));
+            number.drive().filter(|_| matches!(row.number, LOWER | UPPER)).and_then(|drive| self.image.scale(drive));
         let turns = scale.zip(i32::try_from(value).ok()).map(|(scale, steps)| scale.turns(steps));
         let turns = turns.map(|turns| format!(", {turns:.3} turns")).unwrap_or_default();
         format!("{}{unit}{turns}", row.name)

@@ -2,7 +2,9 @@
 
 use super::network::SWITCH;
 use super::{HiperdrivePlan, Image, Item, written};
-use crate::devices::hiperdrive::protocol::drive_parameter::REQUESTED;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    NO_TIMEOUT, REQUESTED, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, TIMEOUT,
+};
 use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, ParameterNumber, PositionScale};
 
 /// A consequence of a plan.
@@ -35,8 +37,8 @@ pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     for (&number, &new) in &written.values {
         warnings.extend(match (number.base(), number.drive(), new) {
             (REQUESTED, Some(drive), 0) => Some(Warning::NotRequested(drive)),
-            (186, Some(drive), 255) => Some(Warning::NoTimeout(drive)),
-            (188 | 190 | 192, ..) => Some(Warning::AfterReset(Item(number))),
+            (TIMEOUT, Some(drive), NO_TIMEOUT) => Some(Warning::NoTimeout(drive)),
+            (RS485_ADDRESS | RS485_BAUD | RS485_COMPLETE, ..) => Some(Warning::AfterReset(Item(number))),
             _ => None,
         });
     }

@@ -2,6 +2,10 @@
 
 use std::ops::RangeInclusive;
 
+/// Actual position, in steps.
+pub const POSITION: u16 = 107;
+/// Variant of the drive; 0 where there is none.
+pub const VARIANT: u16 = 120;
 /// Drive is requested by the bus.
 pub const REQUESTED: u16 = 152;
 /// Numerator of the position scale.
@@ -20,6 +24,20 @@ pub const SPEED_DENOMINATOR: u16 = 164;
 pub const MAXIMUM_SPEED: u16 = 166;
 /// Allowed values of the maximum speed, in tenths of rpm.
 pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
+/// Wait before the hand drive, never saved.
+pub const HAND_DRIVE_WAIT: u16 = 182;
+/// RS-485 time-out.
+pub const TIMEOUT: u16 = 186;
+/// The time-out of a drive that goes on when it hears nothing.
+pub const NO_TIMEOUT: i64 = 255;
+/// RS-485 address.
+pub const RS485_ADDRESS: u16 = 188;
+/// RS-485 baud rate.
+pub const RS485_BAUD: u16 = 190;
+/// RS-485 complete time.
+pub const RS485_COMPLETE: u16 = 192;
+/// Faults since the acknowledgement; 0 acknowledges.
+pub const ACKNOWLEDGE: u16 = 197;
 /// Position assigned to the place where the drive stands.
 pub const REFERENCE: u16 = 198;
 /// Resets the drive.

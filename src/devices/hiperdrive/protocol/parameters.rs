@@ -7,8 +7,9 @@ use Kind::{I8, I16, I32, Text, U8, U16, U32};
 use Range::{Any, OneOf, Within, WithinOr};
 
 use super::drive_parameter::{
-    DENOMINATOR, LOWER, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NUMERATOR, REFERENCE, REQUESTED, RESET, SPEED_DENOMINATOR,
-    SPEED_NUMERATOR, UPPER,
+    ACKNOWLEDGE, DENOMINATOR, HAND_DRIVE_WAIT, LOWER, MAXIMUM_SPEED, MAXIMUM_SPEEDS, NO_TIMEOUT, NUMERATOR, POSITION,
+    REFERENCE, REQUESTED, RESET, RS485_ADDRESS, RS485_BAUD, RS485_COMPLETE, SPEED_DENOMINATOR, SPEED_NUMERATOR,
+    TIMEOUT, UPPER, VARIANT,
 };
 use super::parameter::{Access, Factory, ParameterRow, Range, SlowSet};
 use super::travel::Reach;
@@ -140,7 +141,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     read(104, "target position", I32, "steps").written(Any, Factory::Number(0)),
     read(105, "status word", U16, ""),
     read(106, "actual speed", I16, "0.1 rpm"),
-    read(107, "actual position", I32, "steps"),
+    read(POSITION, "actual position", I32, "steps"),
     error(108, "error 1"),
     error(109, "error 2"),
     error(110, "error 3"),
@@ -153,7 +154,7 @@ pub const PARAMETERS: &[ParameterRow] = &[
     error(117, "motion status"),
     error(118, "communication error"),
     read(119, "drive temperature", I8, "°C"),
-    read(120, "variant", U16, ""),
+    read(VARIANT, "variant", U16, ""),
     text(121, "drive name", ""),
     text(122, "drive article number", ""),
     text(123, "drive serial number", ""),
@@ -180,12 +181,14 @@ pub const PARAMETERS: &[ParameterRow] = &[
     read(176, "jog 2 step", I32, "steps").written(Any, Factory::Number(-4096)).reaching(Reach::Step),
     percent(178, "jog 2 speed"),
     percent(180, "jog 2 torque"),
-    read(182, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
-    read(186, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, 255), Factory::Number(20)),
-    read(188, "RS-485 address", U8, "").kept(Within(0, 253), Factory::Number(1)),
-    read(190, "RS-485 baud rate", U32, "baud").kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400)).in_device(),
-    read(192, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
-    read(197, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
+    read(HAND_DRIVE_WAIT, "wait before hand drive", U16, "ms").written(Within(100, 10000), Factory::Number(1000)),
+    read(TIMEOUT, "RS-485 time-out", U16, "0.1 s").kept(WithinOr(1, 100, NO_TIMEOUT), Factory::Number(20)),
+    read(RS485_ADDRESS, "RS-485 address", U8, "").kept(Within(0, 253), Factory::Number(1)),
+    read(RS485_BAUD, "RS-485 baud rate", U32, "baud")
+        .kept(OneOf(&[9600, 19200, 38400]), Factory::Number(38400))
+        .in_device(),
+    read(RS485_COMPLETE, "RS-485 complete time", U16, "ms").kept(Any, Factory::Automatic),
+    read(ACKNOWLEDGE, "faults since the acknowledgement", U8, "").written(Within(0, 0), Factory::None),
     read(REFERENCE, "set actual position", I32, "steps").kept(Any, Factory::Number(0)).reaching(Reach::Position),
     ParameterRow { access: Access::Write, ..read(RESET, "reset drive", U8, "").written(Within(0, 1), Factory::None) }
         .slow(RESET_DRIVE),

@@ -6,6 +6,9 @@ use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
 use crate::devices::hiperdrive::procedures::Error;
 use crate::devices::hiperdrive::procedures::error::{Asked, Refusal};
 use crate::devices::hiperdrive::procedures::identify::topology;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, REQUESTED, UPPER, VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, OutOfRange, ParameterNumber, ParameterRow, PositionScale, Range, Travel, Value, Variant,
 };
@@ -29,11 +32,11 @@ impl Master<'_> {
         if let Some(topology) = topology.filter(|topology| drive.get() > topology.drives()) {
             return Ok(Error::NoPlace { drive, topology });
         }
-        if self.is_zero(number, 120, drive)? {
+        if self.is_zero(number, VARIANT, drive)? {
             return Ok(Error::NoDrive { drive });
         }
         // The request is refused in this state: is the drive not requested?
-        if refusal.status == GeneralStatus::STATE && self.is_zero(number, 152, drive)? {
+        if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED, drive)? {
             return Ok(Error::NotRequested { drive });
         }
         Ok(Error::Refused { asked, refusal })
@@ -80,7 +83,7 @@ impl Master<'_> {
             None => Travel::UNKNOWN,
         };
         let allowed = row.allowed(travel);
-        let Some(drive) = number.drive().filter(|_| matches!(row.number, 158 | 160 | 198)) else {
+        let Some(drive) = number.drive().filter(|_| matches!(row.number, LOWER | UPPER | REFERENCE)) else {
             return Ok(allowed);
         };
         let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
@@ -92,12 +95,12 @@ impl Master<'_> {
             },
             None => Ok(None),
         };
-        let values = [of_drive(158)?, of_drive(160)?, of_drive(107)?];
+        let values = [of_drive(LOWER)?, of_drive(UPPER)?, of_drive(POSITION)?];
         let Some(Range::Within(least, most)) = allowed else { return Ok(allowed) };
         let [Some(lower), Some(upper), Some(position)] = values else { return Ok(allowed) };
         Ok(Some(match row.number {
-            158 => Range::Within(least, position.min(upper - 1).min(most)),
-            160 => Range::Within(position.max(lower + 1).max(least), most),
+            LOWER => Range::Within(least, position.min(upper - 1).min(most)),
+            UPPER => Range::Within(position.max(lower + 1).max(least), most),
             _ => Range::Within(lower.max(least), upper.min(most)),
         }))
     }
@@ -112,7 +115,7 @@ impl Master<'_> {
                 Err(error) => Err(error),
             }
         };
-        let (variant, numerator, denominator) = (word(120)?, word(154)?, word(156)?);
+        let (variant, numerator, denominator) = (word(VARIANT)?, word(NUMERATOR)?, word(DENOMINATOR)?);
         let family = variant.and_then(|number| Variant::new(number).row()).map(|row| row.family);
         let scale = numerator.zip(denominator).and_then(|(n, d)| PositionScale::new(n, d).ok());
         Ok(Travel { family, scale })

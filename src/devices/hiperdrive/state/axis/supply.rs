@@ -2,11 +2,12 @@
 //! connection that was lost and found again proves nothing.
 
 use super::Seen;
+use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
 
-/// The parameter by which a restart of the drive can be read: it is never saved, so that only a restart makes it what it is
-/// from the factory (manual, 182: the wait before the hand drive; nothing moves by it).
-pub(super) const MARK: u16 = 182;
+/// The parameter by which a restart of the drive can be read: it is never saved, so that only a restart restores its factory
+/// setting (manual, 182); nothing moves by it.
+pub(super) const MARK: u16 = HAND_DRIVE_WAIT;
 
 /// Degrees by which a drive may readjust its position by itself, at power-up and behind a stop (manual, 8.3).
 pub(super) const READJUSTS: f64 = 5.0;
