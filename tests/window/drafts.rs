@@ -96,7 +96,7 @@ fn a_write_ends_the_notice_of_edits_that_came_back() {
     assert_eq!(desk.told(Severity::Warning), ["session.draft_back"]);
     write(&mut desk);
     assert!(desk.studio.services.log.standing().is_none());
-    assert_eq!(desk.times_told("session.written"), 1);
+    assert_eq!(desk.times_told("novo.written"), 1);
 }
 
 /// What was edited for a profile belongs to that file.
