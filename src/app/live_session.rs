@@ -55,7 +55,7 @@ impl<D: Kind> LiveSession<D> {
     /// The job that runs, in words.
     pub fn progressing(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
-        let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::doing(&own.what)));
+        let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.what)));
         Some(Progressing { what: running.what.clone(), progress, stopping: running.stopping })
     }
 

@@ -218,7 +218,7 @@ fn open<D: Kind>(
         .map_or_else(|| D::open(url, world.store.clone()), |opener| opener.open(url, world.store.clone()))
         .map_err(|error| Box::new(OpenFailed::Link(error)))?;
     prepare(&mut session);
-    let (is_virtual, aside) = (session.is_virtual(), D::aside(&session));
+    let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
     let trace: Ring<TraceEntry> = Ring::new(FRAMES);
     let (ring, last) = (trace.clone(), WakeAtTheEnd(wake.clone()));
     session.watch(move |entry| {

@@ -319,7 +319,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
 pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
 
 /// Returns the result of a write in words, with its severity.
-pub fn told<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
+pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
         Some(why) => (Severity::Warning, vec![text, explain::logbook(why)]),

@@ -35,13 +35,13 @@ enum Argument {
 }
 
 impl Argument {
-    fn said(&self, place: Output) -> String {
+    fn text_for(&self, place: Output) -> String {
         match self {
             Argument::Number(number) if matches!(place, Output::Window(Language::German)) => number.replace('.', ","),
             Argument::Name(_, german) if matches!(place, Output::Window(Language::German)) => german.clone(),
             Argument::Words(words) | Argument::Number(words) | Argument::Name(words, _) => words.clone(),
-            Argument::Text(text) => text.said(place),
-            Argument::List(texts) => texts.iter().map(|text| text.said(place)).collect::<Vec<_>>().join(", "),
+            Argument::Text(text) => text.text_for(place),
+            Argument::List(texts) => texts.iter().map(|text| text.text_for(place)).collect::<Vec<_>>().join(", "),
         }
     }
 }
@@ -136,15 +136,15 @@ impl Text {
 
     /// Returns the words for the window.
     pub fn words(&self, language: Language) -> String {
-        self.said(Output::Window(language))
+        self.text_for(Output::Window(language))
     }
 
     /// The words on the command line, which always speaks English, with hints for its users.
     pub fn terminal(&self) -> String {
-        self.said(Output::Terminal)
+        self.text_for(Output::Terminal)
     }
 
-    fn said(&self, place: Output) -> String {
+    fn text_for(&self, place: Output) -> String {
         let Some(row) = self.catalogue.rows().get(self.id) else { return self.id.to_owned() };
         let template = match place {
             Output::Window(Language::German) => &row.de,
@@ -158,7 +158,7 @@ impl Text {
             words.push_str(before);
             let Some((name, behind)) = after.split_once('}') else { break };
             match self.arguments.iter().find(|(own, _)| *own == name) {
-                Some((_, argument)) => words.push_str(&argument.said(place)),
+                Some((_, argument)) => words.push_str(&argument.text_for(place)),
                 None => words.push_str(name),
             }
             rest = behind;
@@ -170,12 +170,12 @@ impl Text {
 
 /// A number in digits with the language's decimal sign.
 pub(crate) fn signed(number: &str, language: Language) -> String {
-    Argument::Number(number.to_owned()).said(Output::Window(language))
+    Argument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
 /// A number of so many decimals with the language's decimal sign.
 pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
-    Argument::Number(format!("{value:.decimals$}")).said(Output::Window(language))
+    Argument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
 
 impl From<&'static str> for Text {

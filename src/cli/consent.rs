@@ -81,7 +81,7 @@ pub(super) struct Replaces {
 
 impl Replaces {
     /// Reports that a file was replaced, if the user was not asked.
-    pub(super) fn said(&self, output: &Output) {
+    pub(super) fn report(&self, output: &Output) {
         if let Some(says) = &self.says {
             output.remark(says);
         }

@@ -175,7 +175,7 @@ fn dispatch(common: &Common, command: &Command, output: &Output) -> Result {
         (Command::Save(save), _) => {
             let replaces = consent::replaces(&save.file, save.force)?;
             let done = run()?;
-            replaces.said(output);
+            replaces.report(output);
             Ok(done)
         }
         _ => run(),

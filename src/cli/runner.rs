@@ -40,7 +40,7 @@ pub trait Runs: Kind {
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
     /// Says at once what the device said on the way.
-    fn say(remark: &Self::DeviceMessage);
+    fn print_message(remark: &Self::DeviceMessage);
 
     /// A step, beside the bar at a terminal.
     fn step(doing: &Self::JobStep) -> String;
@@ -172,7 +172,7 @@ impl<D: Runs> Runner<D> {
                     bar.show(progress.done, progress.total, &D::step(&progress.what));
                 }
                 Event::Remark(remark) => {
-                    D::say(&remark);
+                    D::print_message(&remark);
                     self.remarks.push(remark);
                 }
                 Event::Finished(of, output) if of == id => return Ok(*output),
@@ -226,7 +226,7 @@ impl<D: Runs> Ended<D> {
     /// Returns it as what a command comes to.
     pub fn into_failure(self) -> Failure {
         match self {
-            Ended::Job(error) => Failure::Failed(lines(D::why(&error).iter().map(Text::terminal).collect())),
+            Ended::Job(error) => Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal).collect())),
             Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
             Ended::Lost(error) => failed(&explain::link(&error)),
             Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),

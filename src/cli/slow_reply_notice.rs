@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     /// Returns the message for a time-out in milliseconds after replies with these times in milliseconds.
-    fn said(timeout: u64, took: &[u64]) -> Option<String> {
+    fn message(timeout: u64, took: &[u64]) -> Option<String> {
         let replies = Replies::default();
         took.iter().for_each(|ms| replies.note(Duration::from_millis(*ms)));
         Pace { replies, timeout: Duration::from_millis(timeout), longest: Duration::from_secs(2) }.words()
@@ -89,19 +89,19 @@ mod tests {
 
     #[test]
     fn slow_replies_are_told_with_what_helps() {
-        assert_eq!(said(1000, &[3, 5, 4]), None, "what takes long does so for other reasons");
-        assert_eq!(said(1000, &[299, 301]).unwrap(), "The device answers slowly: a reply takes 300 ms.");
+        assert_eq!(message(1000, &[3, 5, 4]), None, "what takes long does so for other reasons");
+        assert_eq!(message(1000, &[299, 301]).unwrap(), "The device answers slowly: a reply takes 300 ms.");
         assert_eq!(
-            said(1000, &[600, 800]).unwrap(),
+            message(1000, &[600, 800]).unwrap(),
             "The device answers slowly: a reply takes up to 800 ms, and 1000 ms are waited for. \
              timeout=2000 in the link gives a reply more time."
         );
         assert_eq!(
-            said(1000, &[]).unwrap(),
+            message(1000, &[]).unwrap(),
             "The device has not answered yet, and is asked again every 1000 ms. \
              timeout=2000 in the link gives a reply more time."
         );
-        assert!(said(2000, &[1500]).unwrap().ends_with("are waited for. Look at the load of the network."));
+        assert!(message(2000, &[1500]).unwrap().ends_with("are waited for. Look at the load of the network."));
     }
 
     #[test]

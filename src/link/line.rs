@@ -97,7 +97,7 @@ impl<'a> SerialLine<'a> {
     ///
     /// # Errors
     /// The wire, or [`LineError::Cancelled`].
-    pub(crate) fn overhear(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
+    pub(crate) fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
         while self.now() < end {

@@ -60,7 +60,7 @@ impl Document {
         let value: Value = ron::from_str(text).map_err(syntax)?;
         ron::Options::default().from_str_seed(text, UniqueNames { twice: &twice }).map_err(syntax)?;
         let reading = Rc::new(Reading::default());
-        Self::read(value, &reading, formats).map_err(|error| match reading.told(error) {
+        Self::read(value, &reading, formats).map_err(|error| match reading.reported_error(error) {
             ProfileError::Misspelt { path, meant, .. } => {
                 let (line, column) = place_of(text, &path).unwrap_or((1, 1));
                 ProfileError::Misspelt { line, column, path, meant }

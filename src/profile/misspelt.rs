@@ -60,7 +60,7 @@ impl Reading {
 
     /// The error as it has to be told: about the misspelt name, where that is what is wrong. What is said of another entry
     /// comes from a misspelt one only where no more than a letter differs. A newer schema is what is wrong with its files.
-    pub(super) fn told(&self, error: ProfileError) -> ProfileError {
+    pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };
         }

@@ -25,7 +25,7 @@ pub trait Kind: Device + Sized {
     type Review;
 
     /// Takes that before the session goes to its thread.
-    fn aside(session: &Session<Self>) -> Self::SessionHandle;
+    fn session_handle(session: &Session<Self>) -> Self::SessionHandle;
 
     /// Opens links to such devices.
     ///
@@ -44,7 +44,7 @@ pub trait Kind: Device + Sized {
     }
 
     /// A job in words.
-    fn job(job: &Self::Job) -> Text;
+    fn job_text(job: &Self::Job) -> Text;
 
     /// A job changes the device's memory.
     fn writes(_job: &Self::Job) -> bool {
@@ -55,15 +55,15 @@ pub trait Kind: Device + Sized {
     fn survey() -> Self::Job;
 
     /// A step of a job in words.
-    fn doing(what: &Self::JobStep) -> Text;
+    fn step_text(what: &Self::JobStep) -> Text;
 
     /// Returns the result of a writing job; `None` for any other.
-    fn told(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
+    fn result_texts(_output: &Self::Output) -> Option<(Severity, Vec<Text>)> {
         None
     }
 
     /// Returns why a job ended early, and what to do.
-    fn why(error: &Self::Error) -> Vec<Text>;
+    fn error_texts(error: &Self::Error) -> Vec<Text>;
 
     /// The wire itself failed, so that nothing more can be asked over it: why.
     fn loss(error: &Self::Error) -> Option<Text>;
@@ -72,12 +72,13 @@ pub trait Kind: Device + Sized {
     fn last_words(event: &Event<Self>) -> Option<LastWords> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
-                let told = Self::told(output).unwrap_or_else(|| (Severity::Note, vec![Text::new("session.ended")]));
+                let told =
+                    Self::result_texts(output).unwrap_or_else(|| (Severity::Note, vec![Text::new("session.ended")]));
                 (job, JobEnd::Done, told)
             }
-            Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, Self::why(error))),
+            Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, Self::error_texts(error))),
             Event::Failed(job, error) => {
-                let texts = Self::why(error);
+                let texts = Self::error_texts(error);
                 (job, JobEnd::Failed(first(&texts)), (Severity::Error, texts))
             }
             _ => return None,

@@ -4,7 +4,7 @@
 #![warn(missing_docs)]
 
 use super::{Drafted, EarlyEnd, HasSession, Kind, SessionEvents};
-use crate::app::review::{self, OpWords, Permit, Review, ReviewSheet, ReviewState, Reviewed, told};
+use crate::app::review::{self, OpWords, Permit, Review, ReviewSheet, ReviewState, Reviewed, written_texts};
 use crate::app::services::Services;
 use crate::app::{Severity, Text};
 use crate::profile::{Consent, PlanId};
@@ -69,7 +69,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn forget_device(&mut self);
 
     /// A review is about to stand over it.
-    fn hands_off(&mut self) {}
+    fn before_review(&mut self) {}
 
     /// Returns why a change is not possible, as far as that is known without asking the device.
     fn objection(&self, _change: &Change<Self>) -> Option<Text> {
@@ -108,7 +108,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
 
     /// Makes the plan of a change, to be looked at.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
-        self.hands_off();
+        self.before_review();
         if let Some(why) = self.session().why_not_ready() {
             return services.tell(Severity::Warning, vec![why], Some(&self.session().name()));
         }
@@ -223,7 +223,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
 
     /// A plan was carried out: the device is read again.
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
-        let (severity, texts) = told::<Self::Device>(&committed);
+        let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
         // A success stays in the review until that is closed.
         if severity == Severity::Good && stands {

@@ -230,7 +230,7 @@ impl<D: Kind> Session<D> {
 
     /// Starts a job, or says why not and gives false.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
-        let (name, what, writes) = (self.name(), D::job(&job), D::writes(&job));
+        let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
             services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
             return false;

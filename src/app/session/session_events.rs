@@ -40,7 +40,7 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Handles a message that the device sent meanwhile.
-    fn remarked(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
+    fn message_received(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
     /// A job is done.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
@@ -49,7 +49,7 @@ pub trait SessionEvents: HasSession {
     fn is_silence(&self, error: &Error<Self>) -> bool;
 
     /// Forgets pending requests: their replies will not come.
-    fn forget_asked(&mut self);
+    fn forget_requests(&mut self);
 
     /// The line is about to be let go.
     fn line_ends(&mut self) {}
@@ -63,7 +63,7 @@ pub trait SessionEvents: HasSession {
     }
 
     /// Handles the early end of a request; returns true if the review reports it.
-    fn cut_off(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
+    fn ended_early(&mut self, _how: EarlyEnd<Error<Self>>, _texts: &[Text], _services: &mut Services) -> bool {
         false
     }
 
@@ -82,11 +82,11 @@ pub trait SessionEvents: HasSession {
 
     /// Takes what has come over the line since the last time.
     fn pump(&mut self, services: &mut Services) {
-        self.hear(services);
+        self.poll_line(services);
     }
 
     /// The same, for a kind that does more at such a time.
-    fn hear(&mut self, services: &mut Services) {
+    fn poll_line(&mut self, services: &mut Services) {
         // Samples from before a job come before its result; later ones come the next time.
         self.take_samples_and_frames();
         while let Some(event) = self.session_mut().line.as_mut().and_then(LiveSession::next) {
@@ -117,7 +117,7 @@ pub trait SessionEvents: HasSession {
         match event {
             Event::Started(_) => {}
             Event::Progress(_, progress) => self.progressed(progress.what),
-            Event::Remark(remark) => self.remarked(remark, services),
+            Event::Remark(remark) => self.message_received(remark, services),
             Event::Finished(id, output) => {
                 services.job_ends(self.session().id, id, JobEnd::Done);
                 if Self::is_answer(&output) {
@@ -140,7 +140,7 @@ pub trait SessionEvents: HasSession {
             Some(why) => self.lose(why, services),
             None => {
                 let is_silent = self.is_silence(error);
-                self.session_mut().polling_failed(Self::Device::why(error), is_silent, services);
+                self.session_mut().polling_failed(Self::Device::error_texts(error), is_silent, services);
             }
         }
     }
@@ -149,8 +149,8 @@ pub trait SessionEvents: HasSession {
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.job_ends(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
-        let (texts, begun) = (Self::Device::why(error), error.has_begun());
-        let stands_there = self.cut_off(EarlyEnd::Cancelled(error), &texts, services);
+        let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
+        let stands_there = self.ended_early(EarlyEnd::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
         self.session().say(severity, texts, stands_there, services);
         if begun {
@@ -160,9 +160,9 @@ pub trait SessionEvents: HasSession {
 
     /// A job failed.
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
-        let texts = Self::Device::why(error);
+        let texts = Self::Device::error_texts(error);
         services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));
-        let stands_there = self.cut_off(EarlyEnd::Failed(error), &texts, services);
+        let stands_there = self.ended_early(EarlyEnd::Failed(error), &texts, services);
         self.session_mut().save_to = None;
         match Self::Device::loss(error) {
             Some(why) => self.lose(why, services),
@@ -184,15 +184,15 @@ pub trait SessionEvents: HasSession {
         self.line_ends();
         // The last frames show best why it was the last.
         self.take_samples_and_frames();
-        self.forget_asked();
-        self.cut_off(EarlyEnd::Lost, std::slice::from_ref(&why), services);
+        self.forget_requests();
+        self.ended_early(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().lose(why, services);
     }
 
     /// Lets its thread go; what runs ends as `end` says, and a plan is none any more.
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.line_ends();
-        self.forget_asked();
+        self.forget_requests();
         self.session_mut().let_go(end, services);
     }
 }

@@ -121,7 +121,7 @@ impl Form {
     ///
     /// # Errors
     /// The first entry that cannot be used, in words.
-    pub fn told(&self) -> Result<Synchronisation, Text> {
+    pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
         let absolute = number_or_hex(TEXTS.text("synchronise.absolute"), &self.absolute, last)?;
@@ -311,7 +311,7 @@ mod tests {
             (form("0", "0.51", "16", "1"), 0, 0, -16.32, -1, 15.51, 0.49, "unsure"),
         ];
         for (form, period, step, difference, k, fine, residual, verdict) in rows {
-            let told = form.told().unwrap();
+            let told = form.synchronisation().unwrap();
             assert_eq!((told.period, told.step), (period, step), "{form:?}");
             assert!((told.difference_steps - difference).abs() < 1e-9, "{told:?}");
             let result = told.result.unwrap();
@@ -322,10 +322,10 @@ mod tests {
         }
         // 339.02 of 1024 periods, and no more of many turns.
         for turns in ["1", "4096"] {
-            let degrees = form("0x2A5F", "0.02", "1024", turns).told().unwrap().degrees().unwrap();
+            let degrees = form("0x2A5F", "0.02", "1024", turns).synchronisation().unwrap().degrees().unwrap();
             assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
         }
-        let told = form("0", "0.5", "16", "1").told().unwrap();
+        let told = form("0", "0.5", "16", "1").synchronisation().unwrap();
         assert_eq!((told.result, told.degrees()), (Err(Unsynchronisable), None));
         assert_eq!(told.words().1.id(), "synchronise.impossible");
     }
@@ -333,13 +333,13 @@ mod tests {
     #[test]
     fn the_phase_is_told_in_three_ways() {
         let degrees = Form { told_as: ToldAs::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
-        assert!((degrees.told().unwrap().phase.periods() - 0.02).abs() < 1e-12);
+        assert!((degrees.synchronisation().unwrap().phase.periods() - 0.02).abs() < 1e-12);
         let typed = |text: &str| text.to_owned();
         let (sine_v, cosine_v) = (typed("-0.5"), typed("0"));
         let volts = Form { told_as: ToldAs::Volts, sine_v, cosine_v, ..Form::default() };
-        assert_eq!(volts.told().unwrap().phase.periods(), 0.75);
+        assert_eq!(volts.synchronisation().unwrap().phase.periods(), 0.75);
         let nothing = Form { sine_v: typed("0"), ..volts };
-        assert_eq!(nothing.told().unwrap_err().id(), "synchronise.no_signal");
+        assert_eq!(nothing.synchronisation().unwrap_err().id(), "synchronise.no_signal");
     }
 
     /// Section 4: counters of quarters beside a phase; and 29 rpm for a millisecond with 1024 periods.
@@ -371,7 +371,7 @@ mod tests {
             (form("0", "0", "1024", "0"), "entry.whole"),
             (Form { offset: "33".to_owned(), ..Form::default() }, "entry.number"),
         ] {
-            assert_eq!(form.told().unwrap_err().id(), id, "{form:?}");
+            assert_eq!(form.synchronisation().unwrap_err().id(), id, "{form:?}");
         }
     }
 
@@ -402,7 +402,7 @@ mod tests {
         page.act(Action::UseOffset);
         assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
         // d = 31 − 28; without the offset of 2.5 half a step remains.
-        let told = page.form.told().unwrap();
+        let told = page.form.synchronisation().unwrap();
         assert!((told.difference_steps - 3.0).abs() < 0.01);
         assert!((told.result.unwrap().residual_periods * 32.0 - 0.5).abs() < 0.01);
         page.take(SineCosineReading { signals: None, ..at(10, 0.0) }, whose(1, "A"));

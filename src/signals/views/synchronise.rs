@@ -30,7 +30,7 @@ pub(super) fn page_ui(
     let state = signals.synchronise();
     let mut form = state.form.clone();
     // The drawing beside the entries shows their present result.
-    let told = form.told();
+    let told = form.synchronisation();
     // Two rows, so that also in one column the result stands next to what it comes from.
     split(
         ui,

@@ -97,7 +97,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
         curve(&painter, &place, own, series(theme, own.colour));
     }
     if let Some(pos) = response.hover_pos() {
-        told(&painter, theme, &place, pos);
+        paint_readout(&painter, theme, &place, pos);
     }
 }
 
@@ -193,7 +193,7 @@ fn curve(painter: &Painter, place: &PlotArea, figure: &Figure, colour: Color32) 
 }
 
 /// Draws the values under the pointer: both voltages, length and angle.
-fn told(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) {
+fn paint_readout(painter: &Painter, theme: &Theme, place: &PlotArea, pos: Pos2) {
     let (x, y) = place.volts(pos);
     let muted = Stroke::new(1.0, Color32::from(theme.palette.muted).gamma_multiply(0.6));
     painter.line_segment([place.rect.center(), pos], muted);

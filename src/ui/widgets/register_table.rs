@@ -259,7 +259,7 @@ fn body(
                         paint::bits(ui, theme, rect, columns, bits);
                         let own = ui.interact(rect, id.with((place, number)), Sense::hover());
                         let words = format!("{} {}", bits.bits, bits.name);
-                        own.widget_info(|| told(Role::Row, &words, &format!("{} {}", bits.value, bits.meaning)));
+                        own.widget_info(|| value_info(Role::Row, &words, &format!("{} {}", bits.value, bits.meaning)));
                     }
                 }
             }
@@ -299,7 +299,7 @@ fn heading(
     let response = ui.interact(rect, id.with("group").with(group), Sense::CLICK);
     let selected = view.selected == Some(Selected::Group(group));
     response.widget_info(|| {
-        let mut info = told(Role::Button, &own.title, &own.note);
+        let mut info = value_info(Role::Button, &own.title, &own.note);
         info.selected = Some(selected);
         info
     });
@@ -327,7 +327,7 @@ fn row(
     let row = (table.row)(place);
     let response = ui.interact(rect, id.with(place), Sense::CLICK);
     let selected = view.selected == Some(Selected::Row(place));
-    response.widget_info(|| told(Role::Row, &row.label(), &row.words(theme)));
+    response.widget_info(|| value_info(Role::Row, &row.label(), &row.words(theme)));
     ui.accesskit_node_builder(response.id, |node| node.set_selected(selected));
     let open = view.open.contains(&place);
     if response.clicked() {
@@ -359,7 +359,7 @@ fn row(
     }
 }
 
-fn told(role: Role, label: &str, value: &str) -> WidgetInfo {
+fn value_info(role: Role, label: &str, value: &str) -> WidgetInfo {
     let mut info = WidgetInfo::labeled(role, true, label);
     info.current_text_value = Some(value.to_owned());
     info
@@ -375,5 +375,5 @@ fn tell(response: &Response, theme: &Theme, table: &RegisterTable<'_>, view: &Re
         Some(Selected::Group(group)) => table.groups.get(group).map(|own| own.title.clone()).unwrap_or_default(),
         None => String::new(),
     };
-    response.widget_info(|| told(Role::Table, table.label, &value));
+    response.widget_info(|| value_info(Role::Table, table.label, &value));
 }

@@ -25,7 +25,7 @@ impl Runs for Novo {
 
     fn begin(_: &mut Session<Self>, _: &Given) {}
 
-    fn say(remark: &Infallible) {
+    fn print_message(remark: &Infallible) {
         match *remark {}
     }
     fn step(item: &usize) -> String {

@@ -19,12 +19,12 @@ impl Kind for Novo {
     type SessionHandle = ();
     type Review = Review<Self>;
 
-    fn aside(_: &worker::Session<Self>) {}
+    fn session_handle(_: &worker::Session<Self>) {}
 
     fn open(url: &LinkUrl, store: Store) -> Result<worker::Session<Self>, OpenError> {
         jobs::open(url, store)
     }
-    fn job(job: &Job) -> Text {
+    fn job_text(job: &Job) -> Text {
         match job {
             Job::Survey => Text::new("job.survey"),
             Job::Position => Text::new("job.position"),
@@ -38,14 +38,14 @@ impl Kind for Novo {
     fn survey() -> Job {
         Job::Survey
     }
-    fn doing(item: &usize) -> Text {
+    fn step_text(item: &usize) -> Text {
         explain::plain(name_of(*item))
     }
-    fn told(output: &Output) -> Option<(Severity, Vec<Text>)> {
+    fn result_texts(output: &Output) -> Option<(Severity, Vec<Text>)> {
         let Output::Committed(committed) = output else { return None };
-        Some(review::told::<Novo>(committed))
+        Some(review::written_texts::<Novo>(committed))
     }
-    fn why(error: &JobError) -> Vec<Text> {
+    fn error_texts(error: &JobError) -> Vec<Text> {
         vec![match (error, error.device()) {
             (JobError::NotBegun(why), _) => explain::not_begun(why),
             (_, Some(Error::Cancelled)) => Text::new("encoder.cancelled"),

@@ -116,7 +116,7 @@ impl SessionEvents for Encoder {
     fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
         self.see(&samples, dropped);
     }
-    fn remarked(&mut self, remark: Infallible, _: &mut Services) {
+    fn message_received(&mut self, remark: Infallible, _: &mut Services) {
         match remark {}
     }
     fn finished(&mut self, output: Output, services: &mut Services) {
@@ -130,10 +130,10 @@ impl SessionEvents for Encoder {
     fn is_silence(&self, error: &JobError) -> bool {
         error.device() == Some(&Error::Silent)
     }
-    fn forget_asked(&mut self) {
+    fn forget_requests(&mut self) {
         self.forget_plan();
     }
-    fn cut_off(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn ended_early(&mut self, how: EarlyEnd<'_, JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.cut_write(how, texts)
     }
 }

@@ -31,7 +31,7 @@ impl Drift {
     /// Our time for `own_ns` of the adapter's, which cannot be later than `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
         let most = i128::from(latest.nanoseconds()) - own_ns;
-        let told = self.told(own_ns, most);
+        let told = self.least_lead(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
         self.before_ns = own_ns;
         let ahead = match self.ahead_ns {
@@ -47,7 +47,7 @@ impl Drift {
     }
 
     /// The least of the stretch and of the one before.
-    fn told(&mut self, own_ns: i128, most: i128) -> i128 {
+    fn least_lead(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {
             Some((least, before)) if fits => (least.min(most), before),

@@ -16,7 +16,7 @@ pub fn received(bytes: &[u8]) -> Option<Explained> {
     let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {
         Ok(Message::Error { .. }) => {
-            let meaning = said(&packet).into_iter().collect();
+            let meaning = message_text(&packet).into_iter().collect();
             Some(Explained { meaning, fault: Some(TraceFault::Reported) })
         }
         Ok(_) => None,
@@ -33,7 +33,7 @@ pub fn asked(request: &Request) -> Text {
 }
 
 /// Returns the text of a packet from an adapter; `None` if it is not a message.
-pub fn said(packet: &Packet) -> Option<Text> {
+pub fn message_text(packet: &Packet) -> Option<Text> {
     Some(match Message::parse(packet).ok()? {
         Message::Reply(Reply::BissRead { raw, .. } | Reply::SsiRead { raw, .. }) => plain(format!("0x{raw:X}")),
         Message::Reply(Reply::BissRegisterRead { value } | Reply::BissRegisterWrite { value }) => {

@@ -26,7 +26,7 @@ impl Runs for Biss {
         session.station().way
     }
 
-    fn say(remark: &DeviceMessage) {
+    fn print_message(remark: &DeviceMessage) {
         match remark {
             // They are counted, and told at the end.
             DeviceMessage::CrcErrors(_) => {}

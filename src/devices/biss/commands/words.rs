@@ -18,7 +18,7 @@ pub(super) fn name(address: RegisterAddress) -> Option<&'static str> {
 }
 
 /// Returns the meaning of the bytes at an address, if they are a whole register with a meaning beyond its number.
-pub(super) fn said(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
+pub(super) fn register_meaning(address: RegisterAddress, bytes: &[u8]) -> Option<String> {
     let register = register(address).filter(|register| register.address == address)?;
     words(register, bytes)
 }

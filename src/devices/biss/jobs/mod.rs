@@ -155,7 +155,7 @@ impl Device for Biss {
             }
             BissJob::Save | BissJob::SaveToCompare => {
                 let unsaved = if matches!(job, BissJob::Save) { Unsaved::Marked } else { Unsaved::Refused };
-                let progress = &mut |done, total, place| steps(done, total, doing(place));
+                let progress = &mut |done, total, place| steps(done, total, read_step(place));
                 BissOutput::Saved(Box::new(procedures::save(&mut self.master(desk), &types, unsaved, progress)?))
             }
             BissJob::Prepare(change) => {
@@ -239,7 +239,7 @@ impl Biss {
     }
 }
 
-fn doing(place: ReadStage) -> JobStep {
+fn read_step(place: ReadStage) -> JobStep {
     match place {
         ReadStage::Register(address) => JobStep::Register(address),
         ReadStage::Bank(bank) => JobStep::Bank(bank),

@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::words;
 use crate::app::Explained;
-use crate::app::review::{Review, told};
+use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory, first};
 use crate::app::{Severity, Text};
@@ -24,7 +24,7 @@ impl Kind for Biss {
     type SessionHandle = Option<Motor>;
     type Review = Review<Self>;
 
-    fn aside(session: &Session<Self>) -> Option<Motor> {
+    fn session_handle(session: &Session<Self>) -> Option<Motor> {
         session.motor()
     }
 
@@ -32,7 +32,7 @@ impl Kind for Biss {
         crate::devices::biss::jobs::open(url, store)
     }
 
-    fn job(job: &BissJob) -> Text {
+    fn job_text(job: &BissJob) -> Text {
         words::job(job)
     }
 
@@ -44,18 +44,18 @@ impl Kind for Biss {
         BissJob::Survey
     }
 
-    fn doing(what: &JobStep) -> Text {
-        explained::doing(what)
+    fn step_text(what: &JobStep) -> Text {
+        explained::step_text(what)
     }
 
-    fn told(output: &BissOutput) -> Option<(Severity, Vec<Text>)> {
+    fn result_texts(output: &BissOutput) -> Option<(Severity, Vec<Text>)> {
         match output {
-            BissOutput::Committed(committed) => Some(told::<Biss>(committed)),
+            BissOutput::Committed(committed) => Some(written_texts::<Biss>(committed)),
             _ => None,
         }
     }
 
-    fn why(error: &JobError) -> Vec<Text> {
+    fn error_texts(error: &JobError) -> Vec<Text> {
         explained::job(error)
     }
 
@@ -89,7 +89,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {
+    fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
             DeviceMessage::CrcErrors(count) => self.record.add_crc_errors(count),
             remark => services.tell(Severity::Warning, explained::remark(&remark), None),
@@ -150,13 +150,13 @@ impl SessionEvents for Encoder {
         is_lost && explained::loss(error).is_none()
     }
 
-    fn forget_asked(&mut self) {
+    fn forget_requests(&mut self) {
         self.seen.clear();
         self.read_after.clear();
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         let moves = matches!(how, EarlyEnd::Failed(JobError::Device(Error::Moving { .. })));
         let stands_there = self.cut_guide(&how, texts) || self.cut_write(how, texts);
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
@@ -175,7 +175,7 @@ impl SessionEvents for Encoder {
 
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.motor = None;
-        self.forget_asked();
+        self.forget_requests();
         self.session.let_go(end, services);
     }
 }

@@ -209,8 +209,8 @@ fn description(error: &StoreError) -> Text {
     }
 }
 
-pub fn doing(doing: &JobStep) -> Text {
-    match doing {
+pub fn step_text(job_step: &JobStep) -> Text {
+    match job_step {
         JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),
         JobStep::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
         JobStep::Operation { news, .. } => step(news.step),

@@ -81,7 +81,7 @@ impl Meaning {
         let packet = adapter::packet(bytes)?;
         match bridge::Request::parse(&packet) {
             Ok(request) => Some(self.asked_of_adapter(&request)),
-            Err(_) => adapter::said(&packet),
+            Err(_) => adapter::message_text(&packet),
         }
     }
 

@@ -1,7 +1,7 @@
 //! `do`: save and recall, factory values, the presence test, an acknowledgement, the position, and the device check.
 
 use super::args::{DoOptions, HiperdriveAction, OfDrive};
-use super::plan::{commit, operations, prepare, said};
+use super::plan::{change_lines, commit, operations, prepare};
 use super::run::{Runner, drive};
 use crate::cli::args::{Common, Do};
 use crate::cli::consent::require_consent;
@@ -57,7 +57,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);
-    let said = said(&prepared.plan);
+    let said = change_lines(&prepared.plan);
     let before: Vec<DriveNumber> = prepared.identity.drives.iter().map(|own| own.number).collect();
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };

@@ -70,7 +70,7 @@ fn identity_text(identity: &Identity) -> String {
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
-    let said: Vec<DriveFact> = status.drives.iter().flat_map(said).collect();
+    let said: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
     let list =
         |weight: Weight| said.iter().filter(|own| own.weight == weight).map(DriveFact::json).collect::<Vec<Json>>();
     let (errors, warnings, earlier) = (list(Weight::Error), list(Weight::Warning), list(Weight::Earlier));
@@ -128,7 +128,7 @@ impl DriveFact {
 /// Returns the facts that a drive reports. As many of its newest errors as it counts since the acknowledgement are
 /// errors, and at least one in a fault; the rest are older, as the buffer keeps them over power-up (reference 4), and
 /// say nothing about now. A drive outside its limits is a warning, and so is a message of its communication.
-fn said(drive: &DriveStatus) -> Vec<DriveFact> {
+fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
     let since = usize::from(drive.faults).max(usize::from(is_fault));

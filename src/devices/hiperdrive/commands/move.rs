@@ -83,7 +83,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
         object.insert("error".to_owned(), json!({"code": error.code(), "text": error_text(error)}));
     }
     output.show(&json, "")?;
-    let mut lines = why(&came, stood, wanted.timeout);
+    let mut lines = stop_reasons(&came, stood, wanted.timeout);
     lines.extend(error.map(|error| format!("0x{:04X} {}", error.code(), error_text(error))));
     Err(Failure::Failed(lines))
 }
@@ -191,7 +191,7 @@ fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
     stood.filter(|own| own.actual.status.is_present())
 }
 
-fn why(came: &Came, stood: Option<DriveView>, seconds: u16) -> Vec<String> {
+fn stop_reasons(came: &Came, stood: Option<DriveView>, seconds: u16) -> Vec<String> {
     let first = match came {
         Came::Ended(ended) => words::ended(*ended, place).terminal(),
         Came::Interrupted => "Interrupted: the drive was stopped.".to_owned(),

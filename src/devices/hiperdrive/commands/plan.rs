@@ -75,7 +75,7 @@ pub(super) fn shown(prepared: &Prepared) -> PlanReport {
 }
 
 /// Returns the operations with old and new values, a line each.
-pub(super) fn said(plan: &HiperdrivePlan) -> String {
+pub(super) fn change_lines(plan: &HiperdrivePlan) -> String {
     let mut text = String::new();
     for words in plan.ops.iter().map(words::op) {
         for change in &words.changes {

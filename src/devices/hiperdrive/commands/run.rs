@@ -36,7 +36,7 @@ impl Runs for Hiperdrive {
         session.motion()
     }
 
-    fn say(remark: &DeviceMessage) {
+    fn print_message(remark: &DeviceMessage) {
         match remark {
             DeviceMessage::ControlLost => say(&format!("{}\n", TEXTS.text("hd_cli.control_lost").terminal())),
             DeviceMessage::RulesUnread(error) => {

@@ -1,7 +1,7 @@
 //! `write`: one parameter.
 
 use super::item;
-use super::plan::{commit, operations, prepare, said};
+use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
 use crate::cli::args::{Common, Write};
 use crate::cli::consent::require_consent;
@@ -27,7 +27,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     }
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, change)?;
-    let (operations, said) = (operations(&prepared.plan), said(&prepared.plan));
+    let (operations, said) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
     show_done(output, &item.to_string(), &operations, &spent, &[], &said)
 }

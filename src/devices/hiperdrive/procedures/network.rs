@@ -36,10 +36,11 @@ impl Network {
 /// The way.
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let switch = master.read_number(own(12)?)?;
-    let control = told(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
-    let interface = told(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
+    let control = unless_refused(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
+    let interface =
+        unless_refused(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
     let (class, number) = MAC;
-    let mac = told(master.attribute(Asked::Mac, class, number))?.and_then(|data| data.try_into().ok());
+    let mac = unless_refused(master.attribute(Asked::Mac, class, number))?.and_then(|data| data.try_into().ok());
     Ok(Network { switch, control, interface, mac })
 }
 
@@ -66,7 +67,7 @@ fn attribute<T>(
 }
 
 /// Returns the value; `None` if it was refused.
-fn told<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
+fn unless_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
         Ok(told) => Ok(Some(told)),
         Err(Error::Refused { .. }) => Ok(None),

@@ -7,7 +7,7 @@ use super::job;
 use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::Explained;
-use crate::app::review::{Review, told};
+use crate::app::review::{Review, written_texts};
 use crate::app::services::Services;
 use crate::app::session::{EarlyEnd, Kind, SessionEvents, WithMemory};
 use crate::app::{Severity, Text};
@@ -49,7 +49,7 @@ impl Kind for Hiperdrive {
     type SessionHandle = DriveHandle;
     type Review = Review<Self>;
 
-    fn aside(session: &Session<Self>) -> DriveHandle {
+    fn session_handle(session: &Session<Self>) -> DriveHandle {
         DriveHandle { motion: session.motion(), target: session.target() }
     }
 
@@ -57,7 +57,7 @@ impl Kind for Hiperdrive {
         crate::devices::hiperdrive::jobs::open(url, store)
     }
 
-    fn job(job: &HiperdriveJob) -> Text {
+    fn job_text(job: &HiperdriveJob) -> Text {
         job::words(job)
     }
 
@@ -69,18 +69,18 @@ impl Kind for Hiperdrive {
         HiperdriveJob::Survey
     }
 
-    fn doing(what: &JobStep) -> Text {
-        words::doing(what)
+    fn step_text(what: &JobStep) -> Text {
+        words::step_text(what)
     }
 
-    fn told(output: &HiperdriveOutput) -> Option<(Severity, Vec<Text>)> {
+    fn result_texts(output: &HiperdriveOutput) -> Option<(Severity, Vec<Text>)> {
         match output {
-            HiperdriveOutput::Committed(committed) => Some(told::<Hiperdrive>(committed)),
+            HiperdriveOutput::Committed(committed) => Some(written_texts::<Hiperdrive>(committed)),
             _ => None,
         }
     }
 
-    fn why(error: &JobError) -> Vec<Text> {
+    fn error_texts(error: &JobError) -> Vec<Text> {
         words::job(error)
     }
 
@@ -191,12 +191,12 @@ impl SessionEvents for Unit {
         if let Some((drive, ended)) = self.moves.take_end() {
             self.tell_end(drive, ended, services);
         }
-        self.hear(services);
+        self.poll_line(services);
         self.follow_axes();
         self.ask_on(services);
     }
 
-    fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {
+    fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
             DeviceMessage::ControlLost => self.control_lost(services),
             DeviceMessage::RulesUnread(why) => {
@@ -272,13 +272,13 @@ impl SessionEvents for Unit {
         words::is_silence(error)
     }
 
-    fn forget_asked(&mut self) {
+    fn forget_requests(&mut self) {
         self.forget_readings();
         self.target = None;
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
             EarlyEnd::Failed(_) => self.moves.stop(),
             // Values required before a controlled drive moves are read regardless of what ended the job.

@@ -50,8 +50,8 @@ pub fn is_silence(error: &JobError) -> bool {
     matches!(error.device(), Some(Error::NoReply { .. }))
 }
 
-pub fn doing(doing: &JobStep) -> Text {
-    match doing {
+pub fn step_text(job_step: &JobStep) -> Text {
+    match job_step {
         JobStep::Parameter(number) => parameter(*number),
         JobStep::Step(own) => check::step(*own),
         JobStep::Operation(item) => plain(item),

@@ -104,7 +104,7 @@ impl Leds {
     }
 
     /// Returns the meaning of an LED in its present state.
-    pub fn said(&self, lamp: Lamp) -> LedMeaning {
+    pub fn meaning_of(&self, lamp: Lamp) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
             Lamp::Drives => drives(self.subject(), self.drives),
             Lamp::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
@@ -230,19 +230,19 @@ mod tests {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             for row in leds.subject().rows() {
                 leds.drives = row.light;
-                let said = leds.said(Lamp::Drives);
+                let said = leds.meaning_of(Lamp::Drives);
                 same(&said.meaning, row.meaning);
                 same(&said.remedy, row.remedy);
             }
         }
         for row in BUS_LEDS {
             let leds = Leds { module: row.light, network: row.light, ..Leds::default() };
-            let said = leds.said(Lamp::Bus(row.lamp));
+            let said = leds.meaning_of(Lamp::Bus(row.lamp));
             same(&said.meaning, row.meaning);
             same(&said.remedy, row.remedy);
         }
         for row in PORT_LEDS {
-            let said = Leds { port: row.light, ..Leds::default() }.said(Lamp::Port);
+            let said = Leds { port: row.light, ..Leds::default() }.meaning_of(Lamp::Port);
             same(&said.meaning, row.meaning);
             same(&said.remedy, row.remedy);
         }
@@ -266,7 +266,7 @@ mod tests {
             let mut said = Vec::new();
             (0..lights).for_each(|_| {
                 leds.click(lamp);
-                said.push(leds.said(lamp).meaning);
+                said.push(leds.meaning_of(lamp).meaning);
             });
             said.dedup();
             assert!(said.len() == lights && leds == Leds::default(), "{lamp:?}");

@@ -224,7 +224,7 @@ impl Unit {
 
     /// Returns the running act of a drive, or how the last one ended; `None` without a cyclic connection, and before
     /// the first.
-    pub fn said(&self, drive: DriveNumber) -> Option<RequestState> {
+    pub fn running_or_last(&self, drive: DriveNumber) -> Option<RequestState> {
         let view = self.moves.drive(drive)?;
         if view.phase != Doing::Idle {
             return Some(RequestState { words: words::phase(view.phase), is_well: true });

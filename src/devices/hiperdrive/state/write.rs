@@ -62,7 +62,7 @@ impl WithMemory for Unit {
     }
 
     /// Lets go of everything that is held.
-    fn hands_off(&mut self) {
+    fn before_review(&mut self) {
         self.moves.let_go();
     }
 

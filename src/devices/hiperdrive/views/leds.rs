@@ -59,7 +59,7 @@ fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
         lamp_ui(ui, theme, leds, lamp);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
-            let said = leds.said(lamp);
+            let said = leds.meaning_of(lamp);
             let (icon, ink) = severity(theme, said.severity);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(ink));

@@ -155,7 +155,7 @@ fn news(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
             return;
         }
     }
-    if let Some(said) = unit.said(drive) {
+    if let Some(said) = unit.running_or_last(drive) {
         let ink = if said.is_well { theme.palette.good } else { theme.palette.warn };
         ui.add(egui::Label::new(RichText::new(theme.words(&said.words)).color(ink)).truncate());
     }

@@ -34,7 +34,7 @@ impl Runs for Hiperface {
     }
 
     /// Every code that the encoder announced, on a line of its own.
-    fn say(remark: &DeviceMessage) {
+    fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
             say(&format!("{}\n", words::codes_unheard(*count).terminal()));
         }

@@ -239,7 +239,7 @@ impl Hiperface {
             }
             HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(desk))?),
             HiperfaceJob::Find(options) => {
-                let watch = &mut |news: News<'_>| tell(told(news));
+                let watch = &mut |news: News<'_>| tell(message_of(news));
                 HiperfaceOutput::Found(find::find(&mut self.master(desk), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
@@ -250,7 +250,7 @@ impl Hiperface {
     }
 }
 
-fn told(news: News<'_>) -> Tell<DeviceMessage, JobStep> {
+fn message_of(news: News<'_>) -> Tell<DeviceMessage, JobStep> {
     match news {
         News::Trying { done, total, attempt } => {
             Tell::Progress(Progress { done, total, what: JobStep::Attempt(attempt.clone()) })

@@ -129,7 +129,7 @@ impl Search<'_> {
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
         self.tell(0, total, &Attempt::Listening);
-        let heard = master.overhear(LISTEN)?;
+        let heard = master.drain(LISTEN)?;
         if !heard.is_empty() {
             return Ok(Some(heard.len()));
         }

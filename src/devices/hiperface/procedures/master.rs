@@ -67,8 +67,8 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// The wire, or [`Error::Cancelled`].
-    pub fn overhear(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
-        Ok(self.line.overhear(duration)?)
+    pub fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
+        Ok(self.line.drain(duration)?)
     }
 
     /// Sets speed and parity of our side.

@@ -5,7 +5,7 @@ use super::encoder::Encoder;
 use super::review::Review;
 use super::words;
 use crate::app::Explained;
-use crate::app::review::told;
+use crate::app::review::written_texts;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, SessionEvents, Source, WithMemory, first};
 use crate::app::{PendingEdits, Severity, Text};
@@ -27,7 +27,7 @@ impl Kind for Hiperface {
     type SessionHandle = ();
     type Review = Review;
 
-    fn aside(_session: &Session<Self>) {}
+    fn session_handle(_session: &Session<Self>) {}
 
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError> {
         crate::devices::hiperface::jobs::open(url, store)
@@ -37,7 +37,7 @@ impl Kind for Hiperface {
         explained::open(error)
     }
 
-    fn job(job: &HiperfaceJob) -> Text {
+    fn job_text(job: &HiperfaceJob) -> Text {
         words::job(job)
     }
 
@@ -49,18 +49,18 @@ impl Kind for Hiperface {
         HiperfaceJob::Survey
     }
 
-    fn doing(what: &JobStep) -> Text {
-        explained::doing(what)
+    fn step_text(what: &JobStep) -> Text {
+        explained::step_text(what)
     }
 
-    fn told(output: &HiperfaceOutput) -> Option<(Severity, Vec<Text>)> {
+    fn result_texts(output: &HiperfaceOutput) -> Option<(Severity, Vec<Text>)> {
         match output {
-            HiperfaceOutput::Committed(committed) => Some(told::<Hiperface>(committed)),
+            HiperfaceOutput::Committed(committed) => Some(written_texts::<Hiperface>(committed)),
             _ => None,
         }
     }
 
-    fn why(error: &JobError) -> Vec<Text> {
+    fn error_texts(error: &JobError) -> Vec<Text> {
         explained::job(error)
     }
 
@@ -179,7 +179,7 @@ impl SessionEvents for Encoder {
         self.meaning.of(frame)
     }
 
-    fn remarked(&mut self, remark: DeviceMessage, services: &mut Services) {
+    fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
             DeviceMessage::Codes(codes) => self.announced(codes, services),
             DeviceMessage::CodesUnheard(count) => {
@@ -246,13 +246,13 @@ impl SessionEvents for Encoder {
         cause.is_lost() || (self.session.just_connected && matches!(cause, Error::Damaged { .. } | Error::NeverSilent))
     }
 
-    fn forget_asked(&mut self) {
+    fn forget_requests(&mut self) {
         self.asked = None;
         self.give_up_rest();
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
+    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], services: &mut Services) -> bool {
         if let EarlyEnd::Cancelled(error) = how {
             self.follow_what_was_done(error, services);
             self.asked = None;
@@ -278,7 +278,7 @@ impl SessionEvents for Encoder {
 
     /// Handles a failed job. A missing feature is an answer; an invalid reply is none.
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
-        let texts = Hiperface::why(error);
+        let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.job_ends(self.session.id, id, JobEnd::Failed(why.clone()));
         let stands_there = self.rest_failed(&why);

@@ -22,7 +22,7 @@ impl Runs for Interbus {
     fn begin(_session: &mut Session<Self>, _given: &Given) {}
 
     /// Steps of the handshake are for the window; a recording has their bytes.
-    fn say(_remark: &DeviceMessage) {}
+    fn print_message(_remark: &DeviceMessage) {}
 
     fn step(doing: &JobStep) -> String {
         doing.to_string()

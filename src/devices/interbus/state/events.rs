@@ -4,7 +4,7 @@ use super::drafts::Edits;
 use super::encoder::Encoder;
 use super::job;
 use crate::app::Explained;
-use crate::app::review::{Review, told};
+use crate::app::review::{Review, written_texts};
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, Saved, SessionEvents, WithMemory};
 use crate::app::{Severity, Text};
@@ -24,7 +24,7 @@ impl Kind for Interbus {
     type SessionHandle = Option<Motor>;
     type Review = Review<Self>;
 
-    fn aside(session: &Session<Self>) -> Option<Motor> {
+    fn session_handle(session: &Session<Self>) -> Option<Motor> {
         session.motor()
     }
 
@@ -32,7 +32,7 @@ impl Kind for Interbus {
         crate::devices::interbus::jobs::open(url, store)
     }
 
-    fn job(job: &InterbusJob) -> Text {
+    fn job_text(job: &InterbusJob) -> Text {
         job::words(job)
     }
 
@@ -44,18 +44,18 @@ impl Kind for Interbus {
         InterbusJob::Survey
     }
 
-    fn doing(what: &JobStep) -> Text {
-        words::doing(what)
+    fn step_text(what: &JobStep) -> Text {
+        words::step_text(what)
     }
 
-    fn told(output: &InterbusOutput) -> Option<(Severity, Vec<Text>)> {
+    fn result_texts(output: &InterbusOutput) -> Option<(Severity, Vec<Text>)> {
         match output {
-            InterbusOutput::Committed(committed) => Some(told::<Interbus>(committed)),
+            InterbusOutput::Committed(committed) => Some(written_texts::<Interbus>(committed)),
             _ => None,
         }
     }
 
-    fn why(error: &JobError) -> Vec<Text> {
+    fn error_texts(error: &JobError) -> Vec<Text> {
         words::job(error)
     }
 
@@ -87,7 +87,7 @@ impl SessionEvents for Encoder {
         self.trace.of(frame)
     }
 
-    fn remarked(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {
+    fn message_received(&mut self, DeviceMessage::Handshake(step): DeviceMessage, _: &mut Services) {
         self.shake(step);
     }
 
@@ -140,12 +140,12 @@ impl SessionEvents for Encoder {
     }
 
     /// Forgets also whether the machine stands still.
-    fn forget_asked(&mut self) {
+    fn forget_requests(&mut self) {
         self.say_stopped(false);
         self.forget_plan();
     }
 
-    fn cut_off(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
+    fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         self.cut_write(how, texts)
     }
 
@@ -163,7 +163,7 @@ impl SessionEvents for Encoder {
 
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.motor = None;
-        self.forget_asked();
+        self.forget_requests();
         self.session.let_go(end, services);
     }
 }

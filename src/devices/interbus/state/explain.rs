@@ -164,8 +164,8 @@ fn standing(standing: &LeftState) -> Text {
     }
 }
 
-pub fn doing(doing: &JobStep) -> Text {
-    match doing {
+pub fn step_text(job_step: &JobStep) -> Text {
+    match job_step {
         JobStep::ReadOut(read_out) => item::read_out(*read_out),
         JobStep::Program(program) => TEXTS.text("ib_startup.program").with("program", program.get()),
         JobStep::Operation(item) => plain(item),

@@ -98,7 +98,7 @@ impl Reading {
         let known = Known { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
         let (says, warning) = match self.way {
             Way::Out => (said::out(number, self.mode), None),
-            Way::In => (said::told(number, &known), said::stray(number)),
+            Way::In => (said::word_text(number, &known), said::stray(number)),
             // Four digits.
             Way::K1 => single(Single::parse_k1(number as u16)),
             Way::K2 => single(Single::parse_k2(number)),

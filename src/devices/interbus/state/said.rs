@@ -74,7 +74,7 @@ pub fn mode_of(command: Command) -> Mode {
 }
 
 /// Returns the meaning of an IN word.
-pub fn told(word: u32, known: &Known) -> Text {
+pub fn word_text(word: u32, known: &Known) -> Text {
     let reply = Reply::parse(word);
     match reply {
         Reply::Run { value, .. } => match known.mode {
@@ -184,11 +184,11 @@ mod tests {
             (0x8000_0000, Mode::Cam, "position or cam outputs not valid (0x80000000)"),
             (0x9800_0004, Mode::Cam, "a cam starts or stops beyond the measuring range (0x98000004)"),
         ] {
-            assert_eq!(english(told(word, &known(mode))), says, "{word:08X}");
+            assert_eq!(english(word_text(word, &known(mode))), says, "{word:08X}");
         }
         let temperature = Known { read_out: Some(ReadOut::TEMPERATURE), ..known(Mode::ReadOut) };
-        assert_eq!(english(told(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
-        assert_eq!(told(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
+        assert_eq!(english(word_text(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
+        assert_eq!(word_text(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
         assert!(stray(0x0412_3456).is_some() && stray(0x0012_3456).is_none() && stray(0xC200_00FF).is_none());
     }
 }

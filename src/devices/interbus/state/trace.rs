@@ -38,7 +38,7 @@ impl Meaning {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
             self.asked.clone_from(&bytes);
-            return self.said(entry.direction, &bytes).into();
+            return self.meanings(entry.direction, &bytes).into();
         }
         match fault(&self.asked, &bytes, self.order) {
             Some(Fault::Broken(damage)) => Explained::broken(explained::damage(damage)),
@@ -51,7 +51,7 @@ impl Meaning {
 
     /// A reply; an error word in it is one of the encoder's.
     fn received(&mut self, bytes: &[u8]) -> Explained {
-        let meaning = self.said(Direction::Received, bytes);
+        let meaning = self.meanings(Direction::Received, bytes);
         let is_error = match carried(false, bytes, self.order) {
             Some(Carried::In(word)) => matches!(Reply::parse(word), Reply::Error(_)),
             _ => false,
@@ -59,7 +59,7 @@ impl Meaning {
         Explained { meaning, fault: is_error.then_some(TraceFault::Reported) }
     }
 
-    fn said(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
+    fn meanings(&mut self, direction: Direction, bytes: &[u8]) -> Vec<Text> {
         match carried(direction == Direction::Sent, bytes, self.order) {
             Some(Carried::Out(word)) => {
                 let command = self.command(word);
@@ -68,7 +68,7 @@ impl Meaning {
             }
             Some(Carried::In(word)) => {
                 let known = Known { mode: self.mode, read_out: self.read_out, shift: self.shift };
-                vec![word_of("ib_trace.in", word), said::told(word, &known)]
+                vec![word_of("ib_trace.in", word), said::word_text(word, &known)]
             }
             None => Vec::new(),
         }

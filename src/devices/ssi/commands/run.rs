@@ -29,7 +29,7 @@ impl Runs for Ssi {
         session.station().asking
     }
 
-    fn say(remark: &Infallible) {
+    fn print_message(remark: &Infallible) {
         match *remark {}
     }
 

@@ -27,7 +27,7 @@ impl Kind for Ssi {
     /// Nothing is ever written into it.
     type Review = Infallible;
 
-    fn aside(session: &Session<Self>) -> Option<Motor> {
+    fn session_handle(session: &Session<Self>) -> Option<Motor> {
         session.motor()
     }
 
@@ -35,7 +35,7 @@ impl Kind for Ssi {
         crate::devices::ssi::jobs::open(url, store)
     }
 
-    fn job(job: &SsiJob) -> Text {
+    fn job_text(job: &SsiJob) -> Text {
         words::job(job)
     }
 
@@ -43,11 +43,11 @@ impl Kind for Ssi {
         SsiJob::Hello
     }
 
-    fn doing(_: &Self::JobStep) -> Text {
+    fn step_text(_: &Self::JobStep) -> Text {
         TEXTS.text("ssi_job.words")
     }
 
-    fn why(error: &JobError) -> Vec<Text> {
+    fn error_texts(error: &JobError) -> Vec<Text> {
         explained::job(error)
     }
 
@@ -99,11 +99,11 @@ impl SessionEvents for Encoder {
     }
 
     fn pump(&mut self, services: &mut Services) {
-        self.hear(services);
+        self.poll_line(services);
         self.tell_asking(services);
     }
 
-    fn remarked(&mut self, remark: Infallible, _: &mut Services) {
+    fn message_received(&mut self, remark: Infallible, _: &mut Services) {
         match remark {}
     }
 
@@ -128,12 +128,12 @@ impl SessionEvents for Encoder {
         matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
     }
 
-    fn forget_asked(&mut self) {
+    fn forget_requests(&mut self) {
         (self.motor, self.told, self.identity) = (None, None, None);
     }
 
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         services.job_ends(self.session.id, id, JobEnd::Cancelled);
-        services.tell(Severity::Warning, Ssi::why(error), Some(&self.session.name()));
+        services.tell(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
     }
 }

@@ -199,7 +199,7 @@ impl Diagram {
     }
 
     /// Returns the state at a moment: the time, and the clock with its content, or what the lines wait for.
-    pub fn told(&self, at: f64) -> Vec<Text> {
+    pub fn state_at(&self, at: f64) -> Vec<Text> {
         let mut told = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
             told.push(cell(&self.strip, bit.clock));

@@ -16,7 +16,7 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     let packet = traced::packet(&bytes);
     let said = packet.and_then(|packet| match Request::parse(&packet) {
         Ok(request) => Some(traced::asked(&request)),
-        Err(_) => traced::said(&packet),
+        Err(_) => traced::message_text(&packet),
     });
     said.into_iter().collect::<Vec<_>>().into()
 }

@@ -81,14 +81,14 @@ fn result(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     told("ssi_timing.most_clock", cable);
     ui.add_space(theme.space.inside);
     if timing.warnings.is_empty() {
-        said(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));
+        warning_ui(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));
     }
     for warning in &timing.warnings {
-        said(ui, theme, (icons::WARNING, theme.palette.warn), &words::timing(warning));
+        warning_ui(ui, theme, (icons::WARNING, theme.palette.warn), &words::timing(warning));
     }
 }
 
-fn said(ui: &mut Ui, theme: &Theme, (icon, colour): (&str, crate::app::Rgb), words: &Text) {
+fn warning_ui(ui: &mut Ui, theme: &Theme, (icon, colour): (&str, crate::app::Rgb), words: &Text) {
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));
         paragraph(ui, theme.words(words));

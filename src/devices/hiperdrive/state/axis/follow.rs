@@ -101,7 +101,7 @@ impl Axis {
                 self.confirmed = seen.limits.map(confirmed);
             }
             Ask::PowerCycle => self.lose(),
-            Ask::BelieveRestart => self.power = self.power.map(Power::said),
+            Ask::BelieveRestart => self.power = self.power.map(Power::confirmed_by_user),
             Ask::Move(_) | Ask::Take | Ask::Give | Ask::Acknowledge => {}
         }
     }

@@ -115,7 +115,7 @@ impl Power {
     }
 
     /// A person says that the supply was off, where nothing proves or disproves it.
-    pub(super) const fn said(self) -> Self {
+    pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven } => {
                 Power::Back { before, kept, moved, allowed, restart: Restart::Said }

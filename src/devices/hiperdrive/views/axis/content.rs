@@ -75,7 +75,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
 pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let step = shown.axis.step();
     if step.jogs() {
-        said(ui, theme, shown);
+        availability_ui(ui, theme, shown);
     }
     match step {
         Step::Scale => scale(ui, theme, shown, entries),
@@ -109,7 +109,7 @@ fn may_jog(shown: &AxisPicture<'_>, direction: Direction) -> Result<(), Text> {
 }
 
 /// Draws why the pads do nothing, or what they do.
-fn said(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
+fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
         super::line(ui, theme, Severity::Error, &outside);
@@ -122,7 +122,7 @@ fn said(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     {
         super::warning(ui, theme, &why);
     }
-    if let Some(said) = shown.unit.said(shown.axis.drive()) {
+    if let Some(said) = shown.unit.running_or_last(shown.axis.drive()) {
         let ink = if said.is_well { theme.palette.muted } else { theme.palette.warn };
         paragraph(ui, RichText::new(theme.words(&said.words)).color(ink));
     }

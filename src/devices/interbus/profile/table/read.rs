@@ -186,7 +186,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
         text => {
             let own =
                 whole(text, &["program", "programm", "p"]).and_then(|own| ProgramNumber::new(u8::try_from(own).ok()?));
-            own.ok_or_else(|| wrong(Column::Program, Wrong::Program { text: told(text) }))?
+            own.ok_or_else(|| wrong(Column::Program, Wrong::Program { text: excerpt(text) }))?
         }
     };
     let (mut cam, mut name) = (None, cell(Column::Name).to_owned());
@@ -194,11 +194,11 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     match whole(text, &["cam", "nocken", "nocke"]) {
         Some(own) => {
             let own = u8::try_from(own).ok().and_then(CamNumber::new);
-            cam = Some(own.ok_or_else(|| wrong(Column::Cam, Wrong::Cam { text: told(text) }))?);
+            cam = Some(own.ok_or_else(|| wrong(Column::Cam, Wrong::Cam { text: excerpt(text) }))?);
         }
         None if text.is_empty() => {}
         None if columns.cam_or_name => text.clone_into(&mut name),
-        None => return Err(wrong(Column::Cam, Wrong::Cam { text: told(text) })),
+        None => return Err(wrong(Column::Cam, Wrong::Cam { text: excerpt(text) })),
     }
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
         let column = if columns.cam_or_name { Column::Cam } else { Column::Name };
@@ -206,7 +206,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     }
     let value = |column| match cell(column) {
         "" => Err(wrong(column, Wrong::Missing(column))),
-        text => number(text, comma).ok_or_else(|| wrong(column, Wrong::Number { text: told(text) })),
+        text => number(text, comma).ok_or_else(|| wrong(column, Wrong::Number { text: excerpt(text) })),
     };
     let (start, stop) = (value(Column::Start)?, value(Column::Stop)?);
     let outside = |column| move |outside| wrong(column, Wrong::Outside { column, outside });
@@ -259,7 +259,7 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
 }
 
 /// The beginning of a cell.
-fn told(text: &str) -> String {
+fn excerpt(text: &str) -> String {
     let mut told: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {
         told.push('…');

@@ -189,7 +189,7 @@ impl Read {
     }
 
     /// All that has to be said, whatever is unusual.
-    pub(super) fn said(&self) -> f64 {
+    pub(super) fn cost(&self) -> f64 {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
 

@@ -36,7 +36,7 @@ pub(super) fn doubt(words: &Seen, groups: &[Group]) -> Option<Doubt> {
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
     let sure = sure && !jumps_alike(&first.read) && words.different() >= SURE_DIFFERENT;
     // However improbable the others are.
-    let sure = sure && groups.iter().skip(1).all(|next| next.read.said() - first.read.said() >= LEAD_BITS);
+    let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven(words, first).is_empty();
     (!proven).then_some(Doubt::Open)
 }

@@ -77,7 +77,8 @@ fn a_long_pause_is_broken_and_says_so() {
 #[test]
 fn a_moment_is_told() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
-    let told = |at: f64| diagram.told(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
+    let told =
+        |at: f64| diagram.state_at(at * 1e-6).iter().map(|text| text.words(Language::English)).collect::<Vec<_>>();
     assert_eq!(told(3.0), ["3 µs after the first edge", "Clock 1: MT11, one of 12 bits of the turns"]);
     assert_eq!(told(90.0), ["90 µs after the first edge", "Pause: 40 µs", "tm = 15 µs to 25 µs"]);
     assert_eq!(told(0.5), ["500 ns after the first edge"]);

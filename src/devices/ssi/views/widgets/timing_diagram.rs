@@ -120,7 +120,7 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let under = response.hover_pos().and_then(|pos| axis.at(pos.x - outer.left()));
     if let Some(at) = under {
         response.on_hover_ui_at_pointer(|ui| {
-            for (number, text) in diagram.told(at).iter().enumerate() {
+            for (number, text) in diagram.state_at(at).iter().enumerate() {
                 let words = theme.words(text);
                 if number == 0 {
                     ui.label(theme.caption(words))

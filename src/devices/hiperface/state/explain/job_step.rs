@@ -6,8 +6,8 @@ use crate::devices::hiperface::jobs::JobStep;
 use crate::devices::hiperface::procedures::find::Attempt;
 use crate::devices::hiperface::state::TEXTS;
 
-pub fn doing(doing: &JobStep) -> Text {
-    match doing {
+pub fn step_text(job_step: &JobStep) -> Text {
+    match job_step {
         JobStep::Field(field) => TEXTS.text("op.field").with("field", field),
         JobStep::Operation(operation) => op(operation).item,
         JobStep::Attempt(Attempt::Listening) => TEXTS.text("doing.listening"),
