@@ -11,7 +11,7 @@ use std::time::Instant;
 use encoder_studio::analysis::history::{History, Kind, Part};
 use encoder_studio::analysis::{Time, Unwrap};
 use encoder_studio::buses::bridge::protocol::{BissData, BissStatus, Continuity, Data, Gap, Message, Receiver};
-use encoder_studio::devices::biss::protocol::{Crc, FrameError, Layout, Reading};
+use encoder_studio::devices::biss::protocol::{Crc, FrameError, Layout, PositionData};
 
 /// Frames in a batch, and how often it is decoded in one measurement.
 const FRAMES: usize = 1 << 16;
@@ -39,7 +39,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     (0..FRAMES)
         .map(|at| {
-            let reading = Reading {
+            let reading = PositionData {
                 multiturn: random.u32(..),
                 singleturn: random.u32(..),
                 error: random.u8(..) == 0,
@@ -65,14 +65,14 @@ fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
 }
 
 /// The kit encoder's frame the way that the manual tells it: a bit of the checksum at a time.
-fn bit_by_bit(raw: u64) -> Option<Reading> {
+fn bit_by_bit(raw: u64) -> Option<PositionData> {
     let data = raw >> 6;
     let mut sum = 0u8;
     for at in (0..35).rev() {
         let feedback = sum >> 5 ^ (data >> at & 1) as u8;
         sum = sum << 1 & 0x3F ^ if feedback == 1 { 3 } else { 0 };
     }
-    let reading = Reading {
+    let reading = PositionData {
         multiturn: (data >> 19) as u32 & 0xFFFF,
         singleturn: (data >> 2) as u32 & 0x1_FFFF,
         error: data & 2 == 0,
@@ -99,7 +99,7 @@ fn sent(layout: &Layout) -> Vec<u8> {
     let frame = |index: u32| {
         let steps = u64::from(index) * 131_072 * u64::from(PERIOD_US) / 20_000;
         let (multiturn, singleturn) = ((steps >> 17) as u32 & 0xFFFF, steps as u32 & 0x1_FFFF);
-        (BissStatus::OK, layout.emit(&Reading { multiturn, singleturn, error: false, warning: false }))
+        (BissStatus::OK, layout.emit(&PositionData { multiturn, singleturn, error: false, warning: false }))
     };
     let count = SECONDS * 1_000_000 / PERIOD_US;
     let packet = |first_index: u32| {
@@ -127,7 +127,7 @@ fn receive(bytes: &[u8], layout: &Layout) -> u64 {
             times.clear();
             steps.clear();
             for (at, (_, raw)) in data.values.iter().enumerate() {
-                let reading: Result<Reading, FrameError> = layout.parse(*raw);
+                let reading: Result<PositionData, FrameError> = layout.parse(*raw);
                 let position = i64::try_from(layout.steps(&reading.unwrap())).unwrap();
                 steps.push(unwrap.next(position).unwrap().steps);
                 let nanoseconds = (data.t0_us as i64 + at as i64 * i64::from(data.period_us)) * 1000;

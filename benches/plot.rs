@@ -41,7 +41,7 @@ fn main() {
     let stretch = |share: f64, round: usize| {
         let length = (span as f64 * share) as i64;
         let from = (span - length).max(0) / 3 + round as i64 * length / 997;
-        recorder::Action::Look(Time::from_nanoseconds(from), Time::from_nanoseconds(from + length))
+        recorder::RecorderAction::Look(Time::from_nanoseconds(from), Time::from_nanoseconds(from + length))
     };
     for (label, share) in [
         ("all visible", 1.0),
@@ -55,10 +55,10 @@ fn main() {
         let took = bench.rounds(&mut recorder, |recorder, round| recorder.act(stretch(share, round)));
         println!("  {label:<26} {took}");
     }
-    recorder.act(recorder::Action::Look(all.0, all.1));
+    recorder.act(recorder::RecorderAction::Look(all.0, all.1));
     println!("  {:<26} {}", "standing still", bench.rounds(&mut recorder, |_, _| {}));
-    recorder.act(recorder::Action::Fit);
-    recorder.act(recorder::Action::Follow);
+    recorder.act(recorder::RecorderAction::Fit);
+    recorder.act(recorder::RecorderAction::Follow);
     let mut next = SAMPLES;
     let took = bench.rounds(&mut recorder, |recorder, _| {
         // Two thousand samples between two pictures, as they come at 100 kHz.

@@ -11,7 +11,7 @@ mod ssi_recordings;
 use std::hint::black_box;
 use std::time::Instant;
 
-use encoder_studio::devices::ssi::protocol::{Families, Flags, Layout, Reading, Settings, find};
+use encoder_studio::devices::ssi::protocol::{Families, Flags, FrameReading, Layout, Settings, find};
 
 const FRAMES: usize = 1 << 14;
 const PASSES: usize = 64;
@@ -66,7 +66,7 @@ fn main() {
     {
         let layout = layout(text);
         let frames = frames(&layout);
-        let mut readings = vec![Reading::default(); FRAMES];
+        let mut readings = vec![FrameReading::default(); FRAMES];
         let seconds = median(|| {
             for _ in 0..PASSES {
                 layout.decode_all(black_box(&frames), &mut readings);

@@ -197,7 +197,7 @@ fn plot() {
                 let mailbox = studio.mailbox();
                 mailbox.send(Action::Recorder(
                     encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),
-                    recorder::Action::Look(from, to),
+                    recorder::RecorderAction::Look(from, to),
                 ));
                 if self.times.len() == 1 {
                     let lines = studio.tool::<Signals>().expect("there is a Signals tab").scope().recorder.lines();
@@ -206,7 +206,7 @@ fn plot() {
                         let shown = [0, 1, 4, 6].contains(&at);
                         mailbox.send(Action::Recorder(
                             encoder_studio::app::RecorderOwner::Tool(encoder_studio::app::Tab::named("Signals")),
-                            recorder::Action::Show(line.id, shown),
+                            recorder::RecorderAction::Show(line.id, shown),
                         ));
                     }
                 }
@@ -232,7 +232,7 @@ fn plot() {
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
     let mut studio = Studio::new(World::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
     studio.begin(None, None);
-    studio.act(Action::tool(signals::Action::Open(folder.join("capture.csv"))));
+    studio.act(Action::tool(signals::SignalsAction::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default().with_inner_size([1280.0, 800.0]),
         renderer: eframe::Renderer::Glow,

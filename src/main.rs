@@ -2,15 +2,15 @@
 
 use std::process::ExitCode;
 
-use encoder_studio::cli::{self, Asked};
+use encoder_studio::cli::{self, Invocation};
 use encoder_studio::kinds::program;
 use encoder_studio::ui;
 
 fn main() -> ExitCode {
     let program = program();
     match cli::run(std::env::args_os(), program.studio.formats, program.commands) {
-        Asked::Command(status) => ExitCode::from(status),
-        Asked::Window(start) => match ui::run(start, program.studio, program.tabs) {
+        Invocation::Command(status) => ExitCode::from(status),
+        Invocation::Window(start) => match ui::run(start, program.studio, program.tabs) {
             Ok(()) => ExitCode::SUCCESS,
             Err(why) => ExitCode::from(cli::no_window(&why)),
         },

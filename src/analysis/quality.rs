@@ -80,7 +80,7 @@ impl Family {
 
 /// A value out of its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Finding {
+pub enum QualityFinding {
     /// An amplitude (peak) in volts, the smaller or larger of the two channels.
     Amplitude {
         /// Found, peak, in volts.
@@ -142,19 +142,19 @@ impl Limits {
 
     /// Returns the values of an ellipse that are out of their limits, in the order of section 2. `residual_rms` is
     /// relative to the amplitude.
-    pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<Finding> {
+    pub fn judge(&self, ellipse: &Ellipse, residual_rms: f64) -> Vec<QualityFinding> {
         let amplitude = ellipse.amplitude_v;
         let worst = [amplitude, ellipse.amplitude_sine_v()].map(|volts| (self.amplitude(volts), volts));
         let (verdict, volts) = if worst[1].0 > worst[0].0 { worst[1] } else { worst[0] };
         let offsets = [ellipse.offset_sine_v / amplitude, ellipse.offset_cosine_v / amplitude];
         let beyond = |value: f64, limit: f64| !within(value, (-limit, limit));
         [
-            (verdict != Verdict::Ok, Finding::Amplitude { volts, ok_v: self.ok_v, verdict }),
-            (beyond(offsets[0], self.offset), Finding::OffsetSine(offsets[0])),
-            (beyond(offsets[1], self.offset), Finding::OffsetCosine(offsets[1])),
-            (!within(ellipse.gain_ratio, self.gain_ratio), Finding::GainRatio(ellipse.gain_ratio)),
-            (beyond(ellipse.phase_error_deg(), self.phase_deg), Finding::PhaseError(ellipse.phase_error_deg())),
-            (beyond(residual_rms, self.residual), Finding::Residual(residual_rms)),
+            (verdict != Verdict::Ok, QualityFinding::Amplitude { volts, ok_v: self.ok_v, verdict }),
+            (beyond(offsets[0], self.offset), QualityFinding::OffsetSine(offsets[0])),
+            (beyond(offsets[1], self.offset), QualityFinding::OffsetCosine(offsets[1])),
+            (!within(ellipse.gain_ratio, self.gain_ratio), QualityFinding::GainRatio(ellipse.gain_ratio)),
+            (beyond(ellipse.phase_error_deg(), self.phase_deg), QualityFinding::PhaseError(ellipse.phase_error_deg())),
+            (beyond(residual_rms, self.residual), QualityFinding::Residual(residual_rms)),
         ]
         .into_iter()
         .filter_map(|(out, finding)| out.then_some(finding))
@@ -210,8 +210,13 @@ mod tests {
         let limits = Limits::HIPERFACE;
         assert_eq!(limits.judge(&good, 0.02), []);
         let bad = Ellipse { amplitude_v: 0.5, gain_ratio: 2.0, offset_sine_v: 0.03, ..good };
-        let amplitude = Finding::Amplitude { volts: 0.25, ok_v: (0.45, 0.55), verdict: Verdict::Fault };
-        let expected = [amplitude, Finding::OffsetSine(0.06), Finding::GainRatio(2.0), Finding::Residual(0.03)];
+        let amplitude = QualityFinding::Amplitude { volts: 0.25, ok_v: (0.45, 0.55), verdict: Verdict::Fault };
+        let expected = [
+            amplitude,
+            QualityFinding::OffsetSine(0.06),
+            QualityFinding::GainRatio(2.0),
+            QualityFinding::Residual(0.03),
+        ];
         assert_eq!(limits.judge(&bad, 0.03), expected);
     }
 }

@@ -53,7 +53,7 @@ pub enum Action {
     /// The notice that stands in the window has been read.
     Dismiss,
     /// The connection dialog.
-    Connect(connect::Action),
+    Connect(connect::ConnectAction),
     /// Connect the virtual device of the open tab.
     OpenVirtual,
     /// Save a profile: into the file that is open, else into one that is asked for.
@@ -74,7 +74,7 @@ pub enum Action {
     /// A file was chosen, and what is there may be replaced.
     Chosen(FileQuestion, PathBuf),
     /// Something with the recorder of a desk.
-    Recorder(RecorderOwner, recorder::Action),
+    Recorder(RecorderOwner, recorder::RecorderAction),
     /// Forget what a recorder has recorded; asks first when that is much.
     AskForget(RecorderOwner),
     /// Ask where to write a table of what a recorder shows: of what is visible, or of all.

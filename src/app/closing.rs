@@ -148,7 +148,7 @@ impl Studio {
             }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
             Some(Then::Find(tab)) => self.find_confirmed(tab),
-            Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::Action::Clear),
+            Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::RecorderAction::Clear),
             None => {}
         }
     }

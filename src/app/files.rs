@@ -54,7 +54,7 @@ impl Studio {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
             FileQuestion::OpenCapture => self.open_capture(path),
-            FileQuestion::Recording => self.act(Action::Connect(connect::Action::Recording(path))),
+            FileQuestion::Recording => self.act(Action::Connect(connect::ConnectAction::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),
             FileQuestion::OfDevice(file) => {
                 let action = file.chosen(path, self.settings.language);
@@ -88,7 +88,7 @@ impl Studio {
         }
     }
 
-    pub(super) fn act_recorder(&mut self, desk: RecorderOwner, action: recorder::Action) {
+    pub(super) fn act_recorder(&mut self, desk: RecorderOwner, action: recorder::RecorderAction) {
         if let Some(recorder) = self.recorder_mut(desk) {
             recorder.act(action);
         }
@@ -99,7 +99,7 @@ impl Studio {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
             self.question = Some(Question::before(text, confirm, Then::Forget(desk)));
         } else {
-            self.act_recorder(desk, recorder::Action::Clear);
+            self.act_recorder(desk, recorder::RecorderAction::Clear);
         }
     }
 

@@ -329,7 +329,7 @@ impl<W: Watchable> Track<W> {
         }
         let (began, shift, apart, span) = (self.began.take(), self.shift, self.apart, self.recorder.span());
         *self = Track { began, shift, apart, ..Track::default() };
-        self.recorder.act(recorder::Action::SetSpan(span));
+        self.recorder.act(recorder::RecorderAction::SetSpan(span));
     }
 
     /// Positions mean this from now on. What was recorded with another meaning stays as it was, in lines that end here.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::args::Consenting;
 use super::output::{Output, say};
-use super::runner::{Ended, Runs};
+use super::runner::{JobFailure, Runs};
 use super::{Failure, Result};
 use crate::profile::Consent;
 use crate::worker::commit::{ApprovedPlan, Planned};
@@ -53,7 +53,7 @@ where
 {
     let cost = prepared.plan().write_cycles();
     worker::check_wear(prepared.cycles_seen(), cost, prepared.wear_limit(), consent.force_wear)
-        .map_err(|refused| Ended::<D>::Job(Box::new(refused.into())).into_failure())
+        .map_err(|refused| JobFailure::<D>::Job(Box::new(refused.into())).into_failure())
 }
 
 /// A file that is to be written may stand there already: on a terminal that is asked, before any device is. Without one it is

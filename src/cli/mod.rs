@@ -26,8 +26,8 @@ pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, 
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};
-pub use profiles::{Left, keep, restore_options, to_restore, write_restore};
-pub use runner::{Ended, Runner, Runs, failed, unexpected};
+pub use profiles::{Unrestored, keep, restore_options, to_restore, write_restore};
+pub use runner::{JobFailure, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};
 pub use slow_reply_notice::Pace;
 
@@ -59,7 +59,7 @@ pub enum Failure {
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
 /// What the arguments request.
-pub enum Asked {
+pub enum Invocation {
     /// A command, which has ended with this status.
     Command(u8),
     Window(Window),
@@ -78,22 +78,22 @@ pub struct Window {
 
 /// Runs the command that the arguments of a process name, the first of which is the program's name; without one the window is
 /// asked for. Profiles are read in these formats; these are the kinds of device that there are commands for.
-pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Asked {
+pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
         Err(error) => {
             output::say_usage(&error);
-            return Asked::Command(u8::try_from(error.exit_code()).unwrap_or(2));
+            return Invocation::Command(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
     let Arguments { common, profile, command } = arguments;
     match command {
         Some(_) if profile.is_some() => {
-            Asked::Command(end(Err(usage("--profile is for the window, without a command"))))
+            Invocation::Command(end(Err(usage("--profile is for the window, without a command"))))
         }
         Some(command) => {
             output::log_to_stderr();
-            Asked::Command(end(call(&common, command, &Output::new(common.json, formats, commands))))
+            Invocation::Command(end(call(&common, command, &Output::new(common.json, formats, commands))))
         }
         None => window(common, profile),
     }
@@ -104,16 +104,18 @@ pub fn no_window(why: &str) -> u8 {
     end(Err(Failure::Failed(vec![why.to_owned()])))
 }
 
-fn window(common: Common, profile: Option<PathBuf>) -> Asked {
+fn window(common: Common, profile: Option<PathBuf>) -> Invocation {
     if common.only_master {
-        return Asked::Command(end(Err(usage("--only-master needs a command; the window asks"))));
+        return Invocation::Command(end(Err(usage("--only-master needs a command; the window asks"))));
     }
     if common.json || common.trace.is_some() {
-        return Asked::Command(end(Err(usage("--json and --trace need a command; encoder-studio help lists them"))));
+        return Invocation::Command(end(Err(usage(
+            "--json and --trace need a command; encoder-studio help lists them",
+        ))));
     }
     match common.given() {
-        Ok(given) => Asked::Window(Window { link: common.link, profile, given }),
-        Err(failure) => Asked::Command(end(Err(failure))),
+        Ok(given) => Invocation::Window(Window { link: common.link, profile, given }),
+        Err(failure) => Invocation::Command(end(Err(failure))),
     }
 }
 

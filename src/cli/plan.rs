@@ -23,11 +23,11 @@ impl PlanReport {
     /// The report of a plan whose operations a person and a script see as the same steps.
     pub fn of<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
-        steps: Vec<Step>,
+        steps: Vec<PlanStep>,
         seen: Option<u64>,
         limit: Option<u64>,
     ) -> Self {
-        let operations = steps.iter().map(Step::json).collect();
+        let operations = steps.iter().map(PlanStep::json).collect();
         PlanReport {
             operations,
             text: text(plan, lines(steps.into_iter()), seen, limit),
@@ -37,7 +37,7 @@ impl PlanReport {
 }
 
 /// A line of a plan.
-pub struct Step {
+pub struct PlanStep {
     /// The item that changes.
     pub item: String,
     /// The old value.
@@ -48,7 +48,7 @@ pub struct Step {
     pub write_cycles: u64,
 }
 
-impl Step {
+impl PlanStep {
     /// For a script.
     pub fn json(&self) -> Json {
         json!({"item": self.item, "old": self.old, "new": self.new, "write_cycles": self.write_cycles})
@@ -56,9 +56,9 @@ impl Step {
 }
 
 /// Steps for a person, a line each.
-pub fn lines(steps: impl Iterator<Item = Step>) -> Lines {
+pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     let mut lines = Lines::default();
-    for Step { item, old, new, .. } in steps {
+    for PlanStep { item, old, new, .. } in steps {
         let new = new.unwrap_or_default();
         match old {
             Some(old) => lines.add(item, format!("{old}  →  {new}")),

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use super::args::Position;
-use super::runner::{Ended, Runner, Runs};
+use super::runner::{JobFailure, Runner, Runs};
 use super::{Done, Result};
 use crate::worker::EndedEarly as _;
 
@@ -15,7 +15,7 @@ pub fn readings<D: Runs>(
     mut show: impl FnMut(D::Output) -> Result<()>,
 ) -> Result {
     try_readings(runner, position, job, |_, came| {
-        show(came.map_err(|error| Ended::<D>::Job(error).into_failure())?).map(|()| true)
+        show(came.map_err(|error| JobFailure::<D>::Job(error).into_failure())?).map(|()| true)
     })
 }
 
@@ -44,8 +44,8 @@ pub fn try_readings<D: Runs>(
         first = false;
         let came = match runner.try_run(job()) {
             Ok(output) => Ok(output),
-            Err(Ended::Job(error)) if endless && error.is_cancelled() => return Ok(Done::Well),
-            Err(Ended::Job(error)) => Err(error),
+            Err(JobFailure::Job(error)) if endless && error.is_cancelled() => return Ok(Done::Well),
+            Err(JobFailure::Job(error)) => Err(error),
             Err(ended) => return Err(ended.into_failure()),
         };
         lines += match show(runner, came) {

@@ -110,7 +110,7 @@ pub fn write_restore(
     output: &Output,
     restore: &Restore,
     plan: &PlanReport,
-    left: &Left,
+    left: &Unrestored,
     write: impl FnOnce() -> Result<WriteSummary>,
 ) -> Result {
     left.warn(output);
@@ -160,7 +160,7 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
 }
 
 /// What a restore leaves unchanged.
-pub struct Left {
+pub struct Unrestored {
     /// Things that are already as the profile says.
     pub unchanged: u64,
     /// Items that only one side has.
@@ -169,7 +169,7 @@ pub struct Left {
     pub redo: Vec<String>,
 }
 
-impl Left {
+impl Unrestored {
     /// Prints which values have to be set up again.
     fn warn(&self, output: &Output) {
         let items = self.redo.iter().map(explain::plain).collect();
@@ -180,7 +180,7 @@ impl Left {
 }
 
 /// Prints what a restore would do.
-fn show_dry_run(output: &Output, plan: &PlanReport, left: &Left) -> Result {
+fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result {
     let json = json!({
         "dry_run": true,
         "operations": plan.operations,
@@ -197,7 +197,7 @@ fn show_dry_run(output: &Output, plan: &PlanReport, left: &Left) -> Result {
 }
 
 /// Prints what a restore has done.
-fn show_restored(output: &Output, spent: &WriteSummary, left: &Left) -> Result {
+fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Result {
     let json = json!({
         "written": spent.written,
         "unchanged": left.unchanged,

@@ -75,7 +75,7 @@ pub struct Runner<D: Runs> {
 }
 
 /// A job that ended early.
-pub enum Ended<D: Runs> {
+pub enum JobFailure<D: Runs> {
     Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
     Interrupted,
@@ -142,13 +142,13 @@ impl<D: Runs> Runner<D> {
 
     /// Runs a job to its end.
     pub fn run(&mut self, job: D::Job) -> Result<D::Output> {
-        self.try_run(job).map_err(Ended::into_failure)
+        self.try_run(job).map_err(JobFailure::into_failure)
     }
 
     /// Runs a job to its end and lets the caller look at an error.
-    pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, Ended<D>> {
+    pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, JobFailure<D>> {
         self.remarks.clear();
-        let id = self.worker.submit(job).map_err(|_| Ended::Worker)?;
+        let id = self.worker.submit(job).map_err(|_| JobFailure::Worker)?;
         if self.is_interrupted() {
             // It came before the job, for which it is meant as well.
             self.worker.stop();
@@ -176,22 +176,24 @@ impl<D: Runs> Runner<D> {
                     self.remarks.push(remark);
                 }
                 Event::Finished(of, output) if of == id => return Ok(*output),
-                Event::Failed(of, error) | Event::Cancelled(of, error) if of == id => return Err(Ended::Job(error)),
+                Event::Failed(of, error) | Event::Cancelled(of, error) if of == id => {
+                    return Err(JobFailure::Job(error));
+                }
                 _ => {}
             }
         }
     }
 
     /// Returns the next event; `None` when it is time for a check.
-    fn next_event(&self) -> std::result::Result<Option<Event<D>>, Ended<D>> {
+    fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
         let Some(left) = self.patience.left() else {
-            return events.recv().map(Some).map_err(|_| Ended::Worker);
+            return events.recv().map(Some).map_err(|_| JobFailure::Worker);
         };
         match events.recv_timeout(left) {
             Ok(event) => Ok(Some(event)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(Ended::Worker),
+            Err(RecvTimeoutError::Disconnected) => Err(JobFailure::Worker),
         }
     }
 
@@ -199,15 +201,15 @@ impl<D: Runs> Runner<D> {
     pub(super) fn pause(&self, duration: Duration) -> Result<()> {
         let end = Instant::now() + duration;
         loop {
-            self.check_interrupt().map_err(Ended::into_failure)?;
+            self.check_interrupt().map_err(JobFailure::into_failure)?;
             let left = end.saturating_duration_since(Instant::now());
             if left.is_zero() {
                 return Ok(());
             }
             match self.worker.events().recv_timeout(left.min(Duration::from_millis(50))) {
-                Ok(Event::Lost(error)) => return Err(Ended::<D>::Lost(error).into_failure()),
+                Ok(Event::Lost(error)) => return Err(JobFailure::<D>::Lost(error).into_failure()),
                 Ok(_) | Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return Err(Ended::<D>::Worker.into_failure()),
+                Err(RecvTimeoutError::Disconnected) => return Err(JobFailure::<D>::Worker.into_failure()),
             }
         }
     }
@@ -217,19 +219,21 @@ impl<D: Runs> Runner<D> {
         self.interrupted.load(Ordering::SeqCst)
     }
 
-    fn check_interrupt(&self) -> std::result::Result<(), Ended<D>> {
-        if self.is_interrupted() { Err(Ended::Interrupted) } else { Ok(()) }
+    fn check_interrupt(&self) -> std::result::Result<(), JobFailure<D>> {
+        if self.is_interrupted() { Err(JobFailure::Interrupted) } else { Ok(()) }
     }
 }
 
-impl<D: Runs> Ended<D> {
+impl<D: Runs> JobFailure<D> {
     /// Returns it as what a command comes to.
     pub fn into_failure(self) -> Failure {
         match self {
-            Ended::Job(error) => Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal).collect())),
-            Ended::Interrupted => failed(&Text::new("encoder.cancelled")),
-            Ended::Lost(error) => failed(&explain::link(&error)),
-            Ended::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
+            JobFailure::Job(error) => {
+                Failure::Failed(lines(D::error_texts(&error).iter().map(Text::terminal).collect()))
+            }
+            JobFailure::Interrupted => failed(&Text::new("encoder.cancelled")),
+            JobFailure::Lost(error) => failed(&explain::link(&error)),
+            JobFailure::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
         }
     }
 }

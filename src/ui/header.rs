@@ -61,7 +61,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
         actions.extend(studio.shown().map(|own| Action::Save(own.id())));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
-        actions.push(Action::Connect(connect::Action::Open));
+        actions.push(Action::Connect(connect::ConnectAction::Open));
     }
     stop(ui, theme, studio, actions);
     let settings = &studio.settings;
@@ -122,7 +122,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
         }
         ui.separator();
         if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
-            actions.push(Action::Connect(connect::Action::Open));
+            actions.push(Action::Connect(connect::ConnectAction::Open));
             ui.close();
         }
     });

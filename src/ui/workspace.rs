@@ -36,7 +36,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
 /// No device is on the desk: the ways to one.
 fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     if empty(ui, theme, &theme.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &theme.say("shell.connect"), true))) {
-        actions.push(Action::Connect(connect::Action::Open));
+        actions.push(Action::Connect(connect::ConnectAction::Open));
     }
     ui.vertical_centered(|ui| {
         if button(ui, icons::PLAY, &theme.say("shell.virtual_device")).clicked() {
@@ -131,7 +131,7 @@ fn lost(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action
                 actions.push(device.command(DeviceCommand::Reconnect));
             }
             if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
-                actions.push(Action::Connect(connect::Action::Open));
+                actions.push(Action::Connect(connect::ConnectAction::Open));
             }
         });
     });

@@ -9,7 +9,7 @@ use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::jobs::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
 };
-use encoder_studio::devices::hiperdrive::procedures::{Asked, Error, Found, discover};
+use encoder_studio::devices::hiperdrive::procedures::{Error, Found, RequestedItem, discover};
 use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
 use encoder_studio::link::{Cancel, RealClock, UdpShout};
@@ -271,7 +271,7 @@ fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
         assert!(begun.elapsed() < Duration::from_secs(10), "{options:?}");
         let JobError::Device(error) = error else { panic!("{error}") };
         let is_expected = match error {
-            Error::NoReply { asked: Asked::Parameter(_), .. } => options.contains(&"--silent-after=9"),
+            Error::NoReply { asked: RequestedItem::Parameter(_), .. } => options.contains(&"--silent-after=9"),
             Error::Link(_) => options.contains(&"--vanish-after=9"),
             Error::Damaged { .. } | Error::NeverSilent => options.contains(&"--garbage"),
             _ => false,

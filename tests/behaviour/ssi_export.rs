@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
-    Code, Coded, Descriptor, ErrorBit, Families, Layout, Meaning, Parity, Range, Reading, Repeat, Settings, c99,
+    Code, Coded, Descriptor, ErrorBit, Families, FrameReading, Layout, Meaning, Parity, Range, Repeat, Settings, c99,
     structured_text,
 };
 
@@ -84,7 +84,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     frames
 }
 
-fn told(layout: &Layout, reading: Reading) -> String {
+fn told(layout: &Layout, reading: FrameReading) -> String {
     use encoder_studio::devices::ssi::protocol::Location;
     let (turns, steps) = match layout.descriptor().range.place(reading.position) {
         Location::Shaft { turns, steps, .. } => (turns, steps),

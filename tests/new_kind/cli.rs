@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use encoder_studio::cli::{Asked, run as run_program};
+use encoder_studio::cli::{Invocation, run as run_program};
 
 use super::desk::program;
 
@@ -18,8 +18,8 @@ fn the_program() {
     let words = std::iter::once("encoder-studio").chain(arguments.lines()).map(Into::into);
     let program = program();
     match run_program(words, program.studio.formats, program.commands) {
-        Asked::Command(status) => std::process::exit(status.into()),
-        Asked::Window(_) => assert!(arguments.is_empty()),
+        Invocation::Command(status) => std::process::exit(status.into()),
+        Invocation::Window(_) => assert!(arguments.is_empty()),
     }
 }
 

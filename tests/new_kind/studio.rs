@@ -5,12 +5,12 @@ use egui::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::analysis::history::Value;
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{
     Action as StudioAction, DeviceCommand, DeviceModel, Language, ReviewAction, Severity, Text, ThemeData,
 };
-use encoder_studio::devices::interbus::state::Action as Interbus;
+use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 use encoder_studio::profile::{Body, Document};
 use encoder_studio::ui::{Window, install_fonts};
 use std::time::Duration;

@@ -2,7 +2,7 @@
 
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
-use encoder_studio::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step};
+use encoder_studio::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
 use encoder_studio::devices::hiperface::procedures::{Error, Sample, Survey};
 use encoder_studio::devices::hiperface::protocol::{AccessCode, CodeNumber, Command, DataFieldStatus, StatusCode};
 use encoder_studio::store::{DeviceKey, Logbook, Store};
@@ -102,10 +102,10 @@ fn one_unreadable_field_leaves_the_rest_usable() {
         // The device check goes to its end, and names the field and the line.
         let lines = check(&mut desk);
         let of = |step| lines.iter().find(|line| line.step == step).unwrap();
-        assert_eq!(of(Step::DataFields).verdict, Verdict::Bad, "{label}");
-        let names = |own: &Finding| matches!(own, Finding::FieldUnreadable { number: 0, .. });
-        assert!(of(Step::DataFields).findings.iter().any(names), "{label}");
-        assert_eq!(of(Step::Line).verdict, Verdict::Attention, "{label}");
+        assert_eq!(of(CheckStep::DataFields).verdict, Verdict::Bad, "{label}");
+        let names = |own: &CheckFinding| matches!(own, CheckFinding::FieldUnreadable { number: 0, .. });
+        assert!(of(CheckStep::DataFields).findings.iter().any(names), "{label}");
+        assert_eq!(of(CheckStep::Line).verdict, Verdict::Attention, "{label}");
         // What is kept for years is whole or not at all.
         assert!(desk.save().is_err(), "{label}");
     }

@@ -4,11 +4,11 @@ use crate::biss_support::command;
 use crate::tabs::Tabs as _;
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Recording, Severity, Tab};
 use encoder_studio::devices::biss::protocol::Role;
-use encoder_studio::devices::biss::state::{Action as Biss, Mark};
+use encoder_studio::devices::biss::state::{BissAction as Biss, Mark};
 use encoder_studio::devices::biss::state::{BissForm, BissWay};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};

@@ -7,8 +7,8 @@ use encoder_studio::app::Severity;
 use encoder_studio::app::session::Phase;
 use encoder_studio::devices::biss::jobs::Change;
 use encoder_studio::devices::biss::protocol::Filter;
-use encoder_studio::devices::biss::state::Action as Biss;
-use encoder_studio::signals::state::{Action as Signals, SourceAction};
+use encoder_studio::devices::biss::state::BissAction as Biss;
+use encoder_studio::signals::state::{SignalsAction as Signals, SourceAction};
 
 use crate::biss_support::{ask, connect, encoder, is_read};
 use crate::served::Served;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::app::{Action, Recording, Severity, Studio};
-use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
+use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder};
 
 use crate::biss_support::is_read;
 use crate::screen::Screen;

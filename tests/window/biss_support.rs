@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::biss::protocol::RegisterAddress;
-use encoder_studio::devices::biss::state::{Action as Biss, Encoder};
+use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder};
 
 use crate::support::Desk;
 

@@ -11,7 +11,7 @@ use encoder_studio::devices::biss::jobs::Change;
 use encoder_studio::devices::biss::procedures::procedure::{Answer, Outcome, Task};
 use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, Op, PresetParts};
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
-use encoder_studio::devices::biss::state::{Action as Biss, Encoder, End, Reached, ReviewState};
+use encoder_studio::devices::biss::state::{BissAction as Biss, Encoder, End, Reached, ReviewState};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;

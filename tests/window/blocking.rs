@@ -7,13 +7,13 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, ColorScheme, Severity};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::LinkForm;
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 

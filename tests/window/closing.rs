@@ -1,9 +1,9 @@
 //! Escape stops first and closes then; closing with something to lose asks once.
 
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::{Action, JobEnd, PendingEdits};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 
 use crate::support::Desk;

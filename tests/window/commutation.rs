@@ -8,9 +8,9 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, PendingEdits, Severity};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::state::commutation::{
-    Action as Assistant, Form, Kind, Slot, Source, Storage, Vector,
+    CommutationAction as Assistant, Form, Kind, Slot, Source, Storage, Vector,
 };
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState, commutation};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState, commutation};
 
 use crate::support::Desk;
 use crate::texts;

@@ -7,7 +7,7 @@ use std::sync::atomic::Ordering;
 
 use egui::ViewportId;
 use encoder_studio::app::{Action, FileQuestion, Studio, Tab};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::hiperdrive_stop::in_hand;
 use crate::screen::Screen;

@@ -6,16 +6,16 @@ use std::path::Path;
 
 use crate::tabs::with_novo;
 use encoder_studio::app::connect::form::FormModel;
-use encoder_studio::app::connect::{Action as Connect, Connect as Dialog};
+use encoder_studio::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use encoder_studio::app::review::{Permit, Stage};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, AnyDevice, DeviceCommand, JobEnd, Language, ReviewAction, Severity, Studio, Tab};
-use encoder_studio::devices::biss::state::Action as Biss;
+use encoder_studio::devices::biss::state::BissAction as Biss;
 use encoder_studio::devices::hiperdrive::protocol::ParameterNumber;
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit as Set};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperdrive::state::{Edit as Set, HiperdriveAction as Hiperdrive};
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
-use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
+use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
 use encoder_studio::devices::{biss, hiperdrive, hiperface, interbus, ssi};
 use encoder_studio::profile::{Body, Comparison, Document, PlanId};
 

@@ -11,7 +11,9 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{Goal, Lock};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR,
 };
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, LimitsStay, Mark, Measure, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{
+    Edit, HiperdriveAction as Hiperdrive, LimitsStay, Mark, Measure, Motor, Unit,
+};
 
 use crate::support::Desk;
 
@@ -244,7 +246,7 @@ fn who_answers_in_the_network_fills_the_form() {
         vec![found([10, 0, 0, 9], 2222, 1, "a switch"), found([10, 0, 0, 7], 44818, VENDOR, "HIPERDRIVE HUB-4")];
     let mut desk = Desk { studio: outside.studio(), outside };
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
-    desk.connect(connect::Action::Open);
+    desk.connect(connect::ConnectAction::Open);
     desk.connect(crate::tabs::discover());
     assert!(crate::tabs::discovery(desk.studio.connect.as_ref().unwrap()).unwrap().is_running());
     desk.until("they have answered", |studio| {

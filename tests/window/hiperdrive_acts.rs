@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::{Severity, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Ended;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, State};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};

@@ -15,9 +15,9 @@ use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, ErrorCode, Length, ParameterNumber, Percent, State, Value,
 };
 use encoder_studio::devices::hiperdrive::state::axis::{
-    Action as Run, Button, End, Power, Reached, Restart, Step, TestTarget, words,
+    AxisAction as Run, AxisStep, Button, End, Power, Reached, Restart, TestTarget, words,
 };
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 use encoder_studio::sim::Faults;
 use encoder_studio::units::Moment;
 
@@ -42,7 +42,7 @@ fn a_new_drive_becomes_an_axis_in_millimetres_that_survives_the_supply() {
     });
     run(&mut desk, Run::Next);
     assert_eq!(axis(&desk).end(), Some(End::Done));
-    assert!(Step::ALL.into_iter().all(|step| axis(&desk).reached(step) == Reached::Done));
+    assert!(AxisStep::ALL.into_iter().all(|step| axis(&desk).reached(step) == Reached::Done));
     let (lower, upper) = limits;
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [1, 400, 256, lower.into(), upper.into()]);
 }
@@ -51,7 +51,7 @@ fn a_new_drive_becomes_an_axis_in_millimetres_that_survives_the_supply() {
 fn nothing_moves_before_the_limits_are_confirmed() {
     let mut desk = until_jog();
     run(&mut desk, Run::Next);
-    assert_eq!(axis(&desk).step(), Step::Confirm);
+    assert_eq!(axis(&desk).step(), AxisStep::Confirm);
     control(&mut desk);
     assert!(axis(&desk).may_move(&seen(&desk)).is_err());
     let before = position(&mut desk);
@@ -70,9 +70,9 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
     run(&mut desk, Run::Press(Button::Confirm));
     // Once more from the beginning, so that no lock says it.
     run(&mut desk, Run::Begin);
-    next(&mut desk, Step::Scale);
+    next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
-    next(&mut desk, Step::Confirm);
+    next(&mut desk, AxisStep::Confirm);
     run(&mut desk, Run::Press(Button::Take));
     desk.until("control", |studio| {
         let own = studio.hiperdrive().unwrap();
@@ -96,7 +96,7 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
     let axis = axis(&desk);
     assert_eq!(axis.may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.needs_confirm");
     run(&mut desk, Run::Press(Button::Confirm));
-    next(&mut desk, Step::Jog);
+    next(&mut desk, AxisStep::Jog);
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn a_recall_takes_nothing_back_of_the_drive() {
     let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
     assert!(told.contains("154 is 400 instead of 256") && !told.contains("152"), "{told}");
     // The request is gone: the step that is shown stays, and says which one is to be done again.
-    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (Step::Jog, Some(Step::Request)));
+    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
 /// Issue 21.6 (a): what the pads of the run state is what is sent, whatever the Motion page has, which keeps its own.
@@ -168,18 +168,18 @@ fn the_pads_of_the_run_have_an_effort_of_their_own() {
 fn a_pitch_counts_once_it_is_confirmed() {
     let mut desk = begun("sim:");
     assert_eq!((axis(&desk).entries().pitch.as_str(), unit(&desk).pitch(unit(&desk).drive())), ("", None));
-    next(&mut desk, Step::Scale);
+    next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| own.pitch = "4".to_owned());
     assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
     step_with_write(&mut desk);
     assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
-    next(&mut desk, Step::Confirm);
+    next(&mut desk, AxisStep::Confirm);
     assert_eq!(unit(&desk).pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
     // Elsewhere it becomes another one.
     let drive = unit(&desk).drive();
     act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
     desk.settle();
-    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (Step::Confirm, Some(Step::Scale)));
+    assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (AxisStep::Confirm, Some(AxisStep::Scale)));
 }
 
 /// Issue 21.6 (h): a run that was broken off is told by the next one, also after the program was started again.
@@ -358,7 +358,7 @@ fn a_write_that_is_not_consented_to_leaves_the_step_as_it_was() {
     desk.act(Action::Review(id, ReviewAction::Close));
     desk.settle();
     let own = axis(&desk);
-    assert!(!own.is_writing() && own.changes().is_empty() && own.step() == Step::Request);
+    assert!(!own.is_writing() && own.changes().is_empty() && own.step() == AxisStep::Request);
     assert_eq!(number(&desk, 152), 0);
     let number = ParameterNumber::of_drive(152, DriveNumber::FIRST).unwrap();
     assert!(unit(&desk).value(number).is_some());

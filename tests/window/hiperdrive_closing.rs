@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use encoder_studio::app::Action;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, State, StatusBit};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Motor};
+use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, unit};

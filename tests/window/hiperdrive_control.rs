@@ -9,8 +9,8 @@ use std::time::Duration;
 use encoder_studio::app::{Action, ReviewAction, Severity, Studio, Text, connect};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, State, Value};
-use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Button};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::axis::{AxisAction as Run, Button};
+use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Motor, Unit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit};
@@ -195,7 +195,7 @@ fn what_was_said_before_a_loss_counts_no_more() {
 fn escape_ends_no_watching_while_drives_are_in_hand() {
     let mut desk = in_control("sim:");
     assert!(unit(&desk).session.is_polling());
-    desk.connect(connect::Action::Open);
+    desk.connect(connect::ConnectAction::Open);
     desk.act(Action::Escape);
     assert!(desk.studio.connect.is_none() && unit(&desk).session.is_polling(), "the dialog is closed");
     desk.act(Action::Escape);

@@ -8,7 +8,7 @@ use encoder_studio::app::{Action, Language, Severity, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, Percent, RunEnd, State};
 use encoder_studio::devices::hiperdrive::state::explain;
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, unit};

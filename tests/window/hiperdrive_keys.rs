@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::hiperdrive::jobs::Motion;
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit};
+use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive};
 
 use crate::hiperdrive::number;
 use crate::hiperdrive_stop::{begin, in_hand, moving, pointer, until_it_stands};

@@ -11,7 +11,7 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lo
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, ErrorCode, Percent, RunEnd, State, StatusBit, StatusWord, Value,
 };
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Mark, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Mark, Motor, Unit};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
@@ -116,7 +116,7 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
     let covers: [(&str, Cover); 14] = [
         ("focus", |desk| desk.act(Action::LetGo)),
         ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
-        ("dialog", |desk| desk.connect(connect::Action::Open)),
+        ("dialog", |desk| desk.connect(connect::ConnectAction::Open)),
         // With the act that asks, not with the dialog's picture: the system may take half a second for that.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
         ("file dialog of the device", |desk| command(desk, DeviceCommand::AskSave)),

@@ -8,7 +8,7 @@ use std::fs;
 use encoder_studio::app::recorder::Recorder;
 use encoder_studio::app::{Action, FileQuestion, RecorderOwner as Whose, Severity};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Measure};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::{ONE, act, number, read, unit};

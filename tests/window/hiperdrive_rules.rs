@@ -15,7 +15,7 @@ use encoder_studio::devices::hiperdrive::jobs::Way;
 use encoder_studio::devices::hiperdrive::procedures::Station;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, State, Value};
 use encoder_studio::devices::hiperdrive::sim::{Config, Target};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 use encoder_studio::link::{ByteLink, Clock, LinkError, RealClock, SimLink, SimPort};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::Session;

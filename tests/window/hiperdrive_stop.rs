@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::{Action, Studio};
 use encoder_studio::devices::hiperdrive::jobs::DriveView;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Phase};
 use encoder_studio::devices::hiperdrive::protocol::{OutData, State};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
 use encoder_studio::units::Moment;
 
 use crate::hiperdrive::ONE;
@@ -279,7 +279,7 @@ fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
 fn an_action_of_another_kind_is_told_and_stops_what_moves() {
     let mut screen = moving();
     let id = screen.studio().hiperdrive().unwrap().session.id;
-    screen.act(Action::device(id, encoder_studio::devices::ssi::state::Action::Check));
+    screen.act(Action::device(id, encoder_studio::devices::ssi::state::SsiAction::Check));
     screen.until("it stands", |studio| !studio.moves());
     let told = screen.studio().services.log.notices().any(|notice| notice.texts[0].id() == "session.wrong_kind");
     assert!(told);

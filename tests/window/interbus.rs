@@ -9,7 +9,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity};
 use encoder_studio::devices::interbus::profile::Scale;
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, ReadOut, StartupMode};
-use encoder_studio::devices::interbus::state::{Action as Interbus, Edit, Encoder};
+use encoder_studio::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus};
 
 use crate::support::{Desk, GATE};
 

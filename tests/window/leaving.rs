@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, JobEnd, Severity};
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 
 use crate::support::{Desk, PORT, SLOW, is_review};
 

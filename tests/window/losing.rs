@@ -10,7 +10,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, JobEnd, Language, PendingEdits, RecorderOwner as Of, Severity, Studio, recorder};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::protocol::CodeNumber;
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 use encoder_studio::store::read_text;
 use encoder_studio::units::{Baud, CharacterFormat, Parity};
 
@@ -451,7 +451,7 @@ fn stop_and_escape_end_live_values() {
         desk.settle();
         assert_eq!(desk.wire().sent(), sent);
         let id = desk.encoder().session.id;
-        desk.act(Action::Recorder(Of::Device(id), recorder::Action::Clear));
+        desk.act(Action::Recorder(Of::Device(id), recorder::RecorderAction::Clear));
         assert!(desk.encoder().record.positions() == 0 && desk.encoder().record.last().is_some());
     }
 }

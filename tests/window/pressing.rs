@@ -7,8 +7,8 @@ use egui::accesskit::Role;
 use egui::{Event, Modifiers, PointerButton};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, DeviceCommand, Tab};
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
-use encoder_studio::devices::interbus::state::Action as Interbus;
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
+use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
 
 use crate::screen::Screen;
 use crate::support::{DRIVE, GATE, KIT, Outside, PORT, is_review};

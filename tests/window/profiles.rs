@@ -9,7 +9,7 @@ use encoder_studio::app::review::{Permit, ReviewSheet, Stage};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, FileQuestion, Language, PendingEdits, Severity, Studio};
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 use encoder_studio::kinds::program;
 use encoder_studio::profile::Document;
 use encoder_studio::store::read_text;

@@ -8,7 +8,7 @@ use std::time::Duration;
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::app::recorder::{self, Recorder, Series};
 use encoder_studio::app::{Action, FileQuestion, Picture, RecorderOwner as Of, Severity, Studio};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::losing::lost;
 use crate::support::Desk;
@@ -110,7 +110,7 @@ fn another_encoder_begins_another_recording() {
 fn the_recording_is_saved_as_a_table() {
     let mut desk = Desk::begun("rpm=60");
     let desk_of = own(&desk);
-    desk.act(Action::Recorder(desk_of, recorder::Action::Clear));
+    desk.act(Action::Recorder(desk_of, recorder::RecorderAction::Clear));
     let path = desk.outside.path("samples.csv");
     let question = |visible| FileQuestion::Table { desk: desk_of, visible, suggested: "x.csv".into() };
     desk.act(Action::Chosen(question(false), path.clone()));

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use encoder_studio::app::diverged::{Resolve, Side};
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, AnyDevice, FileQuestion, PendingEdits, SessionId, Severity, Studio};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Edit as HiperdriveEdit};
+use encoder_studio::devices::hiperdrive::state::{Edit as HiperdriveEdit, HiperdriveAction as Hiperdrive};
 use encoder_studio::devices::interbus::protocol::ProgramNumber;
-use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
+use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
 use encoder_studio::devices::ssi::protocol::{Code, Range};
-use encoder_studio::devices::ssi::state::{Action as Ssi, Edit as SsiEdit};
+use encoder_studio::devices::ssi::state::{Edit as SsiEdit, SsiAction as Ssi};
 use encoder_studio::profile::Changed;
 
 use crate::support::Desk;

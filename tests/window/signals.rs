@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use encoder_studio::analysis::capture::{Delimiter, TimeUnit};
-use encoder_studio::analysis::diagnosis::{Finding, What};
-use encoder_studio::analysis::quality::{Family, Finding as Parameter};
+use encoder_studio::analysis::diagnosis::{DiagnosisFinding, What};
+use encoder_studio::analysis::quality::{Family, QualityFinding as Parameter};
 use encoder_studio::analysis::wiring::Wire;
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
-use encoder_studio::signals::state::{Action as Signals, Column, Example, Origin, SourceAction, TableSource};
+use encoder_studio::signals::state::{Column, Example, Origin, SignalsAction as Signals, SourceAction, TableSource};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::support::{Desk, Outside};
@@ -307,7 +307,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
 }
 
 /// Nothing is worse than good to know.
-fn is_good(findings: &[Finding]) -> bool {
+fn is_good(findings: &[DiagnosisFinding]) -> bool {
     findings.iter().all(|own| own.severity == encoder_studio::analysis::diagnosis::Severity::Notice)
 }
 
@@ -432,7 +432,7 @@ fn what_became_worse_since_the_kept_capture_is_told() {
     desk.signals(Signals::Keep);
     desk.source(SourceAction::Set(Quantity::Interference, 0.02));
     desk.until("the drive is seen", |studio| {
-        let rose = |own: &Finding| match own.what {
+        let rose = |own: &DiagnosisFinding| match own.what {
             What::InterferenceRose { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
             _ => false,
         };

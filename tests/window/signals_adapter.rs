@@ -8,7 +8,7 @@ use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::{Action, RecorderOwner as Of, Severity, Studio};
 use encoder_studio::buses::bridge::protocol::Request;
-use encoder_studio::signals::state::{Action as Signals, Origin, SourceAction, SourceKind};
+use encoder_studio::signals::state::{Origin, SignalsAction as Signals, SourceAction, SourceKind};
 
 use crate::screen::Screen;
 use crate::served::Served;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use encoder_studio::analysis::revolution::RevolutionError;
 use encoder_studio::app::Action;
-use encoder_studio::signals::state::{Action as Signals, Column, SourceAction};
+use encoder_studio::signals::state::{Column, SignalsAction as Signals, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;

@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, Language};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};

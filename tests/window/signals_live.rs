@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
 use encoder_studio::analysis::quality::Family;
 use encoder_studio::app::{Action, RecorderOwner as Of, Studio};
-use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
+use encoder_studio::signals::state::{Example, Origin, SignalsAction as Signals, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::signals::circle;

@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, ColorScheme, Language};
-use encoder_studio::signals::state::{Action as Signals, Example, Origin, SourceAction};
+use encoder_studio::signals::state::{Example, Origin, SignalsAction as Signals, SourceAction};
 use encoder_studio::sim::sine_cosine::Quantity;
 
 use crate::screen::Screen;

@@ -8,7 +8,7 @@ use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
 use encoder_studio::devices::ssi::protocol::{Code, Doubt, Location, Range};
 use encoder_studio::devices::ssi::state::strip::Handle;
-use encoder_studio::devices::ssi::state::{Action as Ssi, Edit, Encoder, Entry, Field, Format, Hunt, Input, Try};
+use encoder_studio::devices::ssi::state::{Edit, Encoder, Entry, Field, Format, Hunt, Input, SsiAction as Ssi, Try};
 
 use crate::support::Desk;
 

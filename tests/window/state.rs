@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, JobEnd, Severity};
 use encoder_studio::devices::hiperface::protocol::FreeMemory;
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::link::{Direction, LinkUrl};
 
 use crate::support::{Desk, OTHER_PORT};

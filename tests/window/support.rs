@@ -20,7 +20,7 @@ use encoder_studio::devices::hiperdrive::state::Discover;
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
 use encoder_studio::devices::hiperface::protocol::EncoderTypes;
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, Encoder, Review, ReviewState};
+use encoder_studio::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, Review, ReviewState};
 use encoder_studio::devices::interbus::jobs as interbus;
 use encoder_studio::kinds::{Program, program};
 use encoder_studio::link::{ByteLink, LinkError, LinkErrorKind, LinkUrl, Scheme};
@@ -279,7 +279,7 @@ impl Desk {
         }
     }
 
-    pub(crate) fn connect(&mut self, action: connect::Action) {
+    pub(crate) fn connect(&mut self, action: connect::ConnectAction) {
         self.act(Action::Connect(action));
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use encoder_studio::app::connect::{Action, Connect};
+use encoder_studio::app::connect::{Connect, ConnectAction};
 use encoder_studio::app::{Studio, Tab};
 use encoder_studio::devices::hiperdrive::state::{Discovery, DiscoveryAction, DiscoveryFinder};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
@@ -66,23 +66,23 @@ impl Tabs for Studio {
 }
 
 /// Looks for encoders on the line of the form.
-pub(crate) fn search_for(options: FindOptions) -> Action {
-    Action::find::<SearchFinder>(SearchAction::Search(options))
+pub(crate) fn search_for(options: FindOptions) -> ConnectAction {
+    ConnectAction::find::<SearchFinder>(SearchAction::Search(options))
 }
 
 /// Connects to an encoder that was found.
-pub(crate) fn choose(at: usize) -> Action {
-    Action::find::<SearchFinder>(SearchAction::Choose(at))
+pub(crate) fn choose(at: usize) -> ConnectAction {
+    ConnectAction::find::<SearchFinder>(SearchAction::Choose(at))
 }
 
 /// Asks who is there in the network.
-pub(crate) fn discover() -> Action {
-    Action::find::<DiscoveryFinder>(DiscoveryAction::Discover)
+pub(crate) fn discover() -> ConnectAction {
+    ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Discover)
 }
 
 /// Fills in a device that has answered.
-pub(crate) fn choose_answer(at: usize) -> Action {
-    Action::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
+pub(crate) fn choose_answer(at: usize) -> ConnectAction {
+    ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
 }
 
 /// The search of a dialog.

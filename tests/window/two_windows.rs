@@ -12,7 +12,7 @@ use std::{env, fs, thread};
 use encoder_studio::app::{Action, ColorScheme, Language, Settings, Studio, World};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Measure, Motor};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Measure, Motor};
 use encoder_studio::kinds::program;
 use encoder_studio::store::Store;
 use encoder_studio::units::Moment;

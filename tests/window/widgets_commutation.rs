@@ -3,8 +3,8 @@
 use crate::tabs::Tabs as _;
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, Language};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
-use encoder_studio::devices::hiperface::state::commutation::{Action as Assistant, Slot};
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
+use encoder_studio::devices::hiperface::state::commutation::{CommutationAction as Assistant, Slot};
 
 use crate::screen::Screen;
 

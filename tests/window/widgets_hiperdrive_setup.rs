@@ -11,8 +11,8 @@ use encoder_studio::app::{Action, Language, ReviewAction, Studio, Text, connect}
 use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Goal;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, ParameterNumber, State, Value};
-use encoder_studio::devices::hiperdrive::state::axis::Step;
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Mark, Motor};
+use encoder_studio::devices::hiperdrive::state::axis::AxisStep;
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Mark, Motor};
 use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
@@ -109,7 +109,7 @@ fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
     screen.check_language();
     screen.click("hd_axis.begin");
     assert!(!screen.is_enabled("hd_axis.next") && screen.shows("Request the drive first."));
-    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), Step::Request);
+    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), AxisStep::Request);
     for language in [Language::German, Language::English] {
         screen.act(Action::SetLanguage(language));
         for id in ["page.axis", "page.device", "page.diagnosis"] {
@@ -231,7 +231,7 @@ fn a_step_is_seen_before_it_can_be_left() {
     screen.button("hd_axis.next").click();
     screen.harness.step();
     screen.harness.step();
-    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), Step::Scale);
+    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), AxisStep::Scale);
     assert!(!screen.is_enabled("hd_axis.back"));
     screen.steps();
     assert!(screen.is_enabled("hd_axis.back"));
@@ -249,7 +249,7 @@ fn stop_is_reached_over_a_dialog() {
     });
     act(&mut screen, Hiperdrive::Drive(Motor::Move { target: 30_000_000 }));
     screen.until("it moves", Studio::moves);
-    screen.act(Action::Connect(connect::Action::Open));
+    screen.act(Action::Connect(connect::ConnectAction::Open));
     assert!(screen.studio().connect.is_some() && screen.studio().moves(), "a move goes on under a dialog");
     screen.click("hd_bar.stop");
     screen.until("it stands", |studio| !studio.moves());
@@ -261,7 +261,7 @@ fn stop_is_reached_over_a_dialog() {
 #[test]
 fn nothing_in_a_step_moves_away_under_the_pointer() {
     let mut screen = page("sim:", "page.axis");
-    let advance = |screen: &mut Screen, step: Step| {
+    let advance = |screen: &mut Screen, step: AxisStep| {
         screen.click("hd_axis.next");
         screen.steps();
         assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), step);
@@ -269,13 +269,13 @@ fn nothing_in_a_step_moves_away_under_the_pointer() {
     screen.click("hd_axis.begin");
     screen.steps();
     assert!(!screen.is_enabled("hd_axis.recall"), "nothing is known to differ");
-    advance(&mut screen, Step::Scale);
+    advance(&mut screen, AxisStep::Scale);
     // 655.36 mm in steps of 0.01 mm are the factory's 65536 steps a turn: there is nothing to write.
     screen.put("Pitch (mm per turn)", "655.36");
     assert!(!screen.is_enabled("hd_axis.write"));
-    advance(&mut screen, Step::Confirm);
+    advance(&mut screen, AxisStep::Confirm);
     screen.click("hd_axis.confirm");
-    advance(&mut screen, Step::Jog);
+    advance(&mut screen, AxisStep::Jog);
     let places = |screen: &Screen| {
         [
             "hd_axis.take",
@@ -312,11 +312,14 @@ fn nothing_in_a_step_moves_away_under_the_pointer() {
     let scale = ParameterNumber::of_drive(154, DriveNumber::FIRST).unwrap();
     unit(&screen).with(|own| own.write(Moment::default(), scale, &Value::Number(400)).unwrap());
     screen.until("somebody else has set the scale", |studio| {
-        studio.hiperdrive().is_some_and(|own| own.axis().unwrap().fallen() == Some(Step::Scale))
+        studio.hiperdrive().is_some_and(|own| own.axis().unwrap().fallen() == Some(AxisStep::Scale))
     });
     screen.steps();
     assert!(screen.shows("Step 2, Pitch and resolution, no longer holds"));
-    assert_eq!((screen.studio().hiperdrive().unwrap().axis().unwrap().step(), places(&screen)), (Step::Jog, before));
+    assert_eq!(
+        (screen.studio().hiperdrive().unwrap().axis().unwrap().step(), places(&screen)),
+        (AxisStep::Jog, before)
+    );
     screen.click("hd_axis.back");
-    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), Step::Scale);
+    assert_eq!(screen.studio().hiperdrive().unwrap().axis().unwrap().step(), AxisStep::Scale);
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use egui::{Key, Modifiers, ViewportEvent, ViewportId};
 use encoder_studio::app::Severity;
 use encoder_studio::app::session::Phase;
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::PORT;

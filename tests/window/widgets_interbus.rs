@@ -7,7 +7,7 @@ use egui_kittest::Node;
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::{Action, Language, PendingEdits};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber};
-use encoder_studio::devices::interbus::state::{Action as Interbus, Edit};
+use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus};
 
 use crate::screen::Screen;
 

@@ -4,13 +4,13 @@ use crate::tabs::Tabs as _;
 use egui::{Key, Rect, Role, Vec2};
 use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::connect::Action as Connect;
+use encoder_studio::app::connect::ConnectAction as Connect;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, ColorScheme, FileQuestion, Language, Studio};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use encoder_studio::devices::hiperface::state::LinkForm;
-use encoder_studio::devices::interbus::state::Action as Interbus;
-use encoder_studio::devices::ssi::state::{Action as Ssi, Edit, Field, Input};
+use encoder_studio::devices::interbus::state::InterbusAction as Interbus;
+use encoder_studio::devices::ssi::state::{Edit, Field, Input, SsiAction as Ssi};
 
 use crate::screen::Screen;
 use crate::support::{GATE, HANGING, KIT, Outside, PORT};

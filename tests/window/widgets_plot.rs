@@ -244,6 +244,6 @@ fn a_table_is_asked_for_from_the_menu() {
         studio.services.log.notices().any(|notice| notice.texts[0].id() == "recorder.written")
     });
     assert!(path.exists());
-    screen.act(Action::Recorder(of, recorder::Action::Clear));
+    screen.act(Action::Recorder(of, recorder::RecorderAction::Clear));
     assert!(recorder(&screen).is_empty());
 }

@@ -5,7 +5,7 @@ use std::fs;
 
 use egui::{Key, Modifiers};
 use encoder_studio::app::{Action, Language, PendingEdits};
-use encoder_studio::devices::hiperface::state::Action as Hiperface;
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 
 use crate::screen::Screen;
 use crate::support::Outside;

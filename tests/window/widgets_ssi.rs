@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::Action;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::devices::ssi::state::{Action as Ssi, Try};
+use encoder_studio::devices::ssi::state::{SsiAction as Ssi, Try};
 
 use crate::screen::Screen;
 use crate::support::Outside;

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Language, PendingEdits};
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState};
 
 use crate::screen::Screen;
 use crate::support::{Outside, PORT, is_review};

@@ -8,7 +8,7 @@ use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
 use encoder_studio::devices::hiperface::profile::{FieldRange, Op};
 use encoder_studio::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize};
-use encoder_studio::devices::hiperface::state::{Action as Hiperface, ReviewState, forms, rules};
+use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, ReviewState, forms, rules};
 use encoder_studio::kinds::program;
 use encoder_studio::profile::Document;
 use encoder_studio::store::{DeviceKey, Outcome, read_text};

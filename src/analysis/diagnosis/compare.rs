@@ -4,15 +4,15 @@
 use std::mem::discriminant;
 
 use super::lines::Interference;
-use super::{Diagnosis, Finding, LEAST_LINE, OutOfLimits, Severity, What, severity};
+use super::{Diagnosis, DiagnosisFinding, LEAST_LINE, OutOfLimits, Severity, What, severity};
 
 /// The changes from one capture to another.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
     /// Findings that became worse or are new, the worst first.
-    pub worse: Vec<Finding>,
+    pub worse: Vec<DiagnosisFinding>,
     /// Findings that changed without being worse.
-    pub changed: Vec<Finding>,
+    pub changed: Vec<DiagnosisFinding>,
     /// Findings that cannot be compared.
     pub untold: Vec<Untold>,
 }
@@ -40,14 +40,14 @@ const AMPLITUDE: f64 = 0.02;
 /// Compares `after` with `before`.
 pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     let mut changes = Changes::default();
-    let is_worse = |finding: &&Finding| is_worse(finding, before, after);
+    let is_worse = |finding: &&DiagnosisFinding| is_worse(finding, before, after);
     changes.worse.extend(after.findings.iter().filter(is_worse));
     match (before.amplitude_v, after.amplitude_v) {
         (Some(from_v), Some(to_v)) => {
             if (to_v / from_v - 1.0).abs() >= AMPLITUDE {
                 // One that left its limits is among what is worse as well.
                 let what = What::AmplitudeChanged { from_v, to_v };
-                changes.changed.push(Finding { severity: Severity::Notice, what });
+                changes.changed.push(DiagnosisFinding { severity: Severity::Notice, what });
             }
             disturbances(before, after, to_v, &mut changes);
         }
@@ -69,14 +69,14 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
         && to_v - from_v >= LEAST_NOISE * amplitude
     {
         let what = What::NoiseRose { from_v, to_v };
-        changes.worse.push(Finding { severity: severity(to_v / amplitude), what });
+        changes.worse.push(DiagnosisFinding { severity: severity(to_v / amplitude), what });
     }
     let spacing = before.spacing_hz.unwrap_or(0.0).max(after.spacing_hz.unwrap_or(0.0));
     changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
 }
 
 /// A finding of the second capture is new, or more than in the first.
-fn is_worse(finding: &Finding, before: &Diagnosis, after: &Diagnosis) -> bool {
+fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -> bool {
     match finding.what {
         // Without an ellipse to compare with, only these can be told.
         What::Still | What::AtRest | What::Same | What::Dead { .. } | What::Level { .. } => {}
@@ -94,7 +94,7 @@ fn is_worse(finding: &Finding, before: &Diagnosis, after: &Diagnosis) -> bool {
         }
         _ => {}
     }
-    let same = |other: &&Finding| covers(&other.what, &finding.what);
+    let same = |other: &&DiagnosisFinding| covers(&other.what, &finding.what);
     let Some(earlier) = before.findings.iter().find(same) else { return true };
     let factor = if matches!(finding.what, What::Limit(_) | What::Level { .. }) { FURTHER } else { MORE };
     let comparable = discriminant(&earlier.what) == discriminant(&finding.what);
@@ -141,7 +141,7 @@ fn amount(what: &What) -> f64 {
     }
 }
 
-fn rose(line: &Interference, earlier: &[Interference], spacing_hz: f64, amplitude: f64) -> Option<Finding> {
+fn rose(line: &Interference, earlier: &[Interference], spacing_hz: f64, amplitude: f64) -> Option<DiagnosisFinding> {
     let same = earlier.iter().filter(|other| (other.frequency_hz - line.frequency_hz).abs() <= 2.0 * spacing_hz);
     let from_v = same.map(|other| other.volts).fold(0.0, f64::max);
     let to_v = line.volts;
@@ -150,5 +150,5 @@ fn rose(line: &Interference, earlier: &[Interference], spacing_hz: f64, amplitud
     }
     let (frequency_hz, common) = (line.frequency_hz, line.common);
     let what = What::InterferenceRose { frequency_hz, from_v, to_v, common };
-    Some(Finding { severity: severity(to_v / amplitude), what })
+    Some(DiagnosisFinding { severity: severity(to_v / amplitude), what })
 }

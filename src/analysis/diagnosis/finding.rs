@@ -16,7 +16,7 @@ pub enum Severity {
 
 /// Something to look at.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Finding {
+pub struct DiagnosisFinding {
     pub severity: Severity,
     pub what: What,
 }

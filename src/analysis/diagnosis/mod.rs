@@ -12,12 +12,12 @@ mod shape;
 mod trust;
 
 pub use compare::{Changes, Untold, compare};
-pub use finding::{Finding, Severity, Stuck, What};
+pub use finding::{DiagnosisFinding, Severity, Stuck, What};
 pub use lines::Interference;
 
 use super::ellipse::{Channel, FitError};
 use super::position_error::Samples;
-use super::quality::{Finding as OutOfLimits, Limits, Verdict, within};
+use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, within};
 use super::signal_analysis::{Analysis, AnalysisError};
 use super::wiring::Wire;
 
@@ -56,7 +56,7 @@ pub struct Record<'a> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnosis {
     /// The findings, the worst first.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<DiagnosisFinding>,
     /// Amplitude of the cosine channel, peak, in volts; `None` where there is no ellipse.
     pub amplitude_v: Option<f64>,
     /// White noise of one channel, rms, in volts.
@@ -75,7 +75,7 @@ pub struct Diagnosis {
 /// Looks at a capture and at what its analysis gave.
 pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
-    let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
+    let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, what });
     levels(record.references_v.map(|(refsin, refcos)| (mean(refsin), mean(refcos))), limits, &mut say);
     match analysis {
         Err(error) => without_ellipse(record, error, &mut say),
@@ -91,7 +91,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             trust::times(analysis, &mut say);
             trust::correction(analysis, &mut say);
             if let Some(what) = trust::uncertain(&diagnosis.findings) {
-                diagnosis.findings.push(Finding { severity: Severity::Warning, what });
+                diagnosis.findings.push(DiagnosisFinding { severity: Severity::Warning, what });
             }
             let by_lines =
                 seen.as_ref().map_or(0.0, |seen| (seen.radial_v2 + noise_v * noise_v) / (amplitude * amplitude));
@@ -126,7 +126,7 @@ impl Diagnosis {
             matches!(what, What::Limit(_) | What::Level { .. } | What::Half { .. } | What::SingleEnded { .. })
         };
         diagnosis.findings.retain(|finding| !depends(&finding.what));
-        let mut say = |severity, what| diagnosis.findings.push(Finding { severity, what });
+        let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, what });
         levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
         if let Ok(analysis) = analysis {
             parameters(analysis, limits, &mut say);

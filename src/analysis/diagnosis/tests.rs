@@ -63,7 +63,7 @@ impl Made {
 
     /// The one finding, beside that parameters are uncertain where it is a disturbance.
     #[track_caller]
-    fn finding(&self) -> Finding {
+    fn finding(&self) -> DiagnosisFinding {
         let mut found = self.diagnosed().findings;
         found.retain(|finding| !matches!(finding.what, What::Uncertain { .. }));
         assert_eq!(found.len(), 1, "{found:?}");
@@ -244,11 +244,11 @@ fn broken_wires() {
     let What::Half { channel: Channel::Sine, share } = half.what else { panic!("{half:?}") };
     near(share, 0.5, 1e-3);
     let same = made(steady, |_, _, (sine, _)| (sine, -sine)).finding();
-    assert_eq!(same, Finding { severity: Severity::Fault, what: What::Same });
+    assert_eq!(same, DiagnosisFinding { severity: Severity::Fault, what: What::Same });
     let mut still = made(steady, |_, _, _| (0.0, 0.0));
     still.sine.fill(0.3);
     still.cosine.fill(-0.1);
-    assert_eq!(still.finding(), Finding { severity: Severity::Fault, what: What::Still });
+    assert_eq!(still.finding(), DiagnosisFinding { severity: Severity::Fault, what: What::Still });
 }
 
 #[test]
@@ -275,7 +275,10 @@ fn spikes_are_told_and_are_no_interference() {
         (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
     }
     let finding = capture.finding();
-    assert_eq!(finding, Finding { severity: Severity::Fault, what: What::LetsGo { count: 319, longest: 300 } });
+    assert_eq!(
+        finding,
+        DiagnosisFinding { severity: Severity::Fault, what: What::LetsGo { count: 319, longest: 300 } }
+    );
 }
 
 #[test]
@@ -304,7 +307,7 @@ fn of_two_captures_it_is_told_what_became_worse() {
     assert_eq!(compare(&hum(0.01, 0.02, 1.0), &off), Changes::default(), "what is gone is not worse");
     let on = compare(&hum(0.004, 0.0, 1.0), &hum(0.004, 0.02, 1.0)).worse;
     let [
-        Finding {
+        DiagnosisFinding {
             severity: Severity::Warning,
             what: What::InterferenceRose { frequency_hz, from_v, to_v, common: false },
         },
@@ -319,7 +322,7 @@ fn of_two_captures_it_is_told_what_became_worse() {
     let mut random = fastrand::Rng::with_seed(5);
     noisy.sine.iter_mut().chain(&mut noisy.cosine).for_each(|value| *value += 0.01 * (random.f64() - 0.5));
     let rose = compare(&off, &noisy.diagnosed()).worse;
-    let [Finding { severity: Severity::Notice, what: What::NoiseRose { to_v, .. } }] = rose.as_slice() else {
+    let [DiagnosisFinding { severity: Severity::Notice, what: What::NoiseRose { to_v, .. } }] = rose.as_slice() else {
         panic!("{rose:?}")
     };
     // Even numbers over 10 mV deviate by 10/√12 mV.
@@ -337,7 +340,7 @@ fn an_amplitude_that_changes_is_worse_only_where_it_leaves_its_limits() {
     for (from, to, worse) in [(1.0, 0.95, 0), (0.8, 1.0, 0), (1.0, 0.8, 1), (0.8, 0.7, 1), (0.7, 0.8, 0)] {
         let changes = compare(&at(from), &at(to));
         assert_eq!(changes.worse.len(), worse, "{from} {to}: {changes:?}");
-        let [Finding { severity: Severity::Notice, what: What::AmplitudeChanged { from_v, to_v } }] =
+        let [DiagnosisFinding { severity: Severity::Notice, what: What::AmplitudeChanged { from_v, to_v } }] =
             changes.changed.as_slice()
         else {
             panic!("{changes:?}")
@@ -378,7 +381,7 @@ fn what_comes_up_is_worse_whatever_it_is() {
         assert_eq!((back.worse, back.untold), (vec![], vec![]), "{label}");
     }
     let more = compare(&ellipse(1.0, 0.03, 0.0).diagnosed(), &ellipse(1.0, 0.06, 0.0).diagnosed());
-    let [Finding { what: What::Limit(OutOfLimits::OffsetSine(share)), .. }] = more.worse.as_slice() else {
+    let [DiagnosisFinding { what: What::Limit(OutOfLimits::OffsetSine(share)), .. }] = more.worse.as_slice() else {
         panic!("{more:?}")
     };
     near(*share, 0.12, 1e-3);
@@ -395,7 +398,7 @@ fn what_cannot_be_compared_is_told() {
     let dead = made(steady, |_, _, (sine, _)| (sine, 0.0)).diagnosed();
     let died = compare(&good, &dead);
     assert_eq!(died.untold, [Untold::NoEllipseAfter]);
-    assert!(matches!(died.worse.as_slice(), [Finding { what: What::Dead { .. }, .. }]), "{died:?}");
+    assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { what: What::Dead { .. }, .. }]), "{died:?}");
     // Nobody knows the offset that the first had.
     let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
     assert_eq!(mended, Changes { untold: vec![Untold::NoEllipseBefore], ..Changes::default() });

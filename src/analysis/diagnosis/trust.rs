@@ -1,7 +1,7 @@
 //! Reasons to doubt the numbers of an analysis: gaps in the times, a shaft that reversed, few samples a period,
 //! disturbances in the samples of the ellipse, columns that are not differences.
 
-use super::{Finding, OutOfLimits, Severity, WARNING_SHARE, What};
+use super::{DiagnosisFinding, OutOfLimits, Severity, WARNING_SHARE, What};
 use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::Basis;
 use crate::analysis::signal_analysis::Analysis;
@@ -41,8 +41,8 @@ pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, What
 }
 
 /// Returns the uncertainty of the ellipse: about the share of the disturbances found.
-pub(super) fn uncertain(findings: &[Finding]) -> Option<What> {
-    let share = |finding: &Finding| match finding.what {
+pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<What> {
+    let share = |finding: &DiagnosisFinding| match finding.what {
         What::Hum { share, .. } | What::Interference { share, .. } | What::Harmonics { share, .. } => Some(share),
         _ => None,
     };

@@ -2,16 +2,16 @@
 
 use super::context::{FinderContext, Next};
 use super::form::AnyForm;
-use super::{Action, Connect, list_ports};
+use super::{Connect, ConnectAction, list_ports};
 use crate::app::payload::{Payload, WrongKind};
 use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::app::{FileQuestion, Text};
 
 impl Studio {
-    pub(in crate::app) fn act_connect(&mut self, action: Action) {
+    pub(in crate::app) fn act_connect(&mut self, action: ConnectAction) {
         match action {
-            Action::Open => {
+            ConnectAction::Open => {
                 let kinds = self.services.world.kinds;
                 let tab = Some(self.settings.tab).filter(|tab| kinds.of_tab(*tab).is_some());
                 let shown = || self.shown().map(|device| device.tab());
@@ -21,27 +21,27 @@ impl Studio {
                 self.connect = Some(Connect::new(kinds, device, last));
                 self.list_ports();
             }
-            Action::Close => self.close_dialog(),
-            Action::ListPorts => {
+            ConnectAction::Close => self.close_dialog(),
+            ConnectAction::ListPorts => {
                 if let Some(connect) = &mut self.connect {
                     connect.ports = None;
                     self.list_ports();
                 }
             }
-            Action::Device(device) => {
+            ConnectAction::Device(device) => {
                 self.end_search();
                 self.edit(|connect| (connect.device, connect.typed) = (device, None));
                 self.list_ports();
             }
-            Action::Edit(entries) => self.take_entries(entries),
-            Action::Find(action) => self.find(action),
-            Action::Use(link) => self.edit(|connect| connect.take(link)),
-            Action::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
-            Action::Recording(path) => self.edit(|connect| {
+            ConnectAction::Edit(entries) => self.take_entries(entries),
+            ConnectAction::Find(action) => self.find(action),
+            ConnectAction::Use(link) => self.edit(|connect| connect.take(link)),
+            ConnectAction::AskRecording => self.services.file_question = Some(FileQuestion::Recording),
+            ConnectAction::Recording(path) => self.edit(|connect| {
                 connect.forms_mut().for_each(|form| form.set_file(path.display().to_string()));
                 connect.typed = None;
             }),
-            Action::Connect => {
+            ConnectAction::Connect => {
                 let Some(connect) = &mut self.connect else { return };
                 let device = connect.device;
                 match connect.url() {
@@ -53,7 +53,7 @@ impl Studio {
                     Err(problem) => self.refuse(problem),
                 }
             }
-            Action::StopSearch => {
+            ConnectAction::StopSearch => {
                 if let Some(connect) = &mut self.connect {
                     connect.stop();
                 }

@@ -26,7 +26,7 @@ use crate::app::action::Done;
 use crate::link::LinkUrl;
 
 /// An action of the dialog.
-pub enum Action {
+pub enum ConnectAction {
     Open,
     /// Close it; a search ends.
     Close,
@@ -49,15 +49,15 @@ pub enum Action {
     StopSearch,
 }
 
-impl Action {
+impl ConnectAction {
     /// Returns the action that takes an edited form.
     pub fn edit<F: FormModel>(form: F) -> Self {
-        Action::Edit(Payload::of(form))
+        ConnectAction::Edit(Payload::of(form))
     }
 
     /// Returns an action of what looks for devices.
     pub fn find<S: Finder>(action: S::Action) -> Self {
-        Action::Find(Payload::of(action))
+        ConnectAction::Find(Payload::of(action))
     }
 }
 

@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::file;
 use crate::analysis::capture::CaptureError;
-use crate::analysis::diagnosis::{Finding, Stuck, Untold, What};
+use crate::analysis::diagnosis::{DiagnosisFinding, Stuck, Untold, What};
 use crate::analysis::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::analysis::nonlinearity::NonlinearityError;
-use crate::analysis::quality::{Finding as Parameter, Verdict};
+use crate::analysis::quality::{QualityFinding as Parameter, Verdict};
 use crate::analysis::revolution::RevolutionError;
 use crate::analysis::signal_analysis::{AnalysisError, LEAST_OCTANTS};
 use crate::analysis::spectrum::SpectrumError;
@@ -107,7 +107,7 @@ pub fn revolution(error: &RevolutionError) -> Text {
 }
 
 /// Returns the text of a finding in a signal.
-pub fn diagnosis(finding: &Finding) -> Text {
+pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     let of = |id, which: Channel| {
         Text::new(id).with_text(
             "channel",
@@ -277,7 +277,7 @@ mod tests {
     #[test]
     fn a_finding_says_what_to_do_in_both_languages() {
         let said = |what| {
-            let finding = Finding { severity: Severity::Warning, what };
+            let finding = DiagnosisFinding { severity: Severity::Warning, what };
             [Language::English, Language::German].map(|language| diagnosis(&finding).words(language))
         };
         let drive = What::Interference { frequency_hz: 8_000.3, volts: 0.0123, share: 0.0246, common: true };

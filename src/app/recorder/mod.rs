@@ -27,7 +27,7 @@ use crate::app::Text;
 
 /// Something that is done with a recorder.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Action {
+pub enum RecorderAction {
     /// Show a line, or hide it.
     Show(LineId, bool),
     /// Show a line in the unit of this number.
@@ -211,30 +211,30 @@ impl Recorder {
     }
 
     /// Does what is asked.
-    pub fn act(&mut self, action: Action) {
+    pub fn act(&mut self, action: RecorderAction) {
         match action {
-            Action::Show(id, shown) => self.with_line(id, |line| line.shown = shown),
-            Action::SetScale(id, scale) => self.set_scale(id, scale),
-            Action::SetRange(id, range) => {
+            RecorderAction::Show(id, shown) => self.with_line(id, |line| line.shown = shown),
+            RecorderAction::SetScale(id, scale) => self.set_scale(id, scale),
+            RecorderAction::SetRange(id, range) => {
                 let sound = range.filter(|(low, high)| low.is_finite() && high.is_finite() && low < high);
                 self.with_line(id, |line| line.range = sound);
             }
-            Action::ShareAxis(one_axis) => {
+            RecorderAction::ShareAxis(one_axis) => {
                 self.one_axis = one_axis;
                 self.lines.iter_mut().for_each(|line| line.range = None);
             }
-            Action::Follow => self.follow(),
-            Action::Pause => self.pause(),
-            Action::Fit => self.fit(),
-            Action::Look(from, to) => self.look(from, to),
-            Action::SetSpan(span) => self.set_span(span),
-            Action::Zoom(about, factor) => self.zoom(about, factor),
-            Action::SetCursor(cursor, time) => self.set_cursor(cursor, time),
-            Action::ShowCursors(shown) => self.show_cursors(shown),
-            Action::Arm(trigger) => self.arm(trigger),
-            Action::Disarm => self.disarm(),
-            Action::Clear => self.clear(),
-            Action::CancelExport => {
+            RecorderAction::Follow => self.follow(),
+            RecorderAction::Pause => self.pause(),
+            RecorderAction::Fit => self.fit(),
+            RecorderAction::Look(from, to) => self.look(from, to),
+            RecorderAction::SetSpan(span) => self.set_span(span),
+            RecorderAction::Zoom(about, factor) => self.zoom(about, factor),
+            RecorderAction::SetCursor(cursor, time) => self.set_cursor(cursor, time),
+            RecorderAction::ShowCursors(shown) => self.show_cursors(shown),
+            RecorderAction::Arm(trigger) => self.arm(trigger),
+            RecorderAction::Disarm => self.disarm(),
+            RecorderAction::Clear => self.clear(),
+            RecorderAction::CancelExport => {
                 if let Some(export) = &self.export {
                     export.cancel();
                 }

@@ -41,15 +41,15 @@ fn it_follows_the_newest_and_stands_still_when_asked() {
     assert_eq!(recorder.window(), (at(0), at(100)), "filled from the left");
     ramp(&mut recorder, group, 50, 301);
     assert_eq!(recorder.window(), (at(200), at(300)));
-    recorder.act(Action::Pause);
+    recorder.act(RecorderAction::Pause);
     ramp(&mut recorder, group, 301, 400);
     assert_eq!(recorder.window(), (at(200), at(300)), "recorded on");
     assert!(!recorder.follows());
-    recorder.act(Action::Follow);
+    recorder.act(RecorderAction::Follow);
     assert_eq!(recorder.window(), (at(299), at(399)));
-    recorder.act(Action::Zoom(at(350), 0.5));
+    recorder.act(RecorderAction::Zoom(at(350), 0.5));
     assert_eq!(recorder.window(), (at(349), at(399)), "the newest stays at the edge");
-    recorder.act(Action::Fit);
+    recorder.act(RecorderAction::Fit);
     let (from, to) = recorder.window();
     assert!(from == at(0) && to > at(399) && to < at(402));
 }
@@ -58,23 +58,23 @@ fn it_follows_the_newest_and_stands_still_when_asked() {
 fn zooming_keeps_what_is_under_the_pointer_and_has_limits() {
     let (mut recorder, group, _) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
-    recorder.act(Action::Look(at(400), at(200)));
+    recorder.act(RecorderAction::Look(at(400), at(200)));
     assert_eq!(recorder.window(), (at(200), at(400)), "whichever end was first");
-    recorder.act(Action::Zoom(at(250), 0.5));
+    recorder.act(RecorderAction::Zoom(at(250), 0.5));
     assert_eq!(recorder.window(), (at(225), at(325)));
     for factor in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        recorder.act(Action::Zoom(at(250), factor));
+        recorder.act(RecorderAction::Zoom(at(250), factor));
         assert_eq!(recorder.window(), (at(225), at(325)));
     }
-    recorder.act(Action::SetSpan(10 * MILLISECOND));
+    recorder.act(RecorderAction::SetSpan(10 * MILLISECOND));
     assert_eq!(recorder.window(), (at(315), at(325)));
-    (0..100).for_each(|_| recorder.act(Action::Zoom(at(320), 0.1)));
+    (0..100).for_each(|_| recorder.act(RecorderAction::Zoom(at(320), 0.1)));
     assert_eq!(recorder.span(), 100);
-    (0..100).for_each(|_| recorder.act(Action::Zoom(at(320), 1e9)));
+    (0..100).for_each(|_| recorder.act(RecorderAction::Zoom(at(320), 1e9)));
     assert_eq!(recorder.span(), 8_640_000 * 1_000 * MILLISECOND, "a hundred days");
-    recorder.act(Action::Look(at(5), at(5)));
+    recorder.act(RecorderAction::Look(at(5), at(5)));
     assert_eq!(recorder.span(), 100);
-    recorder.act(Action::Look(Time::from_nanoseconds(i64::MIN), Time::from_nanoseconds(i64::MAX)));
+    recorder.act(RecorderAction::Look(Time::from_nanoseconds(i64::MIN), Time::from_nanoseconds(i64::MAX)));
     assert!(recorder.span() > 0);
 }
 
@@ -86,10 +86,10 @@ fn cursors_measure_on_the_raw_samples() {
     add(&mut recorder, group, 150, 1 << 50, 9.0, Flags::BAD);
     ramp(&mut recorder, group, 151, 1000);
     assert_eq!(recorder.measure(recorder.line(counts).unwrap()), None);
-    recorder.act(Action::SetCursor(Cursor::A, Some(at(200))));
-    recorder.act(Action::SetCursor(Cursor::B, Some(Time::from_nanoseconds(99_800_000))));
+    recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(200))));
+    recorder.act(RecorderAction::SetCursor(Cursor::B, Some(Time::from_nanoseconds(99_800_000))));
     assert_eq!(recorder.between_cursors(), Some(-100 * MILLISECOND), "on the samples that are read");
-    recorder.act(Action::SetScale(counts, 1));
+    recorder.act(RecorderAction::SetScale(counts, 1));
     let measured = recorder.measure(recorder.line(counts).unwrap()).unwrap();
     let degrees = 360.0 / 4096.0;
     assert_eq!((measured.a, measured.b), (Some(200.0 * degrees), Some(100.0 * degrees)), "the nearest raw samples");
@@ -100,10 +100,10 @@ fn cursors_measure_on_the_raw_samples() {
     assert!((between.mean - 150.0 * degrees).abs() < 1e-12);
     // Without the bad one in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
     assert!((between.deviation - 29.447_779_494_755_07 * degrees).abs() < 1e-9, "{}", between.deviation / degrees);
-    recorder.act(Action::SetCursor(Cursor::A, Some(at(150))));
+    recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(150))));
     let measured = recorder.measure(recorder.line(volts).unwrap()).unwrap();
     assert_eq!((measured.a, measured.difference), (None, None), "what is bad is not read");
-    recorder.act(Action::ShowCursors(false));
+    recorder.act(RecorderAction::ShowCursors(false));
     assert_eq!(recorder.measure(recorder.line(volts).unwrap()), None);
 }
 
@@ -115,15 +115,15 @@ fn a_cursor_where_nothing_was_recorded_reads_nothing() {
     let late = recorder.add_line(Series::of(slow, 0, Text::new("recorder.speed"), "counter", scales));
     ramp(&mut recorder, group, 0, 1000);
     recorder.append(slow, &[at(700), at(900)], &[Part::whole(&[7, 9])]).unwrap();
-    recorder.act(Action::SetCursor(Cursor::A, Some(at(500))));
-    recorder.act(Action::SetCursor(Cursor::B, Some(at(5_000))));
+    recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(500))));
+    recorder.act(RecorderAction::SetCursor(Cursor::B, Some(at(5_000))));
     assert_eq!(recorder.cursor(Cursor::B), Some(at(5_000)), "it stands where it was put");
     let measure = |id| recorder.measure(recorder.line(id).unwrap()).unwrap();
     assert_eq!((measure(counts).a, measure(counts).b, measure(counts).difference), (Some(500.0), None, None));
     assert_eq!((measure(late).a, measure(late).b), (None, None), "it was not recorded yet");
     assert_eq!(measure(late).between.unwrap().count, 2);
-    recorder.act(Action::Fit);
-    recorder.act(Action::ShowCursors(true));
+    recorder.act(RecorderAction::Fit);
+    recorder.act(RecorderAction::ShowCursors(true));
     assert_eq!(Cursor::BOTH.map(|cursor| recorder.cursor(cursor)), [Some(at(333)), Some(at(666))]);
 }
 
@@ -145,7 +145,7 @@ fn a_held_picture_is_not_lost_for_newer_samples() {
     let own = recorder.line(line).unwrap();
     let seen = |time| recorder.nearest(own, at(time)).unwrap().value.to_f64() as i64;
     assert_eq!((seen(4_975), seen(5_075)), (4_975, 5_075), "still there");
-    recorder.act(Action::Disarm);
+    recorder.act(RecorderAction::Disarm);
     feed(&mut recorder, 100_000, 101_000);
     assert_eq!(recorder.recorded().unwrap().1, at(100_999), "and goes on");
 }
@@ -162,7 +162,7 @@ fn in_a_finished_recording_a_trigger_is_looked_for_at_once() {
 }
 
 fn arm(recorder: &mut Recorder, line: LineId, when: When, level: f64, repeat: bool) {
-    recorder.act(Action::Arm(Trigger { line, when, level, before: 0.25, repeat }));
+    recorder.act(RecorderAction::Arm(Trigger { line, when, level, before: 0.25, repeat }));
 }
 
 fn state(recorder: &Recorder) -> TriggerState {
@@ -173,7 +173,7 @@ fn state(recorder: &Recorder) -> TriggerState {
 fn a_trigger_shows_what_was_before_it_and_holds() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 500);
-    recorder.act(Action::SetScale(counts, 1));
+    recorder.act(RecorderAction::SetScale(counts, 1));
     // 600 steps in degrees: a level is in the unit that is shown.
     arm(&mut recorder, counts, When::Rising, 600.0 * 360.0 / 4096.0, false);
     assert_eq!(state(&recorder), TriggerState::Armed);
@@ -185,7 +185,7 @@ fn a_trigger_shows_what_was_before_it_and_holds() {
     ramp(&mut recorder, group, 674, 2000);
     assert_eq!(state(&recorder), TriggerState::Held(at(600)));
     assert_eq!(recorder.window(), (at(575), at(675)), "held");
-    recorder.act(Action::SetScale(counts, 0));
+    recorder.act(RecorderAction::SetScale(counts, 0));
     assert_eq!(recorder.trigger(), None, "the level was in another unit");
 }
 
@@ -223,7 +223,13 @@ fn nobody_has_seen_an_edge_across_a_gap() {
     add(&mut recorder, group, 10, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 700, 0, 9.0, Flags::NONE);
     assert_eq!(state(&recorder), TriggerState::Armed);
-    recorder.act(Action::Arm(Trigger { line: volts, when: When::Rising, level: f64::NAN, before: 0.0, repeat: false }));
+    recorder.act(RecorderAction::Arm(Trigger {
+        line: volts,
+        when: When::Rising,
+        level: f64::NAN,
+        before: 0.0,
+        repeat: false,
+    }));
     assert_eq!(recorder.trigger().unwrap().0.level, 5.0, "what is no level changes nothing");
 }
 
@@ -254,9 +260,9 @@ fn a_removed_line_takes_its_samples_along() {
 fn clearing_forgets_samples_and_nothing_else() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 1000);
-    recorder.act(Action::SetScale(counts, 1));
-    recorder.act(Action::ShowCursors(true));
-    recorder.act(Action::Clear);
+    recorder.act(RecorderAction::SetScale(counts, 1));
+    recorder.act(RecorderAction::ShowCursors(true));
+    recorder.act(RecorderAction::Clear);
     assert!(recorder.is_empty() && recorder.cursor(Cursor::A).is_none());
     assert_eq!(recorder.line(counts).unwrap().scale_number(), 1);
     add(&mut recorder, group, 5, 1, 1.0, Flags::NONE);
@@ -291,7 +297,7 @@ fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
     add(&mut recorder, group, 2, 1024, f64::NAN, Flags::NONE);
     add(&mut recorder, group, 3, 7, 0.25, Flags::BAD);
     recorder.append(slow, &[at(2), at(1_000)], &[Part::real(&[21.5, 22.0])]).unwrap();
-    recorder.act(Action::SetScale(counts, 1));
+    recorder.act(RecorderAction::SetScale(counts, 1));
     let expected = "time [s],position [°],sine [steps],temperature   inside  [°],remark\n\
                     -0.001000000,360,0.5,,\n\
                     0.002000000,90,,21.5,bad\n\
@@ -300,11 +306,11 @@ fn a_table_has_a_row_for_every_time_and_nothing_for_what_is_bad() {
     assert_eq!(recorder.unsaved(), 1_001 * MILLISECOND);
     assert_eq!(exported(&mut recorder, false).unwrap(), expected);
     assert_eq!(recorder.unsaved(), 0);
-    recorder.act(Action::Look(at(-5), at(1)));
-    recorder.act(Action::Show(volts, false));
+    recorder.act(RecorderAction::Look(at(-5), at(1)));
+    recorder.act(RecorderAction::Show(volts, false));
     let visible = exported(&mut recorder, true).unwrap();
     assert_eq!(visible.lines().skip(1).collect::<Vec<_>>(), ["-0.001000000,360,,"]);
-    recorder.act(Action::Look(at(10_000), at(20_000)));
+    recorder.act(RecorderAction::Look(at(10_000), at(20_000)));
     assert_eq!(exported(&mut recorder, true), None, "nothing to write");
 }
 
@@ -338,7 +344,7 @@ fn a_long_table_is_whole_and_can_be_given_up() {
     std::fs::write(&path, "the old one").unwrap();
     let writing = recorder.begin_export(&path, false).unwrap();
     assert!(recorder.begin_export(&path, false).is_none(), "one at a time");
-    recorder.act(Action::CancelExport);
+    recorder.act(RecorderAction::CancelExport);
     recorder.feed_export();
     let given_up = writing.run(&|| {});
     assert!(given_up.rows.unwrap().is_none());
@@ -362,7 +368,7 @@ fn a_table_whose_samples_go_is_given_up() {
         let writing = recorder.begin_export(&path, false).unwrap();
         recorder.feed_export();
         if clear {
-            recorder.act(Action::Clear);
+            recorder.act(RecorderAction::Clear);
         }
         drop(recorder);
         assert!(writing.run(&|| {}).rows.unwrap().is_none());

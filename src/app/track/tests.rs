@@ -152,7 +152,7 @@ fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
     track.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
     track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
     let [position, ..] = track.lines;
-    track.recorder.act(recorder::Action::SetScale(position, 1));
+    track.recorder.act(recorder::RecorderAction::SetScale(position, 1));
     track.add(&seconds(3, 2), &Meaning::of_turns(None, 400.0));
     let current = [("position", false), ("speed", false), ("acceleration", false)];
     let ended = ["position", "speed", "acceleration"].map(|name| (format!("{name} until 09:00:02"), true));
@@ -171,12 +171,12 @@ fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
     // They are drawn where they are, and no more.
     let drawn = |track: &Track<Nothing>| track.recorder.shown().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
-    track.recorder.act(recorder::Action::Look(
+    track.recorder.act(recorder::RecorderAction::Look(
         Time::from(Moment::after_start(Duration::from_secs(3))),
         Time::from_nanoseconds(9_000_000_000),
     ));
     assert_eq!(drawn(&track), 0);
-    track.recorder.act(recorder::Action::Clear);
+    track.recorder.act(recorder::RecorderAction::Clear);
     assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
 }
 
@@ -191,7 +191,7 @@ fn another_unit_of_the_same_steps_is_seen_in_the_same_lines() {
     let mut track = Track::<Nothing>::default();
     track.add(&seconds(0, 3), &Meaning::of_turns(None, 1000.0));
     let [position, ..] = track.lines;
-    track.recorder.act(recorder::Action::SetScale(position, 2));
+    track.recorder.act(recorder::RecorderAction::SetScale(position, 2));
     for pitch in [1.0, 12.0] {
         track.add(&seconds(3, 1), &on_spindle(pitch));
         track.add(&seconds(4, 1), &on_spindle(pitch + 0.5));
@@ -224,7 +224,7 @@ fn what_is_not_watched_any_more_keeps_its_samples() {
     track.add_watched(&Nothing, &watching(3));
     assert_eq!((names(&track)[3].clone(), steps(&track, "nothing")), (("nothing".to_owned(), false), vec![1.0, 3.0]));
     track.watch(&[]);
-    track.recorder.act(recorder::Action::Clear);
+    track.recorder.act(recorder::RecorderAction::Clear);
     track.watch(&[Nothing]);
     track.add_watched(&Nothing, &watching(4));
     assert_eq!(steps(&track, "nothing"), [4.0]);

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::reading::{self, Reading};
 use super::synchronise::Synchronise;
 use super::{
-    Action, Done, Failed, Judge, Measurement, Read, Results, Scope, Source, SourceAction, Table, TableSource,
+    Done, Failed, Judge, Measurement, Read, Results, Scope, SignalsAction, Source, SourceAction, Table, TableSource,
     task_guard,
 };
 use crate::analysis::capture::TableHints;
-use crate::analysis::diagnosis::{Changes, Finding, compare};
+use crate::analysis::diagnosis::{Changes, DiagnosisFinding, compare};
 use crate::analysis::quality::Family;
 use crate::app::number::MOST_PERIODS;
 use crate::app::recorder::Recorder;
@@ -63,7 +63,7 @@ impl Default for Signals {
 impl Tool for Signals {
     fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind> {
         match action.open()? {
-            Action::Source(SourceAction::StartAdapter) => self.begin_with_adapter(context),
+            SignalsAction::Source(SourceAction::StartAdapter) => self.begin_with_adapter(context),
             action => Signals::act(self, action, context.services()),
         }
         Ok(())
@@ -108,7 +108,7 @@ impl Tool for Signals {
     }
 
     fn open(&mut self, path: PathBuf, services: &mut Services) {
-        Signals::act(self, Action::Open(path), services);
+        Signals::act(self, SignalsAction::Open(path), services);
     }
 }
 
@@ -184,7 +184,7 @@ impl Signals {
     }
 
     /// Returns the findings, the worst first.
-    pub fn findings(&self) -> &[Finding] {
+    pub fn findings(&self) -> &[DiagnosisFinding] {
         self.measurement.as_ref().map_or(&[], |measurement| &measurement.diagnosis.findings)
     }
 
@@ -218,37 +218,37 @@ impl Signals {
     }
 
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: SignalsAction, services: &mut Services) {
         match action {
-            Action::Open(path) => self.open_at(TableSource::File(path), services),
-            Action::Example(example) => self.open_at(TableSource::Example(example), services),
-            Action::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
-            Action::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
-            Action::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
-            Action::SetVolts(volts) if volts.is_finite() && volts != 0.0 => {
+            SignalsAction::Open(path) => self.open_at(TableSource::File(path), services),
+            SignalsAction::Example(example) => self.open_at(TableSource::Example(example), services),
+            SignalsAction::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
+            SignalsAction::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
+            SignalsAction::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
+            SignalsAction::SetVolts(volts) if volts.is_finite() && volts != 0.0 => {
                 self.wish(services, |wishes| wishes.volts_per_unit = Some(volts));
             }
-            Action::SetVolts(_) => {}
-            Action::Detect => self.wish(services, |wishes| *wishes = TableHints::default()),
-            Action::SetColumn(column, number) => {
+            SignalsAction::SetVolts(_) => {}
+            SignalsAction::Detect => self.wish(services, |wishes| *wishes = TableHints::default()),
+            SignalsAction::SetColumn(column, number) => {
                 let settled = self.settled();
                 if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
                     self.read_again(settled, services);
                 }
             }
-            Action::Cancel => self.give_up(),
-            Action::Source(action) => self.act_source(action, services),
-            Action::SetFamily(family) => {
+            SignalsAction::Cancel => self.give_up(),
+            SignalsAction::Source(action) => self.act_source(action, services),
+            SignalsAction::SetFamily(family) => {
                 self.family = family;
                 self.judge_again(services);
             }
-            Action::Keep => {
+            SignalsAction::Keep => {
                 let shown = self.measurement.as_ref().map(|own| own.results().clone());
                 self.comparison = shown.or(self.comparison.take());
             }
-            Action::DropComparison => self.comparison = None,
-            Action::Synchronise(action) => self.synchronise.act(action),
-            Action::SetPeriods(periods) => self.set_periods(periods, false, services),
+            SignalsAction::DropComparison => self.comparison = None,
+            SignalsAction::Synchronise(action) => self.synchronise.act(action),
+            SignalsAction::SetPeriods(periods) => self.set_periods(periods, false, services),
         }
     }
 
@@ -288,7 +288,7 @@ impl Signals {
 
     /// Other samples: a table of those before that is still being written cannot be ended.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
-        self.scope.recorder.act(recorder::Action::CancelExport);
+        self.scope.recorder.act(recorder::RecorderAction::CancelExport);
         task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 

@@ -9,7 +9,7 @@ use crate::store::ReadCaptureError;
 
 /// Something to be done.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Action {
+pub enum SignalsAction {
     /// Read a capture from a file.
     Open(PathBuf),
     /// Read one of the captures that ship with the program.
@@ -39,7 +39,7 @@ pub enum Action {
     /// About what runs: the virtual encoder, or an adapter.
     Source(SourceAction),
     /// Absolute and analogue position brought together.
-    Synchronise(synchronise::Action),
+    Synchronise(synchronise::SynchroniseAction),
 }
 
 /// The results of tasks.

@@ -40,12 +40,12 @@ impl ToolKind for SignalsKind {
     }
 }
 
-impl ToolAction for Action {
+impl ToolAction for SignalsAction {
     const TAB: Tab = TAB;
 }
 
 pub use act::Signals;
-pub use action::{Action, Done, Failed, Read};
+pub use action::{Done, Failed, Read, SignalsAction};
 pub use live::{Source, SourceAction, SourceKind, VIRTUAL_ADAPTER};
 pub use measurement::{Judge, Measurement, Origin, Results, TableSource};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};

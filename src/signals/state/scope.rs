@@ -67,7 +67,7 @@ impl Scope {
         if scope.refused.is_some() {
             scope.recorder.clear();
         }
-        scope.recorder.act(recorder::Action::Fit);
+        scope.recorder.act(recorder::RecorderAction::Fit);
         scope.recorder.finish();
         scope
     }

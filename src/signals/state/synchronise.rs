@@ -10,7 +10,7 @@ use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosin
 use crate::signals::state::TEXTS;
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Action {
+pub enum SynchroniseAction {
     /// An entry was edited.
     Edit(Box<Form>),
     /// Take the offset over that is measured from readings.
@@ -213,20 +213,20 @@ impl Synchronisation {
 }
 
 impl Synchronise {
-    pub(super) fn act(&mut self, action: Action) {
+    pub(super) fn act(&mut self, action: SynchroniseAction) {
         match action {
-            Action::Edit(form) => {
+            SynchroniseAction::Edit(form) => {
                 self.form = *form;
                 self.problem = None;
             }
-            Action::UseOffset => {
+            SynchroniseAction::UseOffset => {
                 if let Some(offset) = self.measured() {
                     // The entry takes a point in both languages.
                     self.form.offset = format!("{offset:.2}");
                 }
             }
-            Action::UseCaptured(offset) => self.form.offset = format!("{:.2}", self.with_half_step(offset)),
-            Action::Forget => self.readings.clear(),
+            SynchroniseAction::UseCaptured(offset) => self.form.offset = format!("{:.2}", self.with_half_step(offset)),
+            SynchroniseAction::Forget => self.readings.clear(),
         }
     }
 
@@ -399,7 +399,7 @@ mod tests {
         assert_eq!((page.readings(), page.measured()), (1, None));
         page.take(at(95, 315.0), whose(1, "A"));
         assert!((page.measured().unwrap() - 2.5).abs() < 1e-9);
-        page.act(Action::UseOffset);
+        page.act(SynchroniseAction::UseOffset);
         assert_eq!((page.form.offset.as_str(), page.form.periods.as_str()), ("2.50", "128"));
         // d = 31 − 28; without the offset of 2.5 half a step remains.
         let told = page.form.synchronisation().unwrap();
@@ -413,7 +413,7 @@ mod tests {
             page.take(at(10, 90.0), other);
             assert_eq!(page.readings(), 1, "another encoder begins anew");
         }
-        page.act(Action::Forget);
+        page.act(SynchroniseAction::Forget);
         assert_eq!(page.readings(), 0);
     }
 }

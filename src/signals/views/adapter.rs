@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::analysis::quality::Family;
 use crate::app::Action;
-use crate::signals::state::{Action as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
+use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS, VIRTUAL_ADAPTER};
 use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
 use crate::ui::{Theme, icons};

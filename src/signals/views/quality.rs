@@ -8,12 +8,12 @@ use crate::signals::views::say;
 use egui::{Color32, RichText, TextureHandle, TextureId, Ui};
 
 use super::{SignalsUiState, numbers, source};
-use crate::analysis::diagnosis::{Changes, Finding, Severity};
+use crate::analysis::diagnosis::{Changes, DiagnosisFinding, Severity};
 use crate::analysis::lissajous::Square;
 use crate::analysis::quality::Family;
 use crate::analysis::signal_analysis::Analysis;
 use crate::app::{Action, Text, explain};
-use crate::signals::state::{Action as Signals_, Measurement, Results, Signals, forms, quantities};
+use crate::signals::state::{Measurement, Results, Signals, SignalsAction as Signals_, forms, quantities};
 use crate::ui::controls::{card, card_with, choice, entry, name, paragraph, problem, settled_entry, split};
 use crate::ui::widgets::{Figure, Lissajous, lissajous, phosphor, series};
 use crate::ui::{Theme, icons};
@@ -157,7 +157,7 @@ fn line(ui: &mut Ui, icon: &str, colour: crate::app::Rgb, words: String) {
     });
 }
 
-fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &Finding) {
+fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &DiagnosisFinding) {
     let palette = theme.palette;
     let (icon, colour) = match finding.severity {
         Severity::Notice => (icons::INFO, palette.accent),

@@ -6,7 +6,7 @@ use super::{adapter, table, virtual_encoder};
 use crate::app::Action;
 use crate::buses::bridge::protocol::Capabilities;
 use crate::signals::state::{
-    Action as Signals_, Example, Origin, Signals, SourceAction, SourceKind, TEXTS, TableSource,
+    Example, Origin, Signals, SignalsAction as Signals_, SourceAction, SourceKind, TEXTS, TableSource,
 };
 use crate::signals::views::say;
 use crate::ui::controls::{badge, button, enabled_button, fill, icon_button, name, paragraph, spinner};

@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Text};
-use crate::signals::state::synchronise::{Action as Page, Form, Synchronise, ToldAs};
-use crate::signals::state::{Action as Signals, Signals as State, TEXTS, synchronise::Synchronisation};
+use crate::signals::state::synchronise::{Form, Synchronise, SynchroniseAction as Page, ToldAs};
+use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::Synchronisation};
 use crate::signals::views::say;
 use crate::ui::controls::{
     card, card_with, choice, enabled_button, entry, icon_button, labelled_entry, paragraph, problem, row, split,

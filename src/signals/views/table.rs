@@ -5,7 +5,7 @@ use egui::{ScrollArea, Ui};
 use super::Draft;
 use crate::analysis::capture::{Delimiter, TimeUnit};
 use crate::app::Action;
-use crate::signals::state::{Action as Signals, Column, TEXTS, Table, forms};
+use crate::signals::state::{Column, SignalsAction as Signals, TEXTS, Table, forms};
 use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, paragraph, problem, settled_entry, two_columns};
 use crate::ui::{Theme, icons};

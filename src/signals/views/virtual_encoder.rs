@@ -4,7 +4,7 @@ use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
 use crate::analysis::wiring::Wire;
 use crate::app::{Action, explain, number};
-use crate::signals::state::{Action as Signals, Source, SourceAction, TEXTS};
+use crate::signals::state::{SignalsAction as Signals, Source, SourceAction, TEXTS};
 use crate::signals::views::say;
 use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use egui::{RichText, ScrollArea, Ui};
 
-use crate::app::connect::{Action as Connect, Connect as Dialog, is_missing};
+use crate::app::connect::{Connect as Dialog, ConnectAction as Connect, is_missing};
 use crate::app::{Action, Studio, Tab, Text};
 use crate::link::LinkUrl;
 use crate::ui::controls::{

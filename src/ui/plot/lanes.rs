@@ -185,7 +185,7 @@ mod tests {
     use crate::analysis::Time;
     use crate::analysis::history::{Kind, Part};
     use crate::app::Text;
-    use crate::app::recorder::{Action, Scale};
+    use crate::app::recorder::{RecorderAction, Scale};
 
     /// 1000 samples, a microsecond apart, of one value.
     fn recorder(value: f64) -> Recorder {
@@ -213,7 +213,7 @@ mod tests {
         assert_eq!(shown(&reduced, &one), 1.0);
         layout(&other, RECT, 1.0, &mut reduced);
         assert_eq!(shown(&reduced, &other), 2.0, "the same times, other values");
-        other.act(Action::Clear);
+        other.act(RecorderAction::Clear);
         layout(&other, RECT, 1.0, &mut reduced);
         let line = other.lines()[0].id;
         assert!(reduced.picture(line).unwrap().pixels.is_empty());

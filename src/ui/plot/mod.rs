@@ -62,7 +62,7 @@ pub(super) struct Context<'a> {
 }
 
 impl Context<'_> {
-    fn act(&mut self, action: recorder::Action) {
+    fn act(&mut self, action: recorder::RecorderAction) {
         self.actions.push(Action::Recorder(self.desk, action));
     }
 }

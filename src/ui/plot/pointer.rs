@@ -5,7 +5,7 @@ use egui::{EventFilter, Key, Modifiers, PointerButton, Pos2, Rect, Response, Ui}
 use super::Context;
 use super::lanes::Layout;
 use crate::analysis::Time;
-use crate::app::recorder::{Action, Cursor};
+use crate::app::recorder::{Cursor, RecorderAction};
 
 /// So near, in points, the pointer is on a cursor.
 const NEAR: f32 = 6.0;
@@ -57,7 +57,7 @@ pub(super) fn interact(
         *drag = None;
     }
     if response.double_clicked() {
-        context.act(Action::Fit);
+        context.act(RecorderAction::Fit);
     }
     hover(ui, response, context, layout, drag.is_some());
     keys(ui, response, context, layout);
@@ -84,14 +84,14 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
     match drag {
         Drag::Cursor(cursor) => {
             let time = layout.time.time(place.x.clamp(layout.chart.left(), layout.chart.right()));
-            context.act(Action::SetCursor(*cursor, Some(time)));
+            context.act(RecorderAction::SetCursor(*cursor, Some(time)));
         }
         Drag::Box { to, .. } => *to = place,
         Drag::Picture { under, window: (from, to) } => {
             // Seen from where it began: the layout moves with it.
             let here = from.plus((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
             let by = under.nanoseconds_since(here);
-            context.act(Action::Look(from.plus(by), to.plus(by)));
+            context.act(RecorderAction::Look(from.plus(by), to.plus(by)));
         }
     }
 }
@@ -100,7 +100,7 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
 fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     let chosen = chosen.intersect(layout.chart);
     if chosen.width() >= CLICK {
-        context.act(Action::Look(layout.time.time(chosen.left()), layout.time.time(chosen.right())));
+        context.act(RecorderAction::Look(layout.time.time(chosen.left()), layout.time.time(chosen.right())));
     }
     let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
     let part = chosen.intersect(lane.rect).height();
@@ -110,7 +110,7 @@ fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
         let low = axis.value(chosen.bottom().min(lane.rect.bottom()));
         let high = axis.value(chosen.top().max(lane.rect.top()));
         for line in &lane.lines {
-            context.act(Action::SetRange(*line, Some((low, high))));
+            context.act(RecorderAction::SetRange(*line, Some((low, high))));
         }
     }
 }
@@ -125,7 +125,7 @@ fn hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layou
     let scroll = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta));
     let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
     if (factor - 1.0).abs() > 1e-4 {
-        context.act(Action::Zoom(layout.time.time(place.x), factor));
+        context.act(RecorderAction::Zoom(layout.time.time(place.x), factor));
     }
     if scroll.x != 0.0 {
         shift(context, -f64::from(scroll.x) / f64::from(layout.chart.width().max(1.0)));
@@ -143,13 +143,13 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
     let middle = layout.time.time(layout.chart.center().x);
     let at = response.hover_pos().map_or(middle, |place| layout.time.time(place.x));
     for (key, action) in [
-        (Key::Plus, Action::Zoom(middle, 0.5)),
-        (Key::Equals, Action::Zoom(middle, 0.5)),
-        (Key::Minus, Action::Zoom(middle, 2.0)),
-        (Key::Home, Action::Fit),
-        (Key::End, Action::Follow),
-        (Key::A, Action::SetCursor(Cursor::A, Some(at))),
-        (Key::B, Action::SetCursor(Cursor::B, Some(at))),
+        (Key::Plus, RecorderAction::Zoom(middle, 0.5)),
+        (Key::Equals, RecorderAction::Zoom(middle, 0.5)),
+        (Key::Minus, RecorderAction::Zoom(middle, 2.0)),
+        (Key::Home, RecorderAction::Fit),
+        (Key::End, RecorderAction::Follow),
+        (Key::A, RecorderAction::SetCursor(Cursor::A, Some(at))),
+        (Key::B, RecorderAction::SetCursor(Cursor::B, Some(at))),
     ] {
         if pressed(key) {
             context.act(action);
@@ -166,5 +166,5 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
 fn shift(context: &mut Context<'_>, share: f64) {
     let (from, to) = context.recorder.window();
     let by = (context.recorder.span() as f64 * share) as i64;
-    context.act(Action::Look(from.plus(by), to.plus(by)));
+    context.act(RecorderAction::Look(from.plus(by), to.plus(by)));
 }

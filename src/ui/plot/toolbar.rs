@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use super::{Context, PlotUiState, chart, snapshot, trigger};
 use crate::app::Action as Studio;
-use crate::app::recorder::{Action, Cursor, TriggerState};
+use crate::app::recorder::{Cursor, RecorderAction, TriggerState};
 use crate::ui::controls::{choice, enabled_button, icon_button, icon_menu, options};
 use crate::ui::icons;
 
@@ -34,18 +34,18 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
         let some = !recorder.is_empty();
         if recorder.follows() {
             if tool(ui, some, icons::SNOWFLAKE, "recorder.pause") {
-                context.act(Action::Pause);
+                context.act(RecorderAction::Pause);
             }
         } else if tool(ui, true, icons::FAST_FORWARD, "recorder.follow") {
-            context.act(Action::Follow);
+            context.act(RecorderAction::Follow);
         }
         span(ui, context);
         if tool(ui, some, icons::ARROWS_OUT_LINE_HORIZONTAL, "recorder.fit") {
-            context.act(Action::Fit);
+            context.act(RecorderAction::Fit);
         }
         let cursors = Cursor::BOTH.into_iter().any(|cursor| recorder.cursor(cursor).is_some());
         if switch(ui, context, some, cursors, icons::RULER, "recorder.cursors") {
-            context.act(Action::ShowCursors(!cursors));
+            context.act(RecorderAction::ShowCursors(!cursors));
         }
         trigger_menu(ui, context, &mut view.trigger);
         lines_menu(ui, context);
@@ -87,7 +87,7 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
     ui.scope(|ui| {
         ui.spacing_mut().combo_width = 48.0;
         if choice(ui, &theme.say("recorder.span"), &mut chosen, options) {
-            context.act(Action::SetSpan(chosen));
+            context.act(RecorderAction::SetSpan(chosen));
         }
     });
 }
@@ -118,18 +118,18 @@ fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
             let words = theme.words(&line.name);
             let text = RichText::new(&words).color(chart::colour(theme, line));
             if ui.checkbox(&mut shown, text).changed() {
-                actions.push(Action::Show(line.id, shown));
+                actions.push(RecorderAction::Show(line.id, shown));
             }
             let mut scale = line.scale_number();
             let units = line.scales().iter().map(|scale| theme.words(&scale.unit)).enumerate();
             if line.scales().len() > 1 && options(ui, &words, &mut scale, units) {
-                actions.push(Action::SetScale(line.id, scale));
+                actions.push(RecorderAction::SetScale(line.id, scale));
             }
         }
         ui.separator();
         let mut one_axis = recorder.has_one_axis();
         if ui.checkbox(&mut one_axis, theme.say("recorder.one_axis")).changed() {
-            actions.push(Action::ShareAxis(one_axis));
+            actions.push(RecorderAction::ShareAxis(one_axis));
         }
     });
     actions.into_iter().for_each(|action| context.act(action));
@@ -174,7 +174,7 @@ fn state(ui: &mut Ui, context: &mut Context<'_>) {
             ui.label(RichText::new(icons::LIGHTNING).color(theme.palette.accent));
             ui.label(theme.caption(theme.say(id)));
             if ui.small_button(theme.say("recorder.disarm")).clicked() {
-                context.act(Action::Disarm);
+                context.act(RecorderAction::Disarm);
             }
         });
     }
@@ -185,7 +185,7 @@ fn state(ui: &mut Ui, context: &mut Context<'_>) {
             ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(80.0));
             ui.label(theme.caption(theme.say("recorder.writing")));
             if ui.small_button(theme.say("shell.cancel")).clicked() {
-                context.act(Action::CancelExport);
+                context.act(RecorderAction::CancelExport);
             }
         });
     }

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::Text;
-use crate::app::recorder::{Action, LineId, Recorder, Trigger, When};
+use crate::app::recorder::{LineId, Recorder, RecorderAction, Trigger, When};
 use crate::ui::controls::{entry, options, primary, text_entry};
 use crate::ui::{Theme, icons};
 
@@ -40,7 +40,13 @@ fn word(when: When) -> &'static str {
     }
 }
 
-pub(super) fn form_ui(ui: &mut Ui, theme: &Theme, recorder: &Recorder, form: &mut Form, actions: &mut Vec<Action>) {
+pub(super) fn form_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    recorder: &Recorder,
+    form: &mut Form,
+    actions: &mut Vec<RecorderAction>,
+) {
     ui.set_width(300.0);
     if recorder.line(form.line).is_none_or(|line| !line.shown)
         && let Some(first) = recorder.shown().next()
@@ -76,7 +82,7 @@ pub(super) fn form_ui(ui: &mut Ui, theme: &Theme, recorder: &Recorder, form: &mu
             match form.trigger() {
                 Ok(trigger) => {
                     form.problem = None;
-                    actions.push(Action::Arm(trigger));
+                    actions.push(RecorderAction::Arm(trigger));
                     ui.close();
                 }
                 Err(problem) => form.problem = Some(problem),

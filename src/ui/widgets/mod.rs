@@ -32,7 +32,7 @@ pub use register_table::{
     RegisterTable, RegisterView, register_table,
 };
 pub use step_ring::{StepRing, step_ring};
-pub use steps::{Gauge, Step, StepState, Steps, StepsEvent, steps};
+pub use steps::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;
 
 /// The ring around what has the keyboard: two points of the accent, one point off the widget.

@@ -22,7 +22,7 @@ use crate::ui::{Theme, icons};
 
 /// A step of a procedure.
 #[derive(Clone, Debug, Default)]
-pub struct Step {
+pub struct StepRow {
     pub title: String,
     pub state: StepState,
     /// The state in a word, for screen readers.
@@ -72,7 +72,7 @@ pub struct Gauge {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
     /// Its steps, the first first.
-    pub steps: &'a [Step],
+    pub steps: &'a [StepRow],
     /// The start button of the waiting step: its label, and why it is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
     /// The label of the button that skips the waiting step.
@@ -161,7 +161,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
 }
 
 /// Draws the title, which may have several lines; the middle of the first of them.
-fn title(ui: &mut Ui, theme: &Theme, step: &Step) -> f32 {
+fn title(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
     let palette = theme.palette;
     let ink = match step.state {
         StepState::ToCome | StepState::Skipped => palette.muted,
@@ -177,7 +177,7 @@ fn title(ui: &mut Ui, theme: &Theme, step: &Step) -> f32 {
     response.rect.top() + half
 }
 
-fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &Step) -> Option<StepsEvent> {
+fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Option<StepsEvent> {
     let palette = theme.palette;
     if !step.note.is_empty() {
         let ink = match step.state {
@@ -249,7 +249,7 @@ fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
 }
 
 /// The dot of a step: its number, or how it stands.
-fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &Step) {
+fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
     let palette = theme.palette;
     let (icon, colour) = step.state.mark(theme);
     let (font, ink) = match step.state {

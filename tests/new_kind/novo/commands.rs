@@ -4,8 +4,8 @@ use std::convert::Infallible;
 
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
-    Command, Common, DeviceCommands, Done, Failure, Left, Output, Position, Restore, Result, Runs, Save, Simulate,
-    Simulated, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore, write_restore,
+    Command, Common, DeviceCommands, Done, Failure, Output, Position, Restore, Result, Runs, Save, Simulate, Simulated,
+    Unrestored, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -58,7 +58,7 @@ impl DeviceCommands for NovoCommands {
         let prepared = result_of!(runner.run(Job::Prepare(change))?, Came::Prepared(prepared) => *prepared);
         let shown = shown(&prepared);
         let unchanged = (ITEMS.len() - prepared.plan.ops.len()) as u64;
-        let left = Left { unchanged, missing: Vec::new(), redo: Vec::new() };
+        let left = Unrestored { unchanged, missing: Vec::new(), redo: Vec::new() };
         write_restore(output, restore, &shown, &left, || {
             check_wear::<Novo>(&restore.consent, &prepared)?;
             let agreed = agreed(output, &restore.consent, prepared, &[&shown.text])?;
@@ -106,7 +106,7 @@ fn survey(runner: &mut Runner) -> Result<NovoProfile> {
 fn shown(Prepared { plan, seen, .. }: &Prepared) -> plan::PlanReport {
     let step = |op: &super::profile::Op| {
         let (old, new) = (Some(op.from.to_string()), Some(op.to.to_string()));
-        plan::Step { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
+        plan::PlanStep { item: op.name().to_owned(), old, new, write_cycles: op.write_cycles() }
     };
     plan::PlanReport::of(plan, plan.ops.iter().map(step).collect(), *seen, Some(LIFE))
 }

@@ -4,7 +4,7 @@
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
-use encoder_studio::devices::biss::procedures::procedure::{Activity, Failure, Run, Step, steps_of};
+use encoder_studio::devices::biss::procedures::procedure::{Activity, Failure, ProcedureStep, Run, steps_of};
 use encoder_studio::devices::biss::procedures::write::Interrupted;
 use encoder_studio::devices::biss::profile::{Bank, MotorSource, MountingRun, PresetParts};
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
@@ -88,7 +88,13 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
 }
 
 /// Reconnected, the encoder is led back; and, once for each step, the change carried out once more.
-fn assert_can_be_led_back(bench: &Bench, scene: &Scene, told: &Interrupted, steps: &mut Vec<Step>, context: &str) {
+fn assert_can_be_led_back(
+    bench: &Bench,
+    scene: &Scene,
+    told: &Interrupted,
+    steps: &mut Vec<ProcedureStep>,
+    context: &str,
+) {
     let first = !steps.contains(&told.left.at);
     let mut again = if first { bench.reconnected() } else { bench.reconnected_knowing() };
     again.motor().set_rpm(0.0);
@@ -151,11 +157,11 @@ fn cut_at_every_exchange(scene: &Scene, way: Way) {
 }
 
 /// The cuts have hit every step in which anything is sent.
-fn assert_all_steps(prepared: &Prepared, hit: &[Step], name: &str, context: &str) {
-    let mut missed: Vec<Step> = prepared.plan.ops.iter().flat_map(steps_of).collect();
-    if missed.contains(&Step::Restart) && name != "lost" {
+fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
+    let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(steps_of).collect();
+    if missed.contains(&ProcedureStep::Restart) && name != "lost" {
         // An encoder that restarts owes no answer: that it has heard nothing shows when it is looked for.
-        missed.retain(|step| !matches!(step, Step::Save | Step::Fire));
+        missed.retain(|step| !matches!(step, ProcedureStep::Save | ProcedureStep::Fire));
     }
     missed.retain(|step| !hit.contains(step));
     assert_eq!(missed, [], "{context}");

@@ -7,9 +7,9 @@ use encoder_studio::devices::biss::jobs::{
     BissJob, BissOutput, Change, Commit, Committed, JobError, OperatorPresence, Prepared,
 };
 use encoder_studio::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, News, OperatorChannel, Step, Task, Unattended,
+    Answer, Demand, Detail, News, OperatorChannel, ProcedureStep, Task, Unattended,
 };
-use encoder_studio::devices::biss::procedures::write::{Interrupted, Left};
+use encoder_studio::devices::biss::procedures::write::{EndState, Interrupted};
 use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
 use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::profile::Consent;
@@ -25,7 +25,7 @@ pub(crate) struct Hands {
     /// Revolutions a minute in the calibration and in the Wiegand test.
     pub(crate) rpm: (f64, f64),
     /// What was told: operation and step, each when it began.
-    pub(crate) steps: Vec<(usize, Step)>,
+    pub(crate) steps: Vec<(usize, ProcedureStep)>,
     /// The last demand for each task, in the order in which they were made.
     pub(crate) demands: Vec<Demand>,
     /// What is answered instead of Start.
@@ -187,7 +187,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let mut hands = Hands::on(&bench);
     hands.rpm = (500.0, 2000.0);
     let sent = bench.counter();
-    let mut begun: Vec<(usize, Step)> = Vec::new();
+    let mut begun: Vec<(usize, ProcedureStep)> = Vec::new();
     let commit = hands.commit_of(prepared);
     let told = &mut |news: &News| {
         hands.hear(news);
@@ -201,7 +201,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
         let next = begun.iter().any(|(from, _)| *from == at + 1);
         let same = match now {
             None => true,
-            Some((from, step)) => matches!(step, Step::Await(_) | Step::Run(_)) && *from + 1 < at,
+            Some((from, step)) => matches!(step, ProcedureStep::Await(_) | ProcedureStep::Run(_)) && *from + 1 < at,
         };
         same && !next
     };
@@ -219,7 +219,7 @@ pub(crate) fn interrupted(error: JobError) -> Interrupted {
 pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
 
 /// The state that was told is the one in which the encoder is.
-pub(crate) fn assert_told(left: &Left, bench: &Bench, context: &str) {
+pub(crate) fn assert_told(left: &EndState, bench: &Bench, context: &str) {
     let (mode, password) = bench.mode_and_password();
     match &left.standing {
         None => assert_eq!((mode, password), IN_OPERATION, "{context}"),

@@ -7,7 +7,7 @@ use encoder_studio::app::Text;
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;
 use encoder_studio::devices::biss::procedures::procedure::{
-    Advice, Answer, Blocker, Detail, Failure, Outcome, Run, Step, Task, WiegandReport, steps_of,
+    Advice, Answer, Blocker, Detail, Failure, Outcome, ProcedureStep, Run, Task, WiegandReport, steps_of,
 };
 use encoder_studio::devices::biss::profile::{MotorSource, MountingRun, PlanError, PresetParts};
 use encoder_studio::devices::biss::protocol::{
@@ -27,7 +27,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> Hands {
     let prepared = bench.prepare(change).unwrap();
     let mut hands = Hands::on(bench);
     bench.commit(&prepared, &mut hands).unwrap();
-    let listed: Vec<(usize, Step)> = prepared
+    let listed: Vec<(usize, ProcedureStep)> = prepared
         .plan
         .ops
         .iter()
@@ -245,7 +245,7 @@ fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
         let told = interrupted(*bench.commit(&prepared, &mut hands).unwrap_err());
         assert_eq!(
             (told.cause, told.left.at, told.left.standing),
-            (Failure::Device(Error::Cancelled), Step::Await(task), None)
+            (Failure::Device(Error::Cancelled), ProcedureStep::Await(task), None)
         );
         assert_eq!(bench.mode_and_password(), IN_OPERATION, "{task:?}");
         assert!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()));
@@ -281,7 +281,7 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
     let mut bench = Bench::new(Way::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
-    assert_eq!(told.left.at, Step::Await(Task::Turn(Run::WiegandCounterclockwise)));
+    assert_eq!(told.left.at, ProcedureStep::Await(Task::Turn(Run::WiegandCounterclockwise)));
     assert_eq!((told.left.standing, bench.mode_and_password()), (None, IN_OPERATION));
     // Outside of the speeds: too slow for the test, too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
@@ -317,7 +317,7 @@ fn a_calibration_that_fails_says_why() {
                 told.hear(news);
                 let lasts =
                     matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::Detail::Lasts { .. });
-                if let (Some(rpm), true) = (disturbed, lasts && news.step == Step::Run(run)) {
+                if let (Some(rpm), true) = (disturbed, lasts && news.step == ProcedureStep::Run(run)) {
                     seat.set_rpm(rpm);
                 }
             })
@@ -325,7 +325,7 @@ fn a_calibration_that_fails_says_why() {
         let words: Vec<&str> = job(&error).iter().map(Text::id).collect();
         let told = interrupted(*error);
         assert_eq!(told.cause, Failure::Calibration { run, status });
-        assert_eq!((told.left.at, told.left.standing), (Step::Run(run), None));
+        assert_eq!((told.left.at, told.left.standing), (ProcedureStep::Run(run), None));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
         // The encoder's word on its flash is not known: a table that is lost counts as one that was written.
         let lost = run == Run::CalibrationClockwise;
@@ -356,7 +356,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
         let error = bench
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
-                if hands.steps.last() == Some(&(0, Step::Run(Run::CalibrationCounterclockwise)))
+                if hands.steps.last() == Some(&(0, ProcedureStep::Run(Run::CalibrationCounterclockwise)))
                     && matches!(news.detail, encoder_studio::devices::biss::procedures::procedure::Detail::Begins)
                 {
                     encoder.with(spoil);
@@ -380,7 +380,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
     let error = bench
         .run_watched(commit, &mut |news| {
             hands.hear(news);
-            if news.step == Step::Run(Run::WiegandCounterclockwise) {
+            if news.step == ProcedureStep::Run(Run::WiegandCounterclockwise) {
                 motor.set_rpm(1000.0);
             }
         })
@@ -400,7 +400,7 @@ fn a_run_that_never_ends_is_given_up() {
     let error = bench
         .run_watched(commit, &mut |news| {
             hands.hear(news);
-            if news.step == Step::Run(Run::WiegandClockwise) {
+            if news.step == ProcedureStep::Run(Run::WiegandClockwise) {
                 motor.set_rpm(0.0);
             }
         })
@@ -507,7 +507,7 @@ fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
     let error = bench
         .run_watched(commit, &mut |news| match &news.detail {
             Detail::Demand(demand) if news.op == 0 && demand.is_ready() => seat.answer(demand.task, Answer::Go),
-            Detail::Begins if (news.op, news.step) == (0, Step::Save) => seat.answer(Task::Stand, Answer::Go),
+            Detail::Begins if (news.op, news.step) == (0, ProcedureStep::Save) => seat.answer(Task::Stand, Answer::Go),
             Detail::Demand(demand) if news.op == 1 && demand.is_ready() => {
                 asked += 1;
                 if asked == 3 {

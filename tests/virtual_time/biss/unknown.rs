@@ -6,7 +6,7 @@ use encoder_studio::buses::bridge::protocol::{
     BissStatus, Capabilities, ErrorCode, Hello, Message, Receiver, Reply, Request,
 };
 use encoder_studio::devices::biss::procedures::{self as device, Error, FrameSource, Station};
-use encoder_studio::devices::biss::protocol::{Crc, Descriptions, Layout, Reading};
+use encoder_studio::devices::biss::protocol::{Crc, Descriptions, Layout, PositionData};
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
 
@@ -56,7 +56,7 @@ impl Stranger {
             }
             Request::BissRead => {
                 self.place = (self.place + self.step) % (1 << 14);
-                let reading = Reading { singleturn: self.place, ..Reading::default() };
+                let reading = PositionData { singleturn: self.place, ..PositionData::default() };
                 // Behind its end the line is low.
                 let bits = self.layout.bits();
                 let frame = u128::from(self.layout.emit(&reading)) << 64 >> bits >> (64 - self.clocked);

@@ -287,7 +287,7 @@ fn what_cannot_be_read_back_is_unclear() {
         let error = bench
             .run_watched(commit, &mut |news| {
                 hands.hear(news);
-                if news.step == encoder_studio::devices::biss::procedures::procedure::Step::Save {
+                if news.step == encoder_studio::devices::biss::procedures::procedure::ProcedureStep::Save {
                     let next = Some(counter());
                     match lost {
                         "answer" => tap.lock().unwrap().swallow_reply = next,

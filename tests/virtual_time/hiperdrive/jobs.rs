@@ -1,6 +1,6 @@
 //! What can be read of a device. Nothing is set for it, and no cyclic connection is opened.
 
-use encoder_studio::devices::hiperdrive::procedures::check::{Finding, Step, Verdict};
+use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
 use encoder_studio::devices::hiperdrive::procedures::{Error, Late};
 use std::sync::{Arc, Mutex};
 
@@ -146,25 +146,25 @@ fn the_check_has_a_line_for_each_thing_that_may_be_wrong() {
         }
     });
     let HiperdriveOutput::Check(lines) = stand.run(HiperdriveJob::Check).unwrap() else { panic!() };
-    let of = |step: Step| lines.iter().find(|line| line.step == step).unwrap();
+    let of = |step: CheckStep| lines.iter().find(|line| line.step == step).unwrap();
     let verdicts = [
-        (Step::Messages, Verdict::Good),
-        (Step::Device, Verdict::Good),
-        (Step::Supply, Verdict::Attention),
-        (Step::Address, Verdict::Good),
-        (Step::Memory, Verdict::Good),
-        (Step::Request(drive(1)), Verdict::Attention),
-        (Step::Line(drive(1)), Verdict::Good),
-        (Step::Timeout(drive(1)), Verdict::Bad),
-        (Step::Errors(drive(1)), Verdict::Good),
-        (Step::Range(drive(1)), Verdict::Good),
+        (CheckStep::Messages, Verdict::Good),
+        (CheckStep::Device, Verdict::Good),
+        (CheckStep::Supply, Verdict::Attention),
+        (CheckStep::Address, Verdict::Good),
+        (CheckStep::Memory, Verdict::Good),
+        (CheckStep::Request(drive(1)), Verdict::Attention),
+        (CheckStep::Line(drive(1)), Verdict::Good),
+        (CheckStep::Timeout(drive(1)), Verdict::Bad),
+        (CheckStep::Errors(drive(1)), Verdict::Good),
+        (CheckStep::Range(drive(1)), Verdict::Good),
     ];
     for (step, verdict) in verdicts {
         assert_eq!(of(step).verdict, verdict, "{step}: {:?}", of(step).findings);
     }
-    assert_eq!(of(Step::Timeout(drive(1))).findings, [Finding::NoTimeout]);
-    assert_eq!(of(Step::Address).findings, [Finding::Switch(AddressSwitch::Bootp)]);
-    assert!(of(Step::Range(drive(1))).findings.contains(&Finding::Within(65536)));
+    assert_eq!(of(CheckStep::Timeout(drive(1))).findings, [CheckFinding::NoTimeout]);
+    assert_eq!(of(CheckStep::Address).findings, [CheckFinding::Switch(AddressSwitch::Bootp)]);
+    assert!(of(CheckStep::Range(drive(1))).findings.contains(&CheckFinding::Within(65536)));
 }
 
 /// Reading a parameter after the other takes seconds where a reply takes long: each is told, empty places count as done.

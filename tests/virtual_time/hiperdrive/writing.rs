@@ -2,7 +2,7 @@
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
-use encoder_studio::devices::hiperdrive::procedures::{Asked, Error, LimitsSeen};
+use encoder_studio::devices::hiperdrive::procedures::{Error, LimitsSeen, RequestedItem};
 use encoder_studio::devices::hiperdrive::profile::{HiperdriveProfile, PlanError, RestoreOptions, Service};
 use encoder_studio::devices::hiperdrive::protocol::{ErrorCode, Range, Value};
 use encoder_studio::kinds::program;
@@ -206,7 +206,7 @@ fn a_presence_test_that_is_not_answered_ends_in_time() {
         let Err(JobError::Interrupted { interrupted, .. }) = ended else { panic!("{query}: {ended:?}") };
         assert_eq!(
             interrupted.cause,
-            Error::NoReply { asked: Asked::Set(number(47)), tries: 1, late: None },
+            Error::NoReply { asked: RequestedItem::Set(number(47)), tries: 1, late: None },
             "{query}"
         );
         assert_eq!((interrupted.unclear().as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use encoder_studio::devices::interbus::jobs::{Change, Commit, InterbusJob, InterbusOutput, JobError};
 use encoder_studio::devices::interbus::procedures::Error;
-use encoder_studio::devices::interbus::procedures::write::Left;
+use encoder_studio::devices::interbus::procedures::write::EndState;
 use encoder_studio::devices::interbus::profile::{Item, ItemValue};
 use encoder_studio::devices::interbus::protocol::StartupMode;
 use encoder_studio::profile::Consent;
@@ -119,12 +119,12 @@ fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be()
                     assert!(backup.exists() && interrupted.cause.is_lost(), "{at}: {interrupted}");
                     assert!(spent <= interrupted.done.write_cycles, "{at}: {interrupted}");
                     match interrupted.left {
-                        Left::Unknown(standing) => {
+                        EndState::Unknown(standing) => {
                             assert_eq!(standing.found, Some(StartupMode::Cams(program(2))), "{at}");
                             assert!(interrupted.to_string().contains("could not be led back"), "{at}: {interrupted}");
                         }
                         // The last that it heard was normal running.
-                        Left::AsFound => assert_eq!((out, mode), (0, StartupMode::Cams(program(2))), "{at}"),
+                        EndState::AsFound => assert_eq!((out, mode), (0, StartupMode::Cams(program(2))), "{at}"),
                     }
                 }
                 Err(JobError::Device(error)) => assert!(error.is_lost() && spent == 0, "{at}: {error}"),

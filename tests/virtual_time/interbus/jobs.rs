@@ -1,7 +1,7 @@
 //! What is read: with which words, and how the encoder is afterwards.
 
 use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
-use encoder_studio::devices::interbus::procedures::check::{Finding, InterbusStepResult, Step, Verdict};
+use encoder_studio::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult, Verdict};
 use encoder_studio::devices::interbus::procedures::{Error, Says};
 use encoder_studio::devices::interbus::profile::{Direction, Item, ItemValue};
 use encoder_studio::devices::interbus::protocol::{Mode, ReadOut, StartupMode};
@@ -227,7 +227,7 @@ fn checked(stand: &mut Stand) -> Vec<InterbusStepResult> {
     }
 }
 
-fn verdict(lines: &[InterbusStepResult], step: Step) -> Option<Verdict> {
+fn verdict(lines: &[InterbusStepResult], step: CheckStep) -> Option<Verdict> {
     lines.iter().find(|line| line.step == step).map(|line| line.verdict)
 }
 
@@ -237,12 +237,12 @@ fn the_device_check_has_a_verdict_a_line_and_sets_nothing() {
     let stores = stand.stores();
     let lines = checked(&mut stand);
     assert!(lines.iter().all(|line| line.verdict == Verdict::Good), "{lines:?}");
-    let steps: Vec<Step> = lines.iter().map(|line| line.step).collect();
-    use Step::{Gateway, Handshake, Identity, InputWord, Temperature, Wear, WordOrder};
+    let steps: Vec<CheckStep> = lines.iter().map(|line| line.step).collect();
+    use CheckStep::{Gateway, Handshake, Identity, InputWord, Temperature, Wear, WordOrder};
     assert_eq!(steps, [Gateway, WordOrder, InputWord, Handshake, Identity, Temperature, Wear]);
-    let found = |finding: Finding| lines.iter().any(|line| line.findings.contains(&finding));
-    assert!(found(Finding::SerialNumber("8".to_owned())) && found(Finding::Temperature(410)));
-    assert!(found(Finding::Gear { steps: 3600, turns: 1 }) && found(Finding::Wear { seen: 0, limit: 450 }));
+    let found = |finding: CheckFinding| lines.iter().any(|line| line.findings.contains(&finding));
+    assert!(found(CheckFinding::SerialNumber("8".to_owned())) && found(CheckFinding::Temperature(410)));
+    assert!(found(CheckFinding::Gear { steps: 3600, turns: 1 }) && found(CheckFinding::Wear { seen: 0, limit: 450 }));
     assert_eq!((stand.left(), stand.stores()), ((0, StartupMode::Cams(program(2))), stores));
 }
 
@@ -252,29 +252,33 @@ fn the_device_check_says_what_is_wrong() {
     let far = gateway("steps=33554431&revolutions=4096&position=3000000&order=low-first");
     let mut stand = Stand::with(far, station(""));
     let lines = checked(&mut stand);
-    assert_eq!(verdict(&lines, Step::WordOrder), Some(Verdict::Bad), "{lines:?}");
-    assert_eq!((verdict(&lines, Step::Identity), stand.sent()), (None, vec![]), "nothing is sent into the wrong half");
+    assert_eq!(verdict(&lines, CheckStep::WordOrder), Some(Verdict::Bad), "{lines:?}");
+    assert_eq!(
+        (verdict(&lines, CheckStep::Identity), stand.sent()),
+        (None, vec![]),
+        "nothing is sent into the wrong half"
+    );
     let error = stand.run(InterbusJob::Identify).unwrap_err();
     assert_eq!(error.to_string(), "IN C6BF002D makes sense as 002DC6BF only: the word order may be swapped");
     // Left in parameterisation.
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x0200_00FF));
     let lines = checked(&mut stand);
-    assert_eq!(verdict(&lines, Step::InputWord), Some(Verdict::Bad), "{lines:?}");
+    assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Bad), "{lines:?}");
     assert_eq!(stand.sent(), Vec::<u32>::new());
     // Somebody reads its serial number.
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x2021_0000));
     let lines = checked(&mut stand);
-    assert_eq!(verdict(&lines, Step::InputWord), Some(Verdict::Attention), "{lines:?}");
-    assert_eq!((verdict(&lines, Step::Handshake), stand.sent()), (None, vec![]), "whoever reads is not disturbed");
+    assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Attention), "{lines:?}");
+    assert_eq!((verdict(&lines, CheckStep::Handshake), stand.sent()), (None, vec![]), "whoever reads is not disturbed");
     // No K3: OUT changes nothing.
     let mut stand = Stand::new("class=K2&position=77");
     let lines = checked(&mut stand);
-    assert_eq!(verdict(&lines, Step::Handshake), Some(Verdict::Bad), "{lines:?}");
+    assert_eq!(verdict(&lines, CheckStep::Handshake), Some(Verdict::Bad), "{lines:?}");
     let mut stand = Stand::new("steps=100&revolutions=1&preset=10&steps-minus-one=on&temperature=90");
     let lines = checked(&mut stand);
-    for step in [Step::Identity, Step::Temperature] {
+    for step in [CheckStep::Identity, CheckStep::Temperature] {
         assert_eq!(verdict(&lines, step), Some(Verdict::Attention), "{lines:?}");
     }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use encoder_studio::devices::interbus::jobs::{ChangeKind, Commit, Committed, JobError, Prepared};
 use encoder_studio::devices::interbus::procedures::write::{EncoderWrite, Interrupted, Written};
 use encoder_studio::devices::interbus::procedures::{
-    Asked, Error, Exception, Handshake, Identity, Master, ProcessData,
+    Error, Exception, Handshake, Identity, Master, ProcessData, RequestedItem,
 };
 use encoder_studio::devices::interbus::profile::{
     Base, CamChange, Direction, Edge, InterbusPlan, Op, ParameterChange, Parameters, ProgramChange,
@@ -108,7 +108,7 @@ impl ProcessData for Script {
         }
         self.now += self.pace;
         if let Some((word, code, _)) = refused {
-            let asked = Asked::Write { register: 0, word };
+            let asked = RequestedItem::Write { register: 0, word };
             return Err(Error::Exception { asked, exception: Exception::new(code) });
         }
         self.input()

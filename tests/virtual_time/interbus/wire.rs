@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use encoder_studio::devices::interbus::procedures::{
-    Asked, Carried, Damage, Error, Exception, Master, Reading, Station, carried, identify,
+    Carried, Damage, Error, Exception, Master, RequestedItem, Station, WordReading, carried, identify,
 };
 use encoder_studio::devices::interbus::protocol::WordOrder;
 use encoder_studio::link::{ByteLink, Cancel, Clock, Ctx, LinkError, Trace, VirtualClock};
@@ -89,7 +89,7 @@ fn with<T>(
     (ended, wire.requests, clock.now().since_start())
 }
 
-fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static) -> Seen<Reading> {
+fn read(query: &str, answer: impl FnMut(usize, &[u8]) -> Answer + Send + 'static) -> Seen<WordReading> {
     with(&mut station(query), answer, |master| master.reading())
 }
 
@@ -173,7 +173,7 @@ fn a_refusal_is_told_with_its_cause() {
     for (code, tries, name, cause) in cases {
         let (ended, requests, took) = read("input=7", move |_, request| vec![(2, reply(request, &[1, 0x84, code]))]);
         let error = ended.unwrap_err();
-        let asked = Asked::Input { register: 7 };
+        let asked = RequestedItem::Input { register: 7 };
         assert_eq!(error, Error::Exception { asked, exception: Exception::new(code) });
         let text = error.to_string();
         assert!(text.contains(name) && text.contains(cause), "{text}");
@@ -208,7 +208,7 @@ fn what_is_no_reply_is_asked_for_again() {
         });
         assert_eq!((ended.unwrap().word, requests.len()), (9, 2), "{label}");
         let (ended, requests, took) = read("", move |_, request| vec![(2, says(request))]);
-        let expected = Error::Damaged { asked: Asked::Input { register: 0 }, tries: 5, cause: damage };
+        let expected = Error::Damaged { asked: RequestedItem::Input { register: 0 }, tries: 5, cause: damage };
         assert_eq!((ended.unwrap_err(), requests.len()), (expected, 5), "{label}");
         assert!(took < Duration::from_secs(12), "{label}");
     }
@@ -217,7 +217,7 @@ fn what_is_no_reply_is_asked_for_again() {
 #[test]
 fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
     let (ended, requests, took) = read("", |_, _| vec![]);
-    assert_eq!(ended.unwrap_err(), Error::NoReply { asked: Asked::Input { register: 0 }, tries: 3 });
+    assert_eq!(ended.unwrap_err(), Error::NoReply { asked: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
     assert!(took < Duration::from_secs(12), "{took:?}");
     // It hangs after a while: also leading back ends soon.

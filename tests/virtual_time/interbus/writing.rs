@@ -7,7 +7,7 @@ use encoder_studio::devices::interbus::jobs::{
     Change, ChangeKind, Commit, InterbusJob, InterbusOutput, JobError, JobStep, WEAR_LIMIT, Wear,
 };
 use encoder_studio::devices::interbus::procedures::Error;
-use encoder_studio::devices::interbus::procedures::write::Left;
+use encoder_studio::devices::interbus::procedures::write::EndState;
 use encoder_studio::devices::interbus::profile::InterbusProfile;
 use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue, Op, RestoreOptions};
 use encoder_studio::devices::interbus::protocol::{CamNumber, ProgramNumber, StartupMode};
@@ -347,7 +347,7 @@ fn a_wish_to_end_leaves_an_encoder_that_runs() {
             Err(JobError::Interrupted { interrupted, .. }) => {
                 interrupted_ones += 1;
                 assert!(interrupted.cause.is_cancelled(), "after {after}: {interrupted}");
-                assert_eq!(interrupted.left, Left::AsFound, "after {after}");
+                assert_eq!(interrupted.left, EndState::AsFound, "after {after}");
                 assert!(u64::from(spent) <= interrupted.done.write_cycles, "after {after}: {spent}");
             }
             Err(JobError::Device(error)) => assert_eq!((error.is_cancelled(), spent), (true, 0), "after {after}"),

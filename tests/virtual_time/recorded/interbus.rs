@@ -2,7 +2,7 @@
 
 use encoder_studio::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput, JobError};
 use encoder_studio::devices::interbus::procedures::Error;
-use encoder_studio::devices::interbus::procedures::write::Left;
+use encoder_studio::devices::interbus::procedures::write::EndState;
 use encoder_studio::devices::interbus::profile::{Image, Item, ItemValue, RestoreOptions};
 
 use super::{Ready, compare, listen};
@@ -24,7 +24,7 @@ fn recorded(name: &str, change: fn(&mut Stand) -> Change, every: usize) {
                 if interrupted.cause == Error::Cancelled { "cancelled" } else { "cut off" },
                 interrupted.done.ops,
                 interrupted.done.write_cycles,
-                if interrupted.left == Left::AsFound { "as found" } else { "not led back" },
+                if interrupted.left == EndState::AsFound { "as found" } else { "not led back" },
             ),
             Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
             Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),

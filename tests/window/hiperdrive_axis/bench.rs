@@ -6,8 +6,10 @@ use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, ReviewAction};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
 use encoder_studio::devices::hiperdrive::sim::Hindrance;
-use encoder_studio::devices::hiperdrive::state::axis::{Action as Run, Axis, Button, Entries, Seen, Step, TestTarget};
-use encoder_studio::devices::hiperdrive::state::{Action as Hiperdrive, Motor, Unit};
+use encoder_studio::devices::hiperdrive::state::axis::{
+    Axis, AxisAction as Run, AxisStep, Button, Entries, Seen, TestTarget,
+};
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
@@ -70,7 +72,7 @@ pub(super) fn begun(link: &str) -> Desk {
     until_ready(&mut desk);
     desk.settle();
     run(&mut desk, Run::Begin);
-    assert_eq!(axis(&desk).step(), Step::Request);
+    assert_eq!(axis(&desk).step(), AxisStep::Request);
     desk
 }
 
@@ -107,7 +109,7 @@ pub(super) fn step_with_write(desk: &mut Desk) {
 
 /// The step is done, and the next one comes.
 #[track_caller]
-pub(super) fn next(desk: &mut Desk, step: Step) {
+pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     let (axis, seen) = (axis(desk), seen(desk));
     assert_eq!(axis.may_go_on(&seen), Ok(()), "{:?}", axis.step());
     run(desk, Run::Next);
@@ -181,9 +183,9 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         let own = axis(desk);
         assert_eq!((own.step(), own.is_writing()), (step, false), "{hindrance:?} of {number}");
         // The last step writes nothing that is saved.
-        assert_eq!(own.is_saved(), step == Step::PowerCycle, "{hindrance:?} of {number}");
+        assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
         assert_eq!(own.fallen(), None, "{hindrance:?} of {number}");
-        if hindrance == Hindrance::CutOff && matches!(step, Step::Reference | Step::Upper) {
+        if hindrance == Hindrance::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
             control(desk);
         }
     }
@@ -219,12 +221,12 @@ pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
         let own = studio.hiperdrive().unwrap();
         own.axis().unwrap().may_go_on(&own.seen(own.drive())).is_ok()
     });
-    next(&mut desk, Step::Scale);
+    next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
     step_with_writes(&mut desk, 156, rough);
     // Reference 5: 400/256; 511 turns of 400 steps.
     assert_eq!([154, 156, 158, 160].map(|own| number(&desk, own)), [400, 256, -204_400, 204_400]);
-    next(&mut desk, Step::Confirm);
+    next(&mut desk, AxisStep::Confirm);
     desk
 }
 
@@ -235,7 +237,7 @@ pub(super) fn until_jog() -> Desk {
 /// With control, in the step with the slow jog.
 pub(super) fn confirm(mut desk: Desk) -> Desk {
     run(&mut desk, Run::Press(Button::Confirm));
-    next(&mut desk, Step::Jog);
+    next(&mut desk, AxisStep::Jog);
     // Before that the mark of these limits may still be read back from the file, and locks them anew.
     let path = desk.outside.store().settings_path();
     desk.until("the confirmation is kept", |_| {
@@ -254,7 +256,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = confirm(until_scaled(link, drive, rough));
     jog(&mut desk, Direction::Clockwise, 20);
     jog(&mut desk, Direction::Counterclockwise, 10);
-    next(&mut desk, Step::Reference);
+    next(&mut desk, AxisStep::Reference);
     edit(&mut desk, |own| own.reference = "1".to_owned());
     step_with_writes(&mut desk, 198, rough);
     // 100 steps are rounded to 128: the nearest multiple of 64.
@@ -262,7 +264,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
         let own = studio.hiperdrive().unwrap();
         own.seen(own.drive()).position.is_some_and(|position| (position - 128).abs() <= 1)
     });
-    next(&mut desk, Step::Lower);
+    next(&mut desk, AxisStep::Lower);
     desk
 }
 
@@ -272,13 +274,13 @@ pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
     jog(&mut desk, Direction::Counterclockwise, 10);
     run(&mut desk, Run::TakePlace);
     let lower = position(&mut desk);
-    next(&mut desk, Step::Upper);
+    next(&mut desk, AxisStep::Upper);
     jog(&mut desk, Direction::Clockwise, 40);
     run(&mut desk, Run::TakePlace);
     let upper = position(&mut desk);
     step_with_writes(&mut desk, 160, rough);
     assert_eq!([158, 160].map(|own| number(&desk, own)), [i64::from(lower), i64::from(upper)]);
-    next(&mut desk, Step::Test);
+    next(&mut desk, AxisStep::Test);
     desk
 }
 
@@ -317,10 +319,10 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
 /// Saved, before the check over the supply.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(until_test(link, drive, rough));
-    next(&mut desk, Step::Save);
+    next(&mut desk, AxisStep::Save);
     assert_eq!(unit(&desk).session.cycles, Some(0), "nothing was saved on the way");
     step_with_writes(&mut desk, 47, rough);
-    next(&mut desk, Step::PowerCycle);
+    next(&mut desk, AxisStep::PowerCycle);
     desk
 }
 

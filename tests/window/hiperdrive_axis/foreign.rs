@@ -29,7 +29,7 @@ fn a_reference_set_again_at_another_place_is_noticed() {
     assert_eq!(axis(&desk).fallen(), None);
     set_by_another(&desk);
     desk.until("it is noticed", |studio| {
-        studio.hiperdrive().unwrap().axis().unwrap().fallen() == Some(Step::Reference)
+        studio.hiperdrive().unwrap().axis().unwrap().fallen() == Some(AxisStep::Reference)
     });
     assert_eq!(number(&desk, 198), 128, "the parameter says nothing of it");
     assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");

@@ -10,7 +10,7 @@ use crate::bits::{hex, hex_compact};
 use crate::cli::args::{Common, Position};
 use crate::cli::output::{Lines, Output, say};
 use crate::cli::positions::try_readings;
-use crate::cli::runner::{Ended, unexpected};
+use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
 use crate::devices::biss::procedures::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
@@ -172,7 +172,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
                     if let JobError::Device(Error::WrongWidths { frames, .. }) = &*error {
                         wrong += u64::from(*frames);
                     }
-                    return Err(Ended::<Biss>::Job(error).into_failure());
+                    return Err(JobFailure::<Biss>::Job(error).into_failure());
                 }
             };
             (wrong, good_at) = (wrong + u64::from(reading.crc_errors), Instant::now());

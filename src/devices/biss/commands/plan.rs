@@ -11,7 +11,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{PlanReport, Step, WriteSummary, warn};
+use crate::cli::plan::{PlanReport, PlanStep, WriteSummary, warn};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, Change, Commit, OperatorPresence, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::procedure::{Motion, Outcome, Unattended};
 use crate::devices::biss::procedures::write::Written;
@@ -67,23 +67,24 @@ pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
-fn steps(op: &Op) -> Vec<Step> {
+fn steps(op: &Op) -> Vec<PlanStep> {
     let cost = op.write_cycles();
-    let step = |old: Option<String>, new: Option<String>| vec![Step { item: op.item(), old, new, write_cycles: cost }];
+    let step =
+        |old: Option<String>, new: Option<String>| vec![PlanStep { item: op.item(), old, new, write_cycles: cost }];
     let byte = |byte: u8| format!("{byte:02X}");
     match op {
         Op::StoreData { area, registers } => {
-            let mut steps: Vec<Step> = op
+            let mut steps: Vec<PlanStep> = op
                 .ranges()
                 .into_iter()
                 .map(|range: RegisterRange| {
                     let own = registers.iter().filter(|change| range.contains(change.address));
                     let (old, new): (Vec<u8>, Vec<u8>) = own.map(|change| (change.old, change.new)).unzip();
                     let (old, new) = (Some(hex_compact(&old)), Some(hex_compact(&new)));
-                    Step { item: range.to_string(), old, new, write_cycles: 0 }
+                    PlanStep { item: range.to_string(), old, new, write_cycles: 0 }
                 })
                 .collect();
-            steps.push(Step {
+            steps.push(PlanStep {
                 item: area.name.to_string(),
                 old: None,
                 new: Some("saved".to_owned()),

@@ -7,7 +7,7 @@ use super::run::Runner;
 use crate::app::Text;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, restore_options, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, keep, restore_options, say_mounting_left, to_restore, write_restore};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
@@ -66,7 +66,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
     let plan = shown(&prepared);
     write_restore(output, restore, &plan, &left, || {
         commit(&mut runner, output, prepared, &restore.consent, super::PATIENCE).map(|(spent, _)| spent)

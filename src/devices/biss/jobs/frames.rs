@@ -42,7 +42,7 @@ mod tests {
     use super::*;
     use crate::analysis::Time;
     use crate::buses::bridge::jobs::tests::{bench, count, virtual_adapter};
-    use crate::devices::biss::protocol::Reading;
+    use crate::devices::biss::protocol::PositionData;
     use crate::worker::stream::Producer;
 
     /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.
@@ -63,7 +63,7 @@ mod tests {
         for batch in &batches {
             assert_eq!((batch.time, batch.period_ns), (begin.plus(batch.first as i64 * 50_000), 50_000));
             for frame in &batch.samples {
-                let Reading { multiturn, singleturn, error, warning } = frame.unwrap();
+                let PositionData { multiturn, singleturn, error, warning } = frame.unwrap();
                 let position = i64::from(multiturn) * 131_072 + i64::from(singleturn);
                 // 50 revolutions a second are 327.68 steps a frame.
                 assert!(before.is_none_or(|before| (327..=328).contains(&(position - before))) && !error && !warning);

@@ -11,11 +11,11 @@ use crate::devices::biss::protocol::{
 pub use crate::analysis::check::{Verdict, Wear};
 
 /// One line of the check.
-pub type BissStepResult = check::StepResult<Step, Finding>;
+pub type BissStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum CheckStep {
     /// Identity, and whether a description matches.
     Identity,
     /// Errors, warnings, device mode, password.
@@ -36,7 +36,7 @@ pub enum Step {
 
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum CheckFinding {
     /// The name of its description.
     Name(String),
     SerialNumber(String),
@@ -144,67 +144,68 @@ pub fn check(
 }
 
 fn identity(identity: &Identity) -> BissStepResult {
-    let mut findings = vec![(Verdict::Good, Finding::Name(identity.description.name().to_owned()))];
+    let mut findings = vec![(Verdict::Good, CheckFinding::Name(identity.description.name().to_owned()))];
     if !identity.serial_number.is_empty() {
-        findings.push((Verdict::Good, Finding::SerialNumber(identity.serial_number.clone())));
+        findings.push((Verdict::Good, CheckFinding::SerialNumber(identity.serial_number.clone())));
     }
-    findings.extend(identity.firmware.map(|firmware| (Verdict::Good, Finding::Firmware(firmware))));
-    findings.extend(identity.mismatch.clone().map(|mismatch| (Verdict::Attention, Finding::Mismatch(mismatch))));
-    BissStepResult::of(Step::Identity, findings)
+    findings.extend(identity.firmware.map(|firmware| (Verdict::Good, CheckFinding::Firmware(firmware))));
+    findings.extend(identity.mismatch.clone().map(|mismatch| (Verdict::Attention, CheckFinding::Mismatch(mismatch))));
+    BissStepResult::of(CheckStep::Identity, findings)
 }
 
 fn status(status: &Status) -> BissStepResult {
     let set = |bits: &Option<Bits>| bits.iter().flat_map(|bits| bits.set.clone()).collect::<Vec<_>>();
-    let mut findings: Vec<(Verdict, Finding)> =
-        set(&status.errors).into_iter().map(|(bit, name)| (Verdict::Bad, Finding::Error(bit, name))).collect();
+    let mut findings: Vec<(Verdict, CheckFinding)> =
+        set(&status.errors).into_iter().map(|(bit, name)| (Verdict::Bad, CheckFinding::Error(bit, name))).collect();
     let warnings = set(&status.warnings).into_iter();
-    findings.extend(warnings.map(|(bit, name)| (Verdict::Attention, Finding::Warning(bit, name))));
+    findings.extend(warnings.map(|(bit, name)| (Verdict::Attention, CheckFinding::Warning(bit, name))));
     if status.errors.is_none() && status.warnings.is_none() {
-        findings.push((Verdict::Attention, Finding::NotTold));
+        findings.push((Verdict::Attention, CheckFinding::NotTold));
     }
     let mode = status.mode.filter(|mode| *mode != DeviceMode::OPERATION);
-    findings.extend(mode.map(|mode| (Verdict::Attention, Finding::Mode(mode))));
+    findings.extend(mode.map(|mode| (Verdict::Attention, CheckFinding::Mode(mode))));
     if status.protection.is_some_and(|password| password != 0) {
-        findings.push((Verdict::Attention, Finding::Open));
+        findings.push((Verdict::Attention, CheckFinding::Open));
     }
-    BissStepResult::of(Step::Status, findings)
+    BissStepResult::of(CheckStep::Status, findings)
 }
 
 fn position(reading: Option<PositionReading>) -> BissStepResult {
     let Some(reading) = reading else {
-        return BissStepResult::of(Step::Position, vec![(Verdict::Bad, Finding::NoPosition)]);
+        return BissStepResult::of(CheckStep::Position, vec![(Verdict::Bad, CheckFinding::NoPosition)]);
     };
-    let mut findings = vec![(Verdict::Good, Finding::Position(reading))];
+    let mut findings = vec![(Verdict::Good, CheckFinding::Position(reading))];
     if reading.error == Some(true) {
-        findings.push((Verdict::Bad, Finding::ErrorBit));
+        findings.push((Verdict::Bad, CheckFinding::ErrorBit));
     }
     if reading.warning == Some(true) {
-        findings.push((Verdict::Attention, Finding::WarningBit));
+        findings.push((Verdict::Attention, CheckFinding::WarningBit));
     }
-    BissStepResult::of(Step::Position, findings)
+    BissStepResult::of(CheckStep::Position, findings)
 }
 
 fn data_sheet(identity: &Identity) -> BissStepResult {
     let Some(sheet) = &identity.data_sheet else {
-        return BissStepResult::of(Step::DataSheet, vec![(Verdict::Attention, Finding::NoSheet)]);
+        return BissStepResult::of(CheckStep::DataSheet, vec![(Verdict::Attention, CheckFinding::NoSheet)]);
     };
     let wrong = [&sheet.common, &sheet.encoder].into_iter().filter_map(|bank| bank.eds.err());
-    let mut findings: Vec<(Verdict, Finding)> = wrong.map(|error| (Verdict::Bad, Finding::Sheet(error))).collect();
+    let mut findings: Vec<(Verdict, CheckFinding)> =
+        wrong.map(|error| (Verdict::Bad, CheckFinding::Sheet(error))).collect();
     if findings.is_empty() {
-        findings.push((Verdict::Good, Finding::SumsFit));
+        findings.push((Verdict::Good, CheckFinding::SumsFit));
         match &sheet.layout {
-            Err(error) => findings.push((Verdict::Bad, Finding::Sheet(*error))),
+            Err(error) => findings.push((Verdict::Bad, CheckFinding::Sheet(*error))),
             Ok(told) => {
                 let widths = |layout: &crate::devices::biss::protocol::Layout| {
                     (layout.multiturn_bits(), layout.singleturn_bits())
                 };
                 let described = identity.description.layout().map(widths).filter(|own| *own != widths(told));
-                let other = described.map(|description| Finding::OtherFrame { sheet: widths(told), description });
+                let other = described.map(|description| CheckFinding::OtherFrame { sheet: widths(told), description });
                 findings.extend(other.map(|finding| (Verdict::Attention, finding)));
             }
         }
     }
-    BissStepResult::of(Step::DataSheet, findings)
+    BissStepResult::of(CheckStep::DataSheet, findings)
 }
 
 /// Offsets of the limits in the encoder's bank of the data sheet.
@@ -226,7 +227,7 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult>
         (survey.status.celsius, celsius(offset::COLDEST), celsius(offset::HOTTEST))
     {
         let fits = (f64::from(low)..=f64::from(high)).contains(&celsius);
-        findings.push((judge(fits), Finding::Temperature { celsius, low, high }));
+        findings.push((judge(fits), CheckFinding::Temperature { celsius, low, high }));
     }
     let number = |at| match value(sheet, at) {
         Some(EdsValue::Number(number, _)) => Some(number),
@@ -236,10 +237,10 @@ fn limits(survey: &Survey, supply: Option<(u16, u16)>) -> Option<BissStepResult>
         (supply, number(offset::LEAST_VOLTAGE), number(offset::MOST_VOLTAGE), number(offset::MOST_CURRENT))
     {
         let fits = (low..=high).contains(&millivolt.into());
-        findings.push((judge(fits), Finding::Supply { millivolt, low, high }));
-        findings.push((judge(u32::from(milliampere) <= most), Finding::Current { milliampere, high: most }));
+        findings.push((judge(fits), CheckFinding::Supply { millivolt, low, high }));
+        findings.push((judge(u32::from(milliampere) <= most), CheckFinding::Current { milliampere, high: most }));
     }
-    (!findings.is_empty()).then(|| BissStepResult::of(Step::Limits, findings))
+    (!findings.is_empty()).then(|| BissStepResult::of(CheckStep::Limits, findings))
 }
 
 fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
@@ -251,11 +252,11 @@ fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
         // As it leaves the factory: nothing is wrong with that, and nothing tells that the sensor is right.
-        [0, 0, 0, 0] => (Verdict::Skipped, Finding::NotTested),
-        _ if saved.passes() => (Verdict::Good, Finding::Wiegand(saved)),
-        _ => (Verdict::Bad, Finding::Wiegand(saved)),
+        [0, 0, 0, 0] => (Verdict::Skipped, CheckFinding::NotTested),
+        _ if saved.passes() => (Verdict::Good, CheckFinding::Wiegand(saved)),
+        _ => (Verdict::Bad, CheckFinding::Wiegand(saved)),
     };
-    Some(BissStepResult::of(Step::Wiegand, vec![finding]))
+    Some(BissStepResult::of(CheckStep::Wiegand, vec![finding]))
 }
 
 /// Reads the position again and again. A reading that does not come at all is damage as well.
@@ -276,10 +277,10 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
-    Ok(BissStepResult::of(Step::Readings, vec![(verdict, Finding::Readings { asked: READINGS, damaged })]))
+    Ok(BissStepResult::of(CheckStep::Readings, vec![(verdict, CheckFinding::Readings { asked: READINGS, damaged })]))
 }
 
 fn worn(wear: Wear) -> Option<BissStepResult> {
     let (verdict, seen) = wear.judged()?;
-    Some(BissStepResult::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
+    Some(BissStepResult::of(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
 }

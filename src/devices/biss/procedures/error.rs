@@ -11,19 +11,19 @@ use crate::profile::DeviceError;
 
 /// A request to an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum RequestedItem {
     Read(RegisterAddress),
     /// To take a value into a register.
     Write(RegisterAddress, u8),
     Position,
 }
 
-impl fmt::Display for Asked {
+impl fmt::Display for RequestedItem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Asked::Read(address) => write!(f, "reading register {address}"),
-            Asked::Write(address, value) => write!(f, "writing 0x{value:02X} to register {address}"),
-            Asked::Position => f.write_str("reading the position"),
+            RequestedItem::Read(address) => write!(f, "reading register {address}"),
+            RequestedItem::Write(address, value) => write!(f, "writing 0x{value:02X} to register {address}"),
+            RequestedItem::Position => f.write_str("reading the position"),
         }
     }
 }
@@ -37,7 +37,7 @@ pub enum Error {
     /// Nothing came back.
     #[error("no reply while {asked} ({tries} tries)")]
     NoReply {
-        asked: Asked,
+        asked: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Our own bytes came back: the adapter echoes, so the line itself works.
@@ -46,7 +46,7 @@ pub enum Error {
     /// Something came back and was broken every time.
     #[error("damaged reply while {asked} ({tries} tries): {cause}")]
     Damaged {
-        asked: Asked,
+        asked: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
@@ -166,7 +166,7 @@ pub enum Error {
     },
     /// The reply belongs to another kind of request.
     #[error("{asked}: the reply is of another kind: {reply}")]
-    OtherReply { asked: Asked, reply: String },
+    OtherReply { asked: RequestedItem, reply: String },
     /// The adapter reports a status of the frame that the bridge protocol does not have.
     #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
     FrameStatus {
@@ -196,7 +196,7 @@ pub enum Error {
 
 impl Error {
     /// Returns the error for a reply that belongs to another kind of request.
-    pub(super) fn other_reply(asked: Asked, reply: &Reply) -> Self {
+    pub(super) fn other_reply(asked: RequestedItem, reply: &Reply) -> Self {
         Error::OtherReply { asked, reply: format!("{reply:?}") }
     }
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crate::buses::bridge::procedures::Portion;
 use crate::buses::bridge::protocol::{BissData, BissStatus};
-use crate::devices::biss::protocol::{FrameError, Layout, Reading};
+use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 use crate::units::Moment;
 
 /// Why a frame of a stream has no reading.
@@ -23,7 +23,7 @@ pub enum NoReading {
 }
 
 /// A frame of a stream.
-pub type Frame = Result<Reading, NoReading>;
+pub type Frame = Result<PositionData, NoReading>;
 
 /// Frames of a stream that follow each other at equal distances.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,10 +104,10 @@ mod tests {
     /// BiSS reference 2: a good frame, the same with an error, the same with a flipped bit.
     #[test]
     fn a_frame_has_a_reading_or_says_why_not() {
-        let reading = Reading { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
+        let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
         let cases = [
             (BissStatus::OK, 0x024_6980_00CF, Ok(reading)),
-            (BissStatus::OK, 0x000_0000_007C, Ok(Reading { error: true, ..Reading::default() })),
+            (BissStatus::OK, 0x000_0000_007C, Ok(PositionData { error: true, ..PositionData::default() })),
             (BissStatus::OK, 0x024_6980_00CE, Err(FrameError::Crc { expected: 0x0F, got: 0x0E }.into())),
             (BissStatus::OK, 0, Err(FrameError::StuckLow.into())),
             (BissStatus::NO_ACKNOWLEDGE, 0x024_6980_00CF, Err(NoReading::NoAcknowledge)),

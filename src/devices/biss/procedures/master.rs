@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use bus::NoFrame;
 
-use super::error::{Asked, Damage, asked_register};
+use super::error::{Damage, RequestedItem, asked_register};
 use super::position::PositionReading;
 use super::{Error, Station, Way};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
@@ -124,7 +124,7 @@ impl<'a> Master<'a> {
     /// When every try failed, when there is no such register, or when the user wished an end.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
         self.be_ready()?;
-        let asked = Asked::Read(address);
+        let asked = RequestedItem::Read(address);
         match self.read_confirmed(asked, |master| master.read_once(address)) {
             Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
             Err(failed) if self.station.way == Way::Adapter => Err(self.diagnose(failed)),
@@ -153,7 +153,7 @@ impl<'a> Master<'a> {
     /// taken after five tries. With [`Error::Cancelled`] it was not.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.be_ready()?;
-        let asked = Asked::Write(address, value);
+        let asked = RequestedItem::Write(address, value);
         let unclear = |cause| Error::Unclear { address, value, cause: Box::new(cause) };
         let mut tries = 0;
         loop {
@@ -198,10 +198,10 @@ impl<'a> Master<'a> {
     /// When every try failed, or when the user wished an end; [`Error::TooWide`] where it does not fit the widths.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.way == Way::ConfigPin {
-            return self.ask(Asked::Position, |master| master.pin_position_once());
+            return self.ask(RequestedItem::Position, |master| master.pin_position_once());
         }
         self.be_ready()?;
-        match self.ask(Asked::Position, |master| master.bus_position_once()) {
+        match self.ask(RequestedItem::Position, |master| master.bus_position_once()) {
             Err(failed @ Error::Damaged { cause: Damage::Frame(_), .. }) => self.look_at_more_frames(failed),
             result => result,
         }
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
     /// A frame of so many bits as it comes over an adapter, unchecked, right-justified.
     pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.be_ready_for(data_bits, crc_bits)?;
-        self.ask(Asked::Position, |master| master.frame_once()).map(|(raw, _)| raw)
+        self.ask(RequestedItem::Position, |master| master.frame_once()).map(|(raw, _)| raw)
     }
 
     fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
@@ -237,7 +237,7 @@ impl<'a> Master<'a> {
     }
 
     fn probe_order(&mut self) -> Result<(), Error> {
-        let asked = Asked::Read(asked_register(Request::PROBE_REGISTER));
+        let asked = RequestedItem::Read(asked_register(Request::PROBE_REGISTER));
         let answer = self.read_confirmed(asked, |master| master.probe_once())?;
         let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
         self.station.order = Some(order);
@@ -245,7 +245,7 @@ impl<'a> Master<'a> {
     }
 
     /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
-    fn ask<T>(&mut self, asked: Asked, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
+    fn ask<T>(&mut self, asked: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -263,7 +263,11 @@ impl<'a> Master<'a> {
     }
 
     /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
-    fn read_confirmed(&mut self, asked: Asked, mut once: impl FnMut(&mut Self) -> Attempt<u8>) -> Result<u8, Error> {
+    fn read_confirmed(
+        &mut self,
+        asked: RequestedItem,
+        mut once: impl FnMut(&mut Self) -> Attempt<u8>,
+    ) -> Result<u8, Error> {
         let mut value = self.ask(asked, &mut once)?;
         for _ in 0..TRIES {
             if !self.station.reads_twice() {
@@ -279,7 +283,7 @@ impl<'a> Master<'a> {
     }
 
     /// Returns the error of a failed attempt that is the last.
-    fn failed(&self, asked: Asked, tries: u32, trouble: &ExchangeError) -> Error {
+    fn failed(&self, asked: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
             ExchangeError::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
             ExchangeError::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },

@@ -23,7 +23,7 @@ mod widths;
 pub mod write;
 
 pub use crate::link::line::Echo;
-pub use error::{Asked, Damage, Error};
+pub use error::{Damage, Error, RequestedItem};
 pub use flags::read_position;
 pub use frames::{Frame, FrameRun, NoReading, frames};
 pub use identify::{DataSheet, DataSheetBank, FrameSource, Identity, identify};

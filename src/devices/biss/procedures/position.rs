@@ -4,7 +4,7 @@ use super::flags::with_flags;
 use super::{Damage, Error, FrameRun, Master};
 use crate::bits::Word;
 use crate::devices::biss::profile::RegisterRange;
-use crate::devices::biss::protocol::{Layout, Reading};
+use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
 
 /// A position as it was read.
@@ -36,7 +36,7 @@ pub struct PositionReading {
 
 impl PositionReading {
     /// A reading at a moment, without anything that only one way tells.
-    pub(super) fn new(at: Moment, reading: &Reading, layout: &Layout) -> Self {
+    pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
             turns: reading.multiturn,
@@ -52,7 +52,7 @@ impl PositionReading {
     }
 
     /// A reading that came in a frame with a right checksum.
-    pub fn in_frame(at: Moment, reading: &Reading, layout: &Layout) -> Self {
+    pub fn in_frame(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             error: layout.has_error_bit().then_some(reading.error),
             warning: layout.has_warning_bit().then_some(reading.warning),

@@ -2,7 +2,7 @@
 //! the motor where needed, and leads the encoder back to operation after each.
 
 use super::error::exactly;
-use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, Step};
+use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, ProcedureStep};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
 use crate::devices::biss::protocol::{
@@ -36,13 +36,13 @@ impl WriteRecord for Written {
 }
 
 /// A write that ended early.
-pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, Left>;
+pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, EndState>;
 
 /// In which state an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Left {
+pub struct EndState {
     /// At which step of the operation that was under way.
-    pub at: Step,
+    pub at: ProcedureStep,
     /// `None` in operation, without the password. Else it could not be led back: what is known of it, unless it has lost power
     /// since, which leads back as well.
     pub standing: Option<LeftState>,
@@ -65,7 +65,7 @@ pub struct EncoderWrite<'w, 'm> {
     guide: Guide<'w, 'm>,
     identity: &'w Identity,
     /// The step at which an operation ended early.
-    at: Step,
+    at: ProcedureStep,
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
@@ -80,7 +80,11 @@ impl<'w, 'm> EncoderWrite<'w, 'm> {
         tell: &'w mut dyn FnMut(News),
     ) -> Result<Self, Error> {
         let description = master.description()?;
-        Ok(EncoderWrite { guide: Guide::new(master, description, operator, tell), identity, at: Step::LeadBack })
+        Ok(EncoderWrite {
+            guide: Guide::new(master, description, operator, tell),
+            identity,
+            at: ProcedureStep::LeadBack,
+        })
     }
 }
 
@@ -89,7 +93,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Failure;
     type Written = Written;
-    type Left = Left;
+    type Left = EndState;
 
     /// Two new encoders have the same memory: it has to be the one for which the plan was made.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
@@ -143,9 +147,9 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(led?)
     }
 
-    fn left(&mut self, _: &Failure) -> Left {
+    fn left(&mut self, _: &Failure) -> EndState {
         let standing = self.guide.standing();
-        Left { at: self.at, standing: (!standing.is_in_operation()).then(|| standing.clone()) }
+        EndState { at: self.at, standing: (!standing.is_in_operation()).then(|| standing.clone()) }
     }
 }
 

@@ -74,7 +74,7 @@ impl Cycle {
 
 #[cfg(test)]
 mod tests {
-    use super::super::single_cycle::Reading;
+    use super::super::single_cycle::PositionData;
     use super::*;
     use proptest::prelude::*;
 
@@ -94,7 +94,7 @@ mod tests {
         // A line at rest before it, and the line after the time-out, change nothing.
         let rested = [vec![true; 2], samples(SAMPLES), vec![false, true, true]].concat();
         assert_eq!(Cycle::parse(&rested, &layout), Ok(cycle));
-        let reading = Reading { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
+        let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: false };
         assert_eq!(layout.parse(cycle.raw), Ok(reading));
     }
 

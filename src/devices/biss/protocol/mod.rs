@@ -37,6 +37,6 @@ pub use procedure::{
     CalibrationCommand, CalibrationStatus, DataCommand, DataStatus, FilterCommand, FilterStatus, PresetCommand,
     PresetStatus, PresetValue, ProcedureKind, PulseVoltage, WiegandCommand, WiegandResult, WiegandStatus,
 };
-pub use single_cycle::{FrameError, Layout, LayoutError, Reading};
+pub use single_cycle::{FrameError, Layout, LayoutError, PositionData};
 pub use status::{DeviceMode, ErrorRegister, Filter, Firmware, ProfileId, Temperature, WarningRegister};
 pub use widths::data_bits_of;

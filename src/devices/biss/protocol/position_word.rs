@@ -1,27 +1,27 @@
 //! The position word of UBICOM: singleturn in the lower bits, multiturn above (manual 5.2). It has no error and no
 //! warning bit.
 
-use super::single_cycle::{Layout, Reading};
+use super::single_cycle::{Layout, PositionData};
 use crate::buses::ubicom::protocol::PositionWord;
 
 impl Layout {
     /// The word of a position. Bits of the multiturn for which there is no place are left out.
-    pub fn position_word(&self, reading: &Reading) -> PositionWord {
+    pub fn position_word(&self, reading: &PositionData) -> PositionWord {
         let [b0, b1, b2, b3, b4, ..] = self.steps(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
     /// The position of a word, with the widths of the frame; `None` where bits above them are set. Error and warning are
     /// not told.
-    pub fn reading_of(&self, word: PositionWord) -> Option<Reading> {
+    pub fn reading_of(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.word(), self.singleturn_bits());
         let (multiturn, rest) = split(above, self.multiturn_bits());
         // Fields have at most 32 bits.
-        let fields = Reading {
+        let fields = PositionData {
             multiturn: u32::try_from(multiturn).ok()?,
             singleturn: u32::try_from(singleturn).ok()?,
-            ..Reading::default()
+            ..PositionData::default()
         };
         (rest == 0).then_some(fields)
     }
@@ -42,7 +42,7 @@ mod tests {
             ([0xFF, 0xFF, 0xFF, 0xFF, 0x01], 0xFFFF, 0x1FFFF),
             ([0x00, 0x00, 0x02, 0x00, 0x00], 0x0001, 0x00000),
         ] {
-            let reading = Reading { multiturn, singleturn, error: false, warning: false };
+            let reading = PositionData { multiturn, singleturn, error: false, warning: false };
             let word = PositionWord::parse(bytes);
             assert_eq!(layout.reading_of(word), Some(reading), "{bytes:02X?}");
             assert_eq!(layout.position_word(&reading), word);

@@ -37,7 +37,7 @@ pub enum LayoutError {
 
 /// A frame whose checksum was right.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reading {
+pub struct PositionData {
     /// Revolutions, as many bits as the layout has.
     pub multiturn: u32,
     /// Place within the revolution, in parts of 2 to the power of the layout's singleturn bits.
@@ -142,7 +142,7 @@ impl Layout {
     ///
     /// # Errors
     /// [`FrameError`]; a line that does not move is told from a wrong checksum.
-    pub fn parse(&self, raw: u64) -> Result<Reading, FrameError> {
+    pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
         let whole = ones(self.bits());
         if raw & !whole != 0 {
             return Err(FrameError::Long { bits: self.bits() });
@@ -163,7 +163,7 @@ impl Layout {
     }
 
     /// The frame of a reading, right-justified. Bits that the layout has no place for are left out.
-    pub fn emit(&self, reading: &Reading) -> u64 {
+    pub fn emit(&self, reading: &PositionData) -> u64 {
         let mut data = u64::from(reading.multiturn) & ones(self.multiturn_bits);
         data = data << self.singleturn_bits | u64::from(reading.singleturn) & ones(self.singleturn_bits);
         if self.error_bit {
@@ -179,16 +179,16 @@ impl Layout {
     }
 
     /// Degrees within the revolution, from 0 up to 360.
-    pub fn degrees(&self, reading: &Reading) -> f64 {
+    pub fn degrees(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
     /// Multiturn and singleturn as one number of steps.
-    pub fn steps(&self, reading: &Reading) -> u64 {
+    pub fn steps(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
 
-    fn fields(&self, data: u64) -> Reading {
+    fn fields(&self, data: u64) -> PositionData {
         let mut rest = data;
         let mut take = |bits: u8| {
             let field = rest & ones(bits);
@@ -200,7 +200,7 @@ impl Layout {
         // Fields have at most 32 bits.
         let singleturn = take(self.singleturn_bits) as u32;
         let multiturn = take(self.multiturn_bits) as u32;
-        Reading { multiturn, singleturn, error, warning }
+        PositionData { multiturn, singleturn, error, warning }
     }
 }
 
@@ -226,8 +226,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn reading(multiturn: u32, singleturn: u32, error: bool, warning: bool) -> Reading {
-        Reading { multiturn, singleturn, error, warning }
+    fn reading(multiturn: u32, singleturn: u32, error: bool, warning: bool) -> PositionData {
+        PositionData { multiturn, singleturn, error, warning }
     }
 
     /// Reference 2: the table of 41-bit frames.
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(layout.parse(0x0FB), Err(FrameError::Crc { expected: 0x3A, got: 0x3B }));
         // If a frame of all zeros is valid, as with a checksum that is not inverted, it is one.
         let plain = Layout::new(0, 12, false, false, Crc::new(0x43, 0, false).ok()).unwrap();
-        assert_eq!(plain.parse(0), Ok(Reading::default()));
+        assert_eq!(plain.parse(0), Ok(PositionData::default()));
         let bare = Layout::new(0, 12, false, false, None).unwrap();
         assert_eq!(bare.parse(0), Err(FrameError::StuckLow));
         assert_eq!(bare.parse(0xFFF), Err(FrameError::StuckHigh));
@@ -315,7 +315,7 @@ mod tests {
                 return Ok(());
             };
             let fit = |value: u32, bits: u8| (u64::from(value) & ((1u64 << bits) - 1)) as u32;
-            let reading = Reading {
+            let reading = PositionData {
                 multiturn: fit(multiturn, multiturn_bits),
                 singleturn: fit(singleturn, singleturn_bits),
                 error: error && error_bit,

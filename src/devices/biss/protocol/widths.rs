@@ -37,7 +37,7 @@ fn fits(frames: &[u64], clocked: u8, bits: u8, crc: &Crc) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Layout, Reading};
+    use super::super::{Layout, PositionData};
     use super::*;
     use proptest::prelude::*;
 
@@ -53,7 +53,7 @@ mod tests {
     /// Frames of a shaft that turns by `step`.
     fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
         let place = |at: u32| 0x155 + at * step;
-        let reading = |at| Reading { multiturn: 3, singleturn: place(at), ..Reading::default() };
+        let reading = |at| PositionData { multiturn: 3, singleturn: place(at), ..PositionData::default() };
         (0..count).map(|at| clocked(layout.emit(&reading(at)), layout.bits())).collect()
     }
 

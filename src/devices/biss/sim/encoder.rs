@@ -20,7 +20,7 @@ use super::motor::Drive;
 use super::shaft::{FINE, Shaft};
 use super::wiegand::{Pulses, Wiegand};
 use crate::devices::biss::protocol::{
-    CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, Reading, RegisterAddress,
+    CalibrationStatus, DeviceMode, Eds, EdsBank, ErrorRegister, Firmware, Layout, PositionData, RegisterAddress,
     WiegandCommand, WiegandStatus,
 };
 use crate::sim::{Faults, Motor};
@@ -185,11 +185,11 @@ impl Encoder {
     }
 
     /// The position at `now`; `None` without power and while it starts. It is marked as wrong while it calibrates.
-    pub fn reading(&mut self, now: Moment) -> Option<Reading> {
+    pub fn reading(&mut self, now: Moment) -> Option<PositionData> {
         self.settle(now);
         let reading = self.shaft.reading(now);
         let error = self.errors != ErrorRegister::default() || self.calibration.is_running();
-        (self.power == Power::On).then_some(Reading { error, warning: self.hot, ..reading })
+        (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
     /// The place of its shaft at `now`, whatever it says of it itself: steps, and how many a revolution has.

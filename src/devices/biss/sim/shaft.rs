@@ -1,6 +1,6 @@
 //! The shaft: its position as an exact function of time. A preset shifts the position, not the shaft.
 
-use crate::devices::biss::protocol::{Layout, Reading};
+use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::units::Moment;
 
 /// Bits of the parts of a step.
@@ -38,13 +38,13 @@ impl Shaft {
     }
 
     /// The position at a moment; error and warning are not the shaft's matter.
-    pub(super) fn reading(&self, at: Moment) -> Reading {
+    pub(super) fn reading(&self, at: Moment) -> PositionData {
         let position = (self.whole_steps(at) + self.offset) % self.range();
         let singleturn = position % self.steps();
         let multiturn = position / self.steps();
         // Fields have at most 32 bits.
         let [singleturn, multiturn] = [singleturn, multiturn].map(|field| u32::try_from(field).unwrap_or(u32::MAX));
-        Reading { multiturn, singleturn, error: false, warning: false }
+        PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
     /// The position at a moment in parts of a step, [`FINE`] bits behind it: what another encoder on this shaft sees.
@@ -58,7 +58,7 @@ impl Shaft {
     /// From `at` on the shaft's place has this singleturn or this multiturn, or both; what is `None` stays.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.reading(at);
-        let wanted = Reading {
+        let wanted = PositionData {
             singleturn: singleturn.unwrap_or(now.singleturn),
             multiturn: multiturn.unwrap_or(now.multiturn),
             ..now

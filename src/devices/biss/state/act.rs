@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::action::Action;
+use super::action::BissAction;
 use super::encoder::Encoder;
 use super::words;
 use crate::app::services::Services;
@@ -22,10 +22,10 @@ const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    pub(crate) fn act(&mut self, action: BissAction, context: &mut ActContext<'_>) {
         let services = &mut *context.services;
         match action {
-            Action::PlanMounting { mut run, motor, data } => {
+            BissAction::PlanMounting { mut run, motor, data } => {
                 let profile = data.map_or(Ok(None), |id| context.profile_of(id));
                 match profile {
                     Ok(profile) => {
@@ -35,30 +35,30 @@ impl Encoder {
                     Err(refusal) => context.services.tell(Severity::Error, vec![refusal], None),
                 }
             }
-            Action::ReadStatus => self.submit(BissJob::Status, services),
-            Action::Check => self.submit(BissJob::Check, services),
-            Action::Watch(register, on) => self.watch(*register, on),
-            Action::ReadBank(bank) => self.read_bank(bank, services),
-            Action::SeeBank(bank) => {
+            BissAction::ReadStatus => self.submit(BissJob::Status, services),
+            BissAction::Check => self.submit(BissJob::Check, services),
+            BissAction::Watch(register, on) => self.watch(*register, on),
+            BissAction::ReadBank(bank) => self.read_bank(bank, services),
+            BissAction::SeeBank(bank) => {
                 // Only when nothing else is to be done, also no stream that it would interrupt, and only once.
                 let free = self.session.is_ready() && self.streamed().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
                 }
             }
-            Action::ReadArea(first) => self.read_area(first, services),
-            Action::Put { start, bytes } => self.put(start, &bytes, services),
-            Action::Revert { start, count } => self.memory.revert_range(start, count),
-            Action::Plan(change) => self.plan(*change, services),
-            Action::Answer(task, answer) => self.answer(task, answer),
-            Action::CloseGuide => self.close_guide(),
-            Action::LeadBack => self.submit(BissJob::LeadBack, services),
-            Action::Turn(rpm) => {
+            BissAction::ReadArea(first) => self.read_area(first, services),
+            BissAction::Put { start, bytes } => self.put(start, &bytes, services),
+            BissAction::Revert { start, count } => self.memory.revert_range(start, count),
+            BissAction::Plan(change) => self.plan(*change, services),
+            BissAction::Answer(task, answer) => self.answer(task, answer),
+            BissAction::CloseGuide => self.close_guide(),
+            BissAction::LeadBack => self.submit(BissJob::LeadBack, services),
+            BissAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
                     motor.set_rpm(rpm);
                 }
             }
-            Action::Save(path) => self.save(path, services),
+            BissAction::Save(path) => self.save(path, services),
         }
     }
 

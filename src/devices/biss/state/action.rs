@@ -10,7 +10,7 @@ use crate::devices::biss::profile::{MotorSource, MountingRun};
 use crate::devices::biss::protocol::{Register, RegisterAddress};
 
 /// Something in the BiSS tab.
-pub enum Action {
+pub enum BissAction {
     /// Read errors, warnings, temperature and mode.
     ReadStatus,
     /// The device check.
@@ -57,4 +57,4 @@ pub enum Action {
     Save(PathBuf),
 }
 
-impl DeviceAction for Action {}
+impl DeviceAction for BissAction {}

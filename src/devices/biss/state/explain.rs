@@ -21,7 +21,7 @@ use crate::app::Text;
 use crate::app::explain::{self as general, link, not_begun, syntax};
 use crate::buses::bridge::state::adapter;
 use crate::devices::biss::jobs::{DeviceMessage, JobError, JobStep};
-use crate::devices::biss::procedures::{Asked, Error};
+use crate::devices::biss::procedures::{Error, RequestedItem};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::protocol::{CrcError, DescriptionError, DeviceMode, LayoutError, Mismatch, Name};
 use crate::link::LinkError;
@@ -169,13 +169,13 @@ fn moving(rpm: Option<f64>) -> Text {
     TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
-pub fn asked(asked: Asked) -> Text {
+pub fn asked(asked: RequestedItem) -> Text {
     match asked {
-        Asked::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
-        Asked::Write(address, value) => {
+        RequestedItem::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
+        RequestedItem::Write(address, value) => {
             TEXTS.text("biss.asked_write").with("address", address).with("value", byte(value))
         }
-        Asked::Position => TEXTS.text("biss.asked_position"),
+        RequestedItem::Position => TEXTS.text("biss.asked_position"),
     }
 }
 
@@ -233,7 +233,7 @@ mod tests {
     #[test]
     fn every_error_says_what_happened_and_what_to_do() {
         let address: RegisterAddress = "0x24:0x10".parse().unwrap();
-        let asked = Asked::Read(address);
+        let asked = RequestedItem::Read(address);
         let kind = Identity { profile: ProfileId::new(0x6129), manufacturer: *b"Fr", device_id: [1, 2, 3, 4, 5, 6] };
         let cases = [
             (Error::NoReply { asked, tries: 5, echo_heard: false }, vec!["0x24:0x10", "5"]),

@@ -3,7 +3,7 @@
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, News, OperatorChannel, Outcome, Step, Task, steps_of,
+    Answer, Demand, Detail, News, OperatorChannel, Outcome, ProcedureStep, Task, steps_of,
 };
 use crate::devices::biss::profile::Op;
 
@@ -12,7 +12,7 @@ pub struct Guide {
     ops: Vec<Op>,
     news: Option<News>,
     /// The step that it was at when it was cut off: what is told last is the way back from there.
-    pub(super) cut: Option<Step>,
+    pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     /// The skipped tasks, with their operations.
     skips: Vec<(usize, Task)>,
@@ -63,7 +63,7 @@ pub struct GuideStep<'a> {
     pub op: &'a Op,
     /// It is the first of its operation.
     pub is_first: bool,
-    pub step: Step,
+    pub step: ProcedureStep,
     pub reached: Reached,
 }
 
@@ -140,34 +140,35 @@ impl Guide {
     }
 
     /// Returns the skipped steps of an operation: from its result, else from the answers.
-    fn skipped(&self, number: usize, steps: &[Step]) -> Option<std::ops::Range<usize>> {
+    fn skipped(&self, number: usize, steps: &[ProcedureStep]) -> Option<std::ops::Range<usize>> {
         let outcomes = match &self.end {
             Some(End::Done(outcomes) | End::Failed { before: outcomes, .. }) => outcomes.as_slice(),
             None => &[],
         };
-        let asks = |step: &Step| matches!(step, Step::Await(_));
+        let asks = |step: &ProcedureStep| matches!(step, ProcedureStep::Await(_));
         let from = match outcomes.get(number) {
             Some(Outcome::Skipped { after }) => {
-                let done = after.and_then(|run| steps.iter().position(|step| *step == Step::Run(run))).unwrap_or(0);
+                let done =
+                    after.and_then(|run| steps.iter().position(|step| *step == ProcedureStep::Run(run))).unwrap_or(0);
                 steps.iter().skip(done).position(asks).map(|place| done + place)
             }
             Some(_) => None,
             None => {
                 let task = self.skips.iter().find(|(op, _)| *op == number).map(|(_, task)| *task)?;
-                steps.iter().position(|step| *step == Step::Await(task))
+                steps.iter().position(|step| *step == ProcedureStep::Await(task))
             }
         }?;
         // It is led back where its mode was entered.
-        let entered = steps.iter().take(from).any(|step| matches!(step, Step::Enter(_)));
-        let led_back = steps.iter().position(|step| *step == Step::LeadBack).filter(|_| entered);
+        let entered = steps.iter().take(from).any(|step| matches!(step, ProcedureStep::Enter(_)));
+        let led_back = steps.iter().position(|step| *step == ProcedureStep::LeadBack).filter(|_| entered);
         Some(from..led_back.unwrap_or(steps.len()))
     }
 
     /// This is the way back from where it was cut off, and it was gone to its end.
-    fn was_led_back(&self, op: usize, step: Step) -> bool {
+    fn was_led_back(&self, op: usize, step: ProcedureStep) -> bool {
         let told = self.news.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
-        step == Step::LeadBack && told && in_operation
+        step == ProcedureStep::LeadBack && told && in_operation
     }
 }
 
@@ -177,7 +178,7 @@ mod tests {
     use crate::devices::biss::procedures::procedure::Run;
     use crate::devices::biss::protocol::DeviceMode;
 
-    fn reached(told: &[Step], cut: Option<Step>, may_lead_back: bool) -> Vec<Reached> {
+    fn reached(told: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
         let mut guide = Guide::new(vec![Op::Calibrate]);
         told.iter().for_each(|step| guide.tell(News { op: 0, step: *step, detail: Detail::Begins }));
         guide.cut = cut;
@@ -195,9 +196,9 @@ mod tests {
             (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
         ] {
             let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
-            guide.tell(News { op: 0, step: Step::Await(Task::Turn(task)), detail: Detail::Begins });
+            guide.tell(News { op: 0, step: ProcedureStep::Await(Task::Turn(task)), detail: Detail::Begins });
             guide.answer(Task::Turn(task), Answer::Skip);
-            let next = Step::Await(Task::Turn(Run::WiegandClockwise));
+            let next = ProcedureStep::Await(Task::Turn(Run::WiegandClockwise));
             guide.tell(News { op: 1, step: next, detail: Detail::Begins });
             assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
             guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
@@ -209,9 +210,9 @@ mod tests {
     fn a_procedure_that_was_cut_off_tells_where_and_what_did_not_run() {
         use Reached::{Ahead, Done, Failed};
         let first = Run::CalibrationCounterclockwise;
-        let (turn, run) = (Step::Await(Task::Turn(first)), Step::Run(first));
-        let told = [Step::Conditions, turn, Step::Enter(DeviceMode::CALIBRATION), run];
-        let led = [&told[..], &[Step::LeadBack]].concat();
+        let (turn, run) = (ProcedureStep::Await(Task::Turn(first)), ProcedureStep::Run(first));
+        let told = [ProcedureStep::Conditions, turn, ProcedureStep::Enter(DeviceMode::CALIBRATION), run];
+        let led = [&told[..], &[ProcedureStep::LeadBack]].concat();
         assert_eq!(reached(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
         assert_eq!(reached(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
         // The link is gone: nothing is told of a way back.
@@ -219,15 +220,15 @@ mod tests {
         // It has never left operation.
         assert_eq!(reached(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
         // The way back itself.
-        assert_eq!(reached(&led, Some(Step::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
+        assert_eq!(reached(&led, Some(ProcedureStep::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
         assert_eq!(reached(&[], None, false), [Ahead; 7]);
     }
 
     #[test]
     fn who_cancels_has_not_failed() {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        guide.tell(News { op: 0, step: Step::Conditions, detail: Detail::Begins });
-        guide.cut = Some(Step::Conditions);
+        guide.tell(News { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
+        guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
         guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });
         assert_eq!(guide.steps().first().map(|own| own.reached), Some(Reached::Cancelled));

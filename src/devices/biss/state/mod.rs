@@ -27,7 +27,7 @@ mod write;
 
 pub use texts::TEXTS;
 
-pub use action::Action;
+pub use action::BissAction;
 pub use connect_form::{BissForm, BissWay};
 pub use encoder::Encoder;
 pub use guide::{End, Guide, GuideStep, Reached};

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{Action, Encoder};
+use super::{BissAction, Encoder};
 use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::SessionEvents;
@@ -11,7 +11,7 @@ use crate::devices::biss::jobs::{Biss, BissJob};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Biss");
-    type Action = Action;
+    type Action = BissAction;
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Biss>, services: &mut Services) {
@@ -23,7 +23,7 @@ impl DeviceModel for Encoder {
         self.submit(BissJob::Survey, services);
     }
 
-    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: BissAction, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context);
     }
 

@@ -280,11 +280,11 @@ mod tests {
 
     use super::*;
     use crate::devices::biss::profile::RegisterRange;
-    use crate::devices::biss::protocol::{Descriptions, Layout, Reading, Role};
+    use crate::devices::biss::protocol::{Descriptions, Layout, PositionData, Role};
     use crate::units::Moment;
 
     fn run(first: u64, count: u64, lost: u64) -> FrameRun {
-        let frame = |at| Ok(Reading { multiturn: 0, singleturn: at as u32, error: false, warning: false });
+        let frame = |at| Ok(PositionData { multiturn: 0, singleturn: at as u32, error: false, warning: false });
         FrameRun {
             first,
             at: Moment::after_start(Duration::from_micros(50 * first)),
@@ -302,13 +302,13 @@ mod tests {
     #[test]
     fn raw_is_the_position_word_also_in_a_stream() {
         let mut record = Record::default();
-        let reading = Reading { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
+        let reading = PositionData { multiturn: 0x1234, singleturn: 0x18000, error: false, warning: true };
         record.add(vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], ..run(0, 1, 0) })], 0);
         let last = record.last().unwrap();
         assert_eq!((last.raw().to_string(), last.raw().bits), ("024698000".to_owned(), 33));
         assert_eq!((last.error, last.warning), (Some(false), Some(true)));
         let bare = Layout::new(0, 12, false, false, None).unwrap();
-        let reading = Reading { singleturn: 0x00A, ..Reading::default() };
+        let reading = PositionData { singleturn: 0x00A, ..PositionData::default() };
         record.add(
             vec![Sample::Frames(FrameRun { frames: vec![Ok(reading)], layout: Arc::new(bare), ..run(1, 1, 0) })],
             0,

@@ -5,7 +5,7 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::{Action, AnyDevice, DeviceCommand, Studio};
 use crate::devices::biss::protocol::{Area, RegisterAddress};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, places};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, places};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{empty, enabled_button, name, paragraph};
 use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};

@@ -7,7 +7,7 @@ use crate::app::{Action, DeviceCommand};
 use crate::devices::biss::procedures::{Bits, FrameSource, Identity};
 use crate::devices::biss::profile::ProfileIdentity;
 use crate::devices::biss::state::explain as explained;
-use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, words};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, words};
 use crate::devices::biss::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::biss::procedures::PositionReading;
-use crate::devices::biss::protocol::{Layout, Reading};
+use crate::devices::biss::protocol::{Layout, PositionData};
 use crate::devices::biss::state::{Encoder, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{card_with, enabled_button, paragraph, row};
@@ -42,8 +42,8 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &m
     });
 }
 
-fn as_sent(reading: &PositionReading) -> Reading {
-    Reading {
+fn as_sent(reading: &PositionReading) -> PositionData {
+    PositionData {
         multiturn: reading.turns,
         singleturn: reading.steps,
         error: reading.error == Some(true),

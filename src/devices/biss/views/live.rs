@@ -6,7 +6,7 @@ use crate::app::{Action, Rgb};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::protocol::{Register, Role};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, Mark, TEXTS};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, Mark, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{icon_menu, paragraph, row};
 use crate::ui::panels::live::{LOW, mark as mark_ui};

@@ -15,7 +15,7 @@ mod wiring;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
-use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
 use crate::ui::{Theme, backups, icons, page, workspace};

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::Action;
-use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS};
 use crate::devices::biss::views::say;
 use crate::sim::Motor;
 use crate::ui::controls::{card, enabled_button, paragraph};

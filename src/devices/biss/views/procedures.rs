@@ -10,7 +10,7 @@ use crate::devices::biss::jobs::Change;
 use crate::devices::biss::profile::{MotorSource, MountingRun, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, Filter, ProcedureKind};
 use crate::devices::biss::state::explain as explained;
-use crate::devices::biss::state::{Action as Biss, Encoder, TEXTS, forms::PresetForm, words};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, forms::PresetForm, words};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{
     allowed_button, card, empty, enabled_button, labelled_entry, options, paragraph, problem, row, two_columns,

@@ -5,7 +5,7 @@ use egui::{RichText, ScrollArea, Ui};
 use crate::app::{Action, DeviceCommand, PendingEdits, Text};
 use crate::devices::biss::protocol::{Access, Decoding, Name};
 use crate::devices::biss::state::explain as words;
-use crate::devices::biss::state::{Action as Biss, Encoder, Group, RegisterEntry, TEXTS};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, Group, RegisterEntry, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{choice, empty, enabled_button, icon_menu};
 use crate::ui::widgets::{

@@ -8,10 +8,10 @@ use crate::app::{Action, Severity};
 use crate::devices::biss::procedures::procedure::{Advice, Answer, Demand, Detail, Run, Task};
 use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::explain as says;
-use crate::devices::biss::state::{Action as Biss, Encoder, End, Guide, Reached, TEXTS};
+use crate::devices::biss::state::{BissAction as Biss, Encoder, End, Guide, Reached, TEXTS};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{button, card, paragraph, severity};
-use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
+use crate::ui::widgets::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 use crate::ui::{Theme, icons};
 
 pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Guide, actions: &mut Vec<Action>) {
@@ -32,7 +32,7 @@ pub(super) fn guide_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, guide: &Gu
         ui.add_space(theme.space.groups);
     }
     card(ui, theme, TEXTS.text("guide.title"), |ui| {
-        let list: Vec<Step> =
+        let list: Vec<StepRow> =
             guide.steps().iter().map(|own| step(theme, guide, own.op, own.is_first, own.step, own.reached)).collect();
         let demand = guide.demand();
         let why = demand.and_then(|own| own.blockers.first()).map(|own| theme.words(&says::blocker(*own)));
@@ -65,9 +65,9 @@ fn step(
     guide: &Guide,
     op: &Op,
     is_first: bool,
-    own: crate::devices::biss::procedures::procedure::Step,
+    own: crate::devices::biss::procedures::procedure::ProcedureStep,
     reached: Reached,
-) -> Step {
+) -> StepRow {
     let what = theme.words(&says::step(own));
     let title = if is_first { format!("{} · {what}", theme.words(&says::procedure(op))) } else { what };
     let (state, word) = match reached {
@@ -79,7 +79,7 @@ fn step(
         Reached::Cancelled => (StepState::Skipped, "guide.cancelled"),
         Reached::Ahead => (StepState::ToCome, "guide.ahead"),
     };
-    let mut step = Step { title, state, word: say(theme, word), ..Step::default() };
+    let mut step = StepRow { title, state, word: say(theme, word), ..StepRow::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
             // The best speed is in the gauges, which do not come and go.

@@ -4,7 +4,7 @@ use serde_json::{Map, json};
 
 use super::args::WordOptions;
 use super::image;
-use super::meaning::{self, Known, Reading, parameter_words};
+use super::meaning::{self, Known, WordMeaning, parameter_words};
 use crate::bits::{hex, hex_compact};
 use crate::buses::ethernet_ip::commands::{self as ethernet_ip, DecodedBytes, Device};
 use crate::cli::args::Decode;
@@ -63,10 +63,10 @@ fn explain(captured: &Captured, known: &Known) -> Explained {
 }
 
 /// Readings as lines, and for a script.
-fn lines(readings: &[Reading]) -> DecodedBytes {
-    let list = readings.iter().map(Reading::json).collect();
+fn lines(readings: &[WordMeaning]) -> DecodedBytes {
+    let list = readings.iter().map(WordMeaning::json).collect();
     let more = Map::from_iter([("readings".to_owned(), list)]);
-    DecodedBytes { lines: readings.iter().flat_map(Reading::lines).collect(), more, data: None }
+    DecodedBytes { lines: readings.iter().flat_map(WordMeaning::lines).collect(), more, data: None }
 }
 
 /// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
@@ -78,8 +78,8 @@ fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<DecodedBytes, St
         let mut said = said?;
         if let Some((data, to_target)) = said.data.take() {
             let readings = image::cyclic(&data, to_target, known);
-            said.lines.extend(readings.iter().flat_map(Reading::lines));
-            said.more.insert("readings".to_owned(), readings.iter().map(Reading::json).collect());
+            said.lines.extend(readings.iter().flat_map(WordMeaning::lines));
+            said.more.insert("readings".to_owned(), readings.iter().map(WordMeaning::json).collect());
         }
         return Ok(said);
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::meaning::{self, Known, Reading, control_words, parameter_name, status_words};
+use super::meaning::{self, Known, WordMeaning, control_words, parameter_name, status_words};
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
     Actual, Answer, ControlWord, InImage, Kind, Layout, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Task,
@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::{
 ///
 /// # Errors
 /// Why they cannot have gone the way that is known.
-pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<Reading>, String> {
+pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
@@ -49,19 +49,19 @@ fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
 }
 
 /// Process data of a cyclic packet, which tells the way itself where nothing else is said. Nothing of a length that there is not.
-pub(super) fn cyclic(data: &[u8], to_target: bool, known: &Known) -> Vec<Reading> {
+pub(super) fn cyclic(data: &[u8], to_target: bool, known: &Known) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
             return from_drives(data, layout);
         }
-        let refused = |why: String| Reading { direction: "OUT", lines: vec![why], json: json!({"legal": false}) };
+        let refused = |why: String| WordMeaning { direction: "OUT", lines: vec![why], json: json!({"legal": false}) };
         Some(to_drives(data, layout).unwrap_or_else(refused))
     };
     layouts(data.len(), known).filter_map(reading).collect()
 }
 
-fn to_drives(bytes: &[u8], layout: Layout) -> Result<Reading, String> {
+fn to_drives(bytes: &[u8], layout: Layout) -> Result<WordMeaning, String> {
     let image = OutImage::parse(bytes, layout).map_err(|why| why.to_string())?;
     let mut lines = Vec::new();
     let mut list = Vec::new();
@@ -77,10 +77,10 @@ fn to_drives(bytes: &[u8], layout: Layout) -> Result<Reading, String> {
         }));
     }
     lines.extend(image.pkw.map(request_words));
-    Ok(Reading { direction: "OUT", lines, json: json!({"drives": list}) })
+    Ok(WordMeaning { direction: "OUT", lines, json: json!({"drives": list}) })
 }
 
-fn from_drives(bytes: &[u8], layout: Layout) -> Option<Reading> {
+fn from_drives(bytes: &[u8], layout: Layout) -> Option<WordMeaning> {
     let image = InImage::parse(bytes, layout).ok()?;
     let mut lines = Vec::new();
     let mut list = Vec::new();
@@ -95,7 +95,7 @@ fn from_drives(bytes: &[u8], layout: Layout) -> Option<Reading> {
         }));
     }
     lines.extend(image.pkw.map(answer_words));
-    Some(Reading { direction: "IN", lines, json: json!({"drives": list}) })
+    Some(WordMeaning { direction: "IN", lines, json: json!({"drives": list}) })
 }
 
 fn out_words(drive: &OutData, control: ControlWord) -> String {
@@ -126,7 +126,7 @@ fn in_turns(position: i32) -> String {
 }
 
 /// Eight bytes as a parameter word, where the manual has the parameter. Texts alone have elements.
-fn parameter_word(bytes: &[u8], known: &Known) -> Vec<Reading> {
+fn parameter_word(bytes: &[u8], known: &Known) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
     let Some(row) = row(pkw) else { return Vec::new() };
@@ -146,7 +146,7 @@ fn parameter_word(bytes: &[u8], known: &Known) -> Vec<Reading> {
         .map(|(_, direction, _, words)| {
             let fits = direction == "OUT" || answer_fits(pkw, row);
             let json = json!({"parameter": pkw.number(), "element": pkw.ind, "value": fits.then_some(pkw.pwe)});
-            Reading { direction, lines: vec![words(pkw)], json }
+            WordMeaning { direction, lines: vec![words(pkw)], json }
         })
         .collect()
 }

@@ -17,14 +17,14 @@ pub(super) struct Known {
 }
 
 /// One of the things that bytes may say.
-pub(super) struct Reading {
+pub(super) struct WordMeaning {
     pub(super) direction: &'static str,
     pub(super) lines: Vec<String>,
     /// An object.
     pub(super) json: Json,
 }
 
-impl Reading {
+impl WordMeaning {
     pub(super) fn lines(&self) -> impl Iterator<Item = String> {
         self.lines.iter().map(|line| format!("{}: {line}", self.direction))
     }
@@ -44,7 +44,7 @@ impl Reading {
 ///
 /// # Errors
 /// That a control word must not be sent, where it is said to be one.
-pub(super) fn of_word(word: u16, known: &Known) -> Result<Vec<Reading>, String> {
+pub(super) fn of_word(word: u16, known: &Known) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
         (Some(Direction::Out), Err(why)) => Err(why.to_string()),
@@ -54,7 +54,7 @@ pub(super) fn of_word(word: u16, known: &Known) -> Result<Vec<Reading>, String> 
         (None, Ok(control)) => Ok(vec![of_control(control)]),
         (None, Err(_)) if status.is_plausible() => Ok(vec![of_status(status)]),
         (None, Err(why)) => {
-            let refused = Reading {
+            let refused = WordMeaning {
                 direction: "OUT",
                 lines: vec![format!("not to be sent, {why}")],
                 json: json!({"bits": [], "legal": false}),
@@ -64,16 +64,16 @@ pub(super) fn of_word(word: u16, known: &Known) -> Result<Vec<Reading>, String> 
     }
 }
 
-fn of_control(control: ControlWord) -> Reading {
+fn of_control(control: ControlWord) -> WordMeaning {
     let names: Vec<&str> = control.set().map(|(_, name)| name).collect();
     let lines = vec![format!("control word, {}", control_words(control))];
-    Reading { direction: "OUT", lines, json: json!({"bits": names, "legal": true}) }
+    WordMeaning { direction: "OUT", lines, json: json!({"bits": names, "legal": true}) }
 }
 
-fn of_status(status: StatusWord) -> Reading {
+fn of_status(status: StatusWord) -> WordMeaning {
     let names: Vec<&str> = status.set().map(StatusBit::name).collect();
     let lines = vec![format!("status word, {}", status_words(status))];
-    Reading { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
+    WordMeaning { direction: "IN", lines, json: json!({"bits": names, "state": status.state().name()}) }
 }
 
 /// Returns the meaning of a control word, then its bits.

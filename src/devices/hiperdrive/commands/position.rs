@@ -9,7 +9,7 @@ use crate::cli::args::{Common, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
-use crate::devices::hiperdrive::procedures::Reading;
+use crate::devices::hiperdrive::procedures::DriveReading;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, PositionScale, StatusBit, Value};
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
@@ -71,12 +71,12 @@ impl TurnPosition {
 }
 
 /// The drive is there and has its reference.
-fn is_valid(reading: &Reading) -> bool {
+fn is_valid(reading: &DriveReading) -> bool {
     let status = reading.actual.status;
     status.is_present() && status.has(StatusBit::ReferenceSet)
 }
 
-fn show(output: &Output, reading: &Reading, place: Option<TurnPosition>) -> Result<()> {
+fn show(output: &Output, reading: &DriveReading, place: Option<TurnPosition>) -> Result<()> {
     let t = reading.at.since_start().as_secs_f64();
     let actual = reading.actual;
     let state = actual.status.state();
@@ -100,7 +100,7 @@ fn show(output: &Output, reading: &Reading, place: Option<TurnPosition>) -> Resu
     output.show(&json, &format!("{t:10.3} s  {:>11}  {words}  ({state})\n", actual.position))
 }
 
-fn row(reading: &Reading, place: Option<TurnPosition>) -> String {
+fn row(reading: &DriveReading, place: Option<TurnPosition>) -> String {
     let column = |number: Option<String>| number.unwrap_or_default();
     format!(
         "{:.6},{},{},{},{},{}\n",

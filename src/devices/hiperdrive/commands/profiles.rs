@@ -6,7 +6,7 @@ use super::plan::{commit, prepare, shown};
 use super::run::Runner;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, restore_options, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, keep, restore_options, to_restore, write_restore};
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
@@ -78,7 +78,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         output.remark(&format!("{item} belongs to the mounting and is left alone: {how}"));
     }
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
     let plan = shown(&prepared);
     write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use crate::devices::hiperdrive::procedures::check::{HiperdriveStepResult, Step};
+use crate::devices::hiperdrive::procedures::check::{CheckStep, HiperdriveStepResult};
 use crate::devices::hiperdrive::procedures::write::{Interrupted, Written};
-use crate::devices::hiperdrive::procedures::{Error, Identity, Network, Reading, Status, Survey};
+use crate::devices::hiperdrive::procedures::{DriveReading, Error, Identity, Network, Status, Survey};
 use crate::devices::hiperdrive::profile::{
     HiperdrivePlan, HiperdriveProfile, Image, Item, NetworkSettings, OtherType, PlanError, RestoreOptions, Service,
 };
@@ -152,7 +152,7 @@ pub enum DeviceMessage {
 pub enum JobStep {
     Parameter(ParameterNumber),
     /// A step of the check.
-    Step(Step),
+    Step(CheckStep),
     /// An operation of a plan is carried out: what it changes.
     Operation(String),
 }
@@ -178,7 +178,7 @@ pub enum HiperdriveOutput {
     Identity(Box<Identity>),
     Status(Box<Status>),
     Check(Vec<HiperdriveStepResult>),
-    Position(Reading),
+    Position(DriveReading),
     Value(ParameterNumber, Value),
     Network(Box<Network>),
     Saved(Box<HiperdriveProfile>),

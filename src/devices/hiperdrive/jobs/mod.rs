@@ -28,7 +28,7 @@ use session_watch::WatchedWire;
 
 use crate::devices::hiperdrive::procedures::check::check as check_device;
 use crate::devices::hiperdrive::procedures::{
-    Master, Reading, Station, identify, network, position, read_status, save, survey,
+    DriveReading, Master, Station, identify, network, position, read_status, save, survey,
 };
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
@@ -112,7 +112,7 @@ impl Device for Hiperdrive {
     type Output = HiperdriveOutput;
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
-    type Sample = Reading;
+    type Sample = DriveReading;
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -162,16 +162,16 @@ impl Device for Hiperdrive {
         })
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Reading, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<DriveReading, JobError> {
         self.let_go_of_lost(desk);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
-            return Ok(Reading { at: desk.clock.now(), drive, actual });
+            return Ok(DriveReading { at: desk.clock.now(), drive, actual });
         }
         Ok(position(&mut self.master(desk), drive)?)
     }
 
-    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<DriveReading>, JobError> {
         match *what {}
     }
 

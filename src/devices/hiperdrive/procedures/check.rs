@@ -17,11 +17,11 @@ use crate::devices::hiperdrive::protocol::{
 pub use crate::analysis::check::Verdict;
 
 /// One line of the check.
-pub type HiperdriveStepResult = check::StepResult<Step, Finding>;
+pub type HiperdriveStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum CheckStep {
     /// Explicit messages are answered.
     Messages,
     /// Identity of the device.
@@ -48,31 +48,31 @@ pub enum Step {
     Range(DriveNumber),
 }
 
-impl fmt::Display for Step {
+impl fmt::Display for CheckStep {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of_drive =
             |f: &mut fmt::Formatter<'_>, what, drive: &DriveNumber| write!(f, "drive {}: {what}", drive.get());
         match self {
-            Step::Messages => f.write_str("messages"),
-            Step::Device => f.write_str("device"),
-            Step::Supply => f.write_str("supply"),
-            Step::Temperature => f.write_str("temperature"),
-            Step::Address => f.write_str("address"),
-            Step::Memory => f.write_str("memory"),
-            Step::Drives => f.write_str("drives"),
-            Step::Request(drive) => of_drive(f, "requested", drive),
-            Step::Line(drive) => of_drive(f, "RS-485", drive),
-            Step::Timeout(drive) => of_drive(f, "time-out", drive),
-            Step::Errors(drive) => of_drive(f, "state and errors", drive),
-            Step::DriveTemperature(drive) => of_drive(f, "temperature", drive),
-            Step::Range(drive) => of_drive(f, "scaling and limits", drive),
+            CheckStep::Messages => f.write_str("messages"),
+            CheckStep::Device => f.write_str("device"),
+            CheckStep::Supply => f.write_str("supply"),
+            CheckStep::Temperature => f.write_str("temperature"),
+            CheckStep::Address => f.write_str("address"),
+            CheckStep::Memory => f.write_str("memory"),
+            CheckStep::Drives => f.write_str("drives"),
+            CheckStep::Request(drive) => of_drive(f, "requested", drive),
+            CheckStep::Line(drive) => of_drive(f, "RS-485", drive),
+            CheckStep::Timeout(drive) => of_drive(f, "time-out", drive),
+            CheckStep::Errors(drive) => of_drive(f, "state and errors", drive),
+            CheckStep::DriveTemperature(drive) => of_drive(f, "temperature", drive),
+            CheckStep::Range(drive) => of_drive(f, "scaling and limits", drive),
         }
     }
 }
 
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum CheckFinding {
     /// A value was read so often, within so long a reply each.
     Replies {
         /// Number of requests.
@@ -193,38 +193,38 @@ const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 /// [`Error::NotHiperdrive`]; the way.
 pub fn check(
     master: &mut Master<'_>,
-    told: &mut dyn FnMut(u64, u64, Step),
+    told: &mut dyn FnMut(u64, u64, CheckStep),
 ) -> Result<Vec<HiperdriveStepResult>, Error> {
     let mut lines = Vec::new();
-    told(0, 1, Step::Messages);
+    told(0, 1, CheckStep::Messages);
     let identity = identify(master, &mut |_, _, _| {})?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
     lines.push(HiperdriveStepResult::of(
-        Step::Supply,
-        vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, Finding::Supply)],
+        CheckStep::Supply,
+        vec![in_range(master.read_number(own(9)?)?, &SUPPLIES, CheckFinding::Supply)],
     ));
     let celsius = master.read_number(own(11)?)?;
     lines.push(HiperdriveStepResult::of(
-        Step::Temperature,
-        vec![in_range(celsius, &TEMPERATURES, Finding::Temperature)],
+        CheckStep::Temperature,
+        vec![in_range(celsius, &TEMPERATURES, CheckFinding::Temperature)],
     ));
-    lines.push(HiperdriveStepResult::of(Step::Address, address(&network(master)?)));
+    lines.push(HiperdriveStepResult::of(CheckStep::Address, address(&network(master)?)));
     let saved = match master.read_number(ParameterNumber::SAVE)? {
-        0 => (Verdict::Good, Finding::Saved),
-        other => (Verdict::Attention, Finding::NotSaved(other)),
+        0 => (Verdict::Good, CheckFinding::Saved),
+        other => (Verdict::Attention, CheckFinding::NotSaved(other)),
     };
-    lines.push(HiperdriveStepResult::of(Step::Memory, vec![saved]));
-    lines.push(HiperdriveStepResult::of(Step::Drives, drives(&identity)));
+    lines.push(HiperdriveStepResult::of(CheckStep::Memory, vec![saved]));
+    lines.push(HiperdriveStepResult::of(CheckStep::Drives, drives(&identity)));
     let total = identity.drives.len() as u64 + 1;
     for (at, drive) in identity.drives.iter().enumerate() {
-        told(at as u64 + 1, total, Step::Errors(drive.number));
+        told(at as u64 + 1, total, CheckStep::Errors(drive.number));
         lines.extend(check_drive(master, &identity, drive)?);
     }
     Ok(lines)
 }
 
-fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> Finding) -> (Verdict, Finding) {
+fn in_range(value: i64, range: &std::ops::RangeInclusive<i64>, of: fn(i64) -> CheckFinding) -> (Verdict, CheckFinding) {
     (if range.contains(&value) { Verdict::Good } else { Verdict::Attention }, of(value))
 }
 
@@ -237,37 +237,40 @@ fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     }
     let late = master.station().late();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
-    let replies = Finding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
-    Ok(HiperdriveStepResult::of(Step::Messages, vec![(verdict, replies)]))
+    let replies = CheckFinding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
+    Ok(HiperdriveStepResult::of(CheckStep::Messages, vec![(verdict, replies)]))
 }
 
 fn device(identity: &Identity) -> HiperdriveStepResult {
     let findings = [
-        Finding::Category(identity.category.clone()),
-        Finding::SerialNumber(identity.serial_number.clone()),
-        Finding::Version(identity.version.clone()),
+        CheckFinding::Category(identity.category.clone()),
+        CheckFinding::SerialNumber(identity.serial_number.clone()),
+        CheckFinding::Version(identity.version.clone()),
     ];
-    HiperdriveStepResult::of(Step::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
+    HiperdriveStepResult::of(CheckStep::Device, findings.into_iter().map(|finding| (Verdict::Good, finding)).collect())
 }
 
-fn address(network: &Network) -> Vec<(Verdict, Finding)> {
+fn address(network: &Network) -> Vec<(Verdict, CheckFinding)> {
     let Some(switch) = network.address_switch() else {
-        return vec![(Verdict::Attention, Finding::UnknownSwitch(network.switch))];
+        return vec![(Verdict::Attention, CheckFinding::UnknownSwitch(network.switch))];
     };
-    let mut findings = vec![(Verdict::Good, Finding::Switch(switch))];
+    let mut findings = vec![(Verdict::Good, CheckFinding::Switch(switch))];
     if switch == AddressSwitch::Object {
-        findings.extend(network.control.map(|control| (Verdict::Good, Finding::Source(control.source()))));
+        findings.extend(network.control.map(|control| (Verdict::Good, CheckFinding::Source(control.source()))));
     }
     findings
 }
 
-fn drives(identity: &Identity) -> Vec<(Verdict, Finding)> {
+fn drives(identity: &Identity) -> Vec<(Verdict, CheckFinding)> {
     if identity.drives.is_empty() {
-        return vec![(Verdict::Bad, Finding::NoDrives)];
+        return vec![(Verdict::Bad, CheckFinding::NoDrives)];
     }
     let found = |drive: &DriveIdentity| {
         let DriveIdentity { number, variant, serial_number, .. } = drive;
-        (Verdict::Good, Finding::Drive { number: *number, variant: *variant, serial_number: serial_number.clone() })
+        (
+            Verdict::Good,
+            CheckFinding::Drive { number: *number, variant: *variant, serial_number: serial_number.clone() },
+        )
     };
     identity.drives.iter().map(found).collect()
 }
@@ -280,64 +283,64 @@ fn check_drive(
     let number = drive.number;
     let status = drive_status(master, number)?;
     let mut request = match drive.requested {
-        true => vec![(Verdict::Good, Finding::Requested)],
-        false => vec![(Verdict::Attention, Finding::NotRequested)],
+        true => vec![(Verdict::Good, CheckFinding::Requested)],
+        false => vec![(Verdict::Attention, CheckFinding::NotRequested)],
     };
-    request.extend((identity.topology != Topology::Adapter).then_some((Verdict::Good, Finding::LookAtS3)));
+    request.extend((identity.topology != Topology::Adapter).then_some((Verdict::Good, CheckFinding::LookAtS3)));
     let [_, _, communication] = status.words;
     let rs485 = match communication {
-        0 => (Verdict::Good, Finding::LineGood),
-        other => (Verdict::Bad, Finding::LineWord(other)),
+        0 => (Verdict::Good, CheckFinding::LineGood),
+        other => (Verdict::Bad, CheckFinding::LineWord(other)),
     };
     let timeout = match master.read_number(of(186, number)?)? {
-        tenths if ends_by_itself(tenths) => (Verdict::Good, Finding::Timeout(tenths)),
-        _ => (Verdict::Bad, Finding::NoTimeout),
+        tenths if ends_by_itself(tenths) => (Verdict::Good, CheckFinding::Timeout(tenths)),
+        _ => (Verdict::Bad, CheckFinding::NoTimeout),
     };
-    let temperature = in_range(status.temperature, &TEMPERATURES, Finding::Temperature);
+    let temperature = in_range(status.temperature, &TEMPERATURES, CheckFinding::Temperature);
     Ok(vec![
-        HiperdriveStepResult::of(Step::Request(number), request),
-        HiperdriveStepResult::of(Step::Line(number), vec![rs485]),
-        HiperdriveStepResult::of(Step::Timeout(number), vec![timeout]),
-        HiperdriveStepResult::of(Step::Errors(number), errors(&status)),
-        HiperdriveStepResult::of(Step::DriveTemperature(number), vec![temperature]),
-        HiperdriveStepResult::of(Step::Range(number), range(master, drive)?),
+        HiperdriveStepResult::of(CheckStep::Request(number), request),
+        HiperdriveStepResult::of(CheckStep::Line(number), vec![rs485]),
+        HiperdriveStepResult::of(CheckStep::Timeout(number), vec![timeout]),
+        HiperdriveStepResult::of(CheckStep::Errors(number), errors(&status)),
+        HiperdriveStepResult::of(CheckStep::DriveTemperature(number), vec![temperature]),
+        HiperdriveStepResult::of(CheckStep::Range(number), range(master, drive)?),
     ])
 }
 
-fn errors(status: &DriveStatus) -> Vec<(Verdict, Finding)> {
+fn errors(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     let DriveStatus { status: word, words: [drive, motion, _], buffer, faults, .. } = status;
     let mut findings = Vec::new();
     if word.is_plausible() {
         let state = word.state();
         let is_bad = matches!(state, State::Fault | State::Locked) || word.has(StatusBit::Fault);
-        findings.push((if is_bad { Verdict::Bad } else { Verdict::Good }, Finding::State(state)));
+        findings.push((if is_bad { Verdict::Bad } else { Verdict::Good }, CheckFinding::State(state)));
     } else {
-        findings.push((Verdict::Attention, Finding::StrayStatus(word.word())));
+        findings.push((Verdict::Attention, CheckFinding::StrayStatus(word.word())));
     }
-    findings.extend((*drive != 0).then_some((Verdict::Attention, Finding::DriveWord(*drive))));
-    findings.extend((*motion != 0).then_some((Verdict::Attention, Finding::MotionWord(*motion))));
+    findings.extend((*drive != 0).then_some((Verdict::Attention, CheckFinding::DriveWord(*drive))));
+    findings.extend((*motion != 0).then_some((Verdict::Attention, CheckFinding::MotionWord(*motion))));
     // Entries of the buffer may be old: the count of faults shows whether they matter.
     let of_buffer = if *faults == 0 { Verdict::Good } else { Verdict::Attention };
-    findings.extend(buffer.iter().map(|code| (of_buffer, Finding::Error(*code))));
-    findings.extend((*faults != 0).then_some((Verdict::Attention, Finding::Faults(*faults))));
+    findings.extend(buffer.iter().map(|code| (of_buffer, CheckFinding::Error(*code))));
+    findings.extend((*faults != 0).then_some((Verdict::Attention, CheckFinding::Faults(*faults))));
     findings
 }
 
-fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict, Finding)>, Error> {
+fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict, CheckFinding)>, Error> {
     let mut read = |base| master.read_number(of(base, drive.number)?);
     let (numerator, denominator) = (read(154)?, read(156)?);
     let (lower, upper, position) = (read(158)?, read(160)?, read(107)?);
-    let mut findings = vec![(Verdict::Good, Finding::Range { numerator, denominator, lower, upper })];
+    let mut findings = vec![(Verdict::Good, CheckFinding::Range { numerator, denominator, lower, upper })];
     if upper <= lower {
-        findings.push((Verdict::Bad, Finding::LimitsCrossed { lower, upper }));
+        findings.push((Verdict::Bad, CheckFinding::LimitsCrossed { lower, upper }));
     }
     findings.push(match (lower..=upper).contains(&position) {
-        true => (Verdict::Good, Finding::Within(position)),
-        false => (Verdict::Bad, Finding::Outside { position, lower, upper }),
+        true => (Verdict::Good, CheckFinding::Within(position)),
+        false => (Verdict::Bad, CheckFinding::Outside { position, lower, upper }),
     });
     let scale = u16::try_from(numerator).ok().zip(u16::try_from(denominator).ok());
     match scale.and_then(|(numerator, denominator)| PositionScale::new(numerator, denominator).ok()) {
-        None => findings.push((Verdict::Bad, Finding::BadScale { numerator, denominator })),
+        None => findings.push((Verdict::Bad, CheckFinding::BadScale { numerator, denominator })),
         Some(scale) => {
             let family = drive.variant.row().map(|row| row.family);
             let travel = Travel { family, scale: Some(scale) };
@@ -345,7 +348,7 @@ fn range(master: &mut Master<'_>, drive: &DriveIdentity) -> Result<Vec<(Verdict,
                 let beyond = [lower, upper].into_iter().filter(|limit| limit.abs() > steps);
                 findings.extend(beyond.map(|limit| {
                     let (turns, most) = (limit as f64 / scale.steps_per_turn(), family.most_turns());
-                    (Verdict::Bad, Finding::BeyondTravel { limit, turns, most })
+                    (Verdict::Bad, CheckFinding::BeyondTravel { limit, turns, most })
                 }));
             }
         }

@@ -13,7 +13,7 @@ use crate::profile::DeviceError;
 
 /// A request to a device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum RequestedItem {
     Session,
     /// A parameter's value.
     Parameter(ParameterNumber),
@@ -37,19 +37,19 @@ pub enum Asked {
     Close,
 }
 
-impl fmt::Display for Asked {
+impl fmt::Display for RequestedItem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let named = |number: ParameterNumber| number.row().map_or("unknown", |row| row.name);
         match *self {
-            Asked::Session => f.write_str("opening a session"),
-            Asked::Parameter(number) => write!(f, "reading parameter {number} ({})", named(number)),
-            Asked::Set(number) => write!(f, "writing parameter {number} ({})", named(number)),
-            Asked::Identity => f.write_str("reading the identity object"),
-            Asked::Network { attribute } => write!(f, "reading attribute {attribute} of the TCP/IP object"),
-            Asked::SetNetwork { attribute } => write!(f, "writing attribute {attribute} of the TCP/IP object"),
-            Asked::Mac => f.write_str("reading the address of the network card"),
-            Asked::Open => f.write_str("opening the cyclic connection"),
-            Asked::Close => f.write_str("closing the cyclic connection"),
+            RequestedItem::Session => f.write_str("opening a session"),
+            RequestedItem::Parameter(number) => write!(f, "reading parameter {number} ({})", named(number)),
+            RequestedItem::Set(number) => write!(f, "writing parameter {number} ({})", named(number)),
+            RequestedItem::Identity => f.write_str("reading the identity object"),
+            RequestedItem::Network { attribute } => write!(f, "reading attribute {attribute} of the TCP/IP object"),
+            RequestedItem::SetNetwork { attribute } => write!(f, "writing attribute {attribute} of the TCP/IP object"),
+            RequestedItem::Mac => f.write_str("reading the address of the network card"),
+            RequestedItem::Open => f.write_str("opening the cyclic connection"),
+            RequestedItem::Close => f.write_str("closing the cyclic connection"),
         }
     }
 }
@@ -150,7 +150,7 @@ pub enum Error {
     NeverSilent,
     #[error("no answer: {asked}, tried {tries} times")]
     NoReply {
-        asked: Asked,
+        asked: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// It did, but too late; `None` where nothing came.
@@ -159,7 +159,7 @@ pub enum Error {
     /// It answers, and not as it should.
     #[error("{asked}: {cause}, tried {tries} times")]
     Damaged {
-        asked: Asked,
+        asked: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
@@ -167,10 +167,10 @@ pub enum Error {
     },
     /// The frame was refused.
     #[error("{asked}: {status}")]
-    Encapsulation { asked: Asked, status: EncapsulationStatus },
+    Encapsulation { asked: RequestedItem, status: EncapsulationStatus },
     /// The request was refused.
     #[error("{asked}: {refusal}")]
-    Refused { asked: Asked, refusal: Refusal },
+    Refused { asked: RequestedItem, refusal: Refusal },
     /// Another master has the cyclic connection.
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {

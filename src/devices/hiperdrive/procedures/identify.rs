@@ -114,7 +114,7 @@ impl Steps<'_> {
 
 /// The position and speed of a drive at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reading {
+pub struct DriveReading {
     /// When.
     pub at: Moment,
     pub drive: DriveNumber,
@@ -283,12 +283,12 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
 ///
 /// # Errors
 /// [`Error::NoPlace`], [`Error::NoDrive`]; the way.
-pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<Reading, Error> {
+pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
     let status = StatusWord::new(word(master, 105, drive)?);
     // Both are of that many bits.
     let speed = master.read_number(of(106, drive)?)? as i16;
     let position = master.read_number(of(107, drive)?)? as i32;
-    Ok(Reading { at: master.now(), drive, actual: Actual { status, speed, position } })
+    Ok(DriveReading { at: master.now(), drive, actual: Actual { status, speed, position } })
 }
 
 /// Returns the topology, read once a session.

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 pub use connection::Opened;
 
-use super::error::{Asked, Damage, Late, Refusal, WrongLength};
+use super::error::{Damage, Late, Refusal, RequestedItem, WrongLength};
 use super::{Error, Station};
 use crate::bits::MaskedBytes;
 use crate::buses::ethernet_ip::protocol::{
@@ -116,7 +116,7 @@ impl<'a> Master<'a> {
         if row.access == Access::Write {
             return Err(Error::WriteOnly { number, name: row.name });
         }
-        let asked = Asked::Parameter(number);
+        let asked = RequestedItem::Parameter(number);
         let request = Request::get(number.class(), 1, number.attribute());
         let data = match self.request(asked, &request, Repeats::Always) {
             Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(asked, number, refusal)?),
@@ -161,7 +161,7 @@ impl<'a> Master<'a> {
         // The plan has checked the limits of its turns.
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
-        let asked = Asked::Set(number);
+        let asked = RequestedItem::Set(number);
         let request = Request::set(number.class(), 1, number.attribute(), data);
         let once = Repeats::Never { takes: row.takes(wanted, self.station.known.topology) };
         let mut tries = 0;
@@ -188,13 +188,13 @@ impl<'a> Master<'a> {
     /// # Errors
     /// [`Error::Refused`]; the way.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
-        let asked = Asked::Identity;
+        let asked = RequestedItem::Identity;
         let reply = self.request(asked, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
         IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
     }
 
     /// Reads an attribute of another object.
-    pub(super) fn attribute(&mut self, asked: Asked, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
+    pub(super) fn attribute(&mut self, asked: RequestedItem, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
         Ok(self.request(asked, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
 
@@ -204,7 +204,7 @@ impl<'a> Master<'a> {
     /// [`Error::Refused`]; the way.
     pub(super) fn set_attribute(
         &mut self,
-        asked: Asked,
+        asked: RequestedItem,
         (class, attribute): (u16, u16),
         data: Vec<u8>,
     ) -> Result<(), Error> {
@@ -219,14 +219,14 @@ impl<'a> Master<'a> {
     }
 
     /// Asks something of an object.
-    fn request(&mut self, asked: Asked, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
+    fn request(&mut self, asked: RequestedItem, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
         self.request_with(asked, request, &[], repeats).map(|(reply, _)| reply)
     }
 
     /// Asks something of an object, with further items beside the message; gives back those beside the reply as well.
     fn request_with(
         &mut self,
-        asked: Asked,
+        asked: RequestedItem,
         request: &Request,
         beside: &[Item],
         repeats: Repeats,
@@ -253,7 +253,7 @@ impl<'a> Master<'a> {
         if let Some(session) = self.station.session {
             return Ok(session);
         }
-        let frame = self.again(Asked::Session, Repeats::Always, |master| {
+        let frame = self.again(RequestedItem::Session, Repeats::Always, |master| {
             master.exchange(Frame::register([0; 8]), Repeats::Always)
         })?;
         self.station.session = Some(frame.session);
@@ -274,7 +274,7 @@ impl<'a> Master<'a> {
     /// Asks, and again where that may help and does no harm.
     fn again<T>(
         &mut self,
-        asked: Asked,
+        asked: RequestedItem,
         repeats: Repeats,
         mut once: impl FnMut(&mut Self) -> Result<Result<T, ExchangeError>, Error>,
     ) -> Result<T, Error> {
@@ -301,7 +301,7 @@ impl<'a> Master<'a> {
             let may = self.line.may_ask_again(&mut self.station.line, tries, took);
             match trouble {
                 // It was not done: the device has forgotten the session.
-                ExchangeError::Status(EncapsulationStatus::NO_SESSION) if may && asked != Asked::Session => {
+                ExchangeError::Status(EncapsulationStatus::NO_SESSION) if may && asked != RequestedItem::Session => {
                     self.station.session = None;
                 }
                 ExchangeError::Status(status) => return Err(Error::Encapsulation { asked, status }),

@@ -21,9 +21,9 @@ mod station;
 pub mod write;
 
 pub use discover::{Found, discover};
-pub use error::{Asked, Damage, Error, Late, Refusal, WrongLength};
+pub use error::{Damage, Error, Late, Refusal, RequestedItem, WrongLength};
 pub use identify::{
-    DriveIdentity, DriveStatus, Identity, Reading, Status, Survey, identify, position, read_status, survey,
+    DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, survey,
 };
 pub use limits::{DriveLimits, LimitsSeen};
 pub use master::{Master, Opened};

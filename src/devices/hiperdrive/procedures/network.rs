@@ -1,6 +1,6 @@
 //! Its address and where it has it from: the address switches and the TCP/IP object (reference 1).
 
-use super::error::Asked;
+use super::error::RequestedItem;
 use super::identify::own;
 use super::{Error, Master};
 use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfiguration, PacketError};
@@ -40,7 +40,8 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let interface =
         unless_refused(attribute(master, InterfaceConfiguration::ATTRIBUTE, InterfaceConfiguration::parse))?;
     let (class, number) = MAC;
-    let mac = unless_refused(master.attribute(Asked::Mac, class, number))?.and_then(|data| data.try_into().ok());
+    let mac =
+        unless_refused(master.attribute(RequestedItem::Mac, class, number))?.and_then(|data| data.try_into().ok());
     Ok(Network { switch, control, interface, mac })
 }
 
@@ -61,7 +62,7 @@ fn attribute<T>(
     attribute: u16,
     parse: impl FnOnce(&[u8]) -> Result<T, PacketError>,
 ) -> Result<T, Error> {
-    let asked = Asked::Network { attribute };
+    let asked = RequestedItem::Network { attribute };
     let data = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
     parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
 }

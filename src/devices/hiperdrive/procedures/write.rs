@@ -4,7 +4,7 @@ use std::time::Duration;
 
 pub use crate::profile::Written;
 
-use super::error::Asked;
+use super::error::RequestedItem;
 use super::identify::{drive_status, drive_text, of, own, topology};
 use super::network::settings;
 use super::{Error, Identity, Master};
@@ -241,7 +241,7 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;
-        let asked = Asked::Network { attribute };
+        let asked = RequestedItem::Network { attribute };
         let before = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
         let before = ConfigurationControl::parse(&before);
         let before = before.map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })?;
@@ -258,5 +258,5 @@ fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSe
 }
 
 fn set_network(master: &mut Master<'_>, attribute: u16, data: Vec<u8>) -> Result<(), Error> {
-    master.set_attribute(Asked::SetNetwork { attribute }, (ConfigurationControl::CLASS, attribute), data)
+    master.set_attribute(RequestedItem::SetNetwork { attribute }, (ConfigurationControl::CLASS, attribute), data)
 }

@@ -1,7 +1,7 @@
 //! The user's actions on a device and its drives: edits and motion take effect at once, everything else is a job on its
 //! line or a task.
 
-use super::action::{Action, Motor};
+use super::action::{HiperdriveAction, Motor};
 use super::staged::Edit;
 use super::unit::Unit;
 use super::words;
@@ -15,22 +15,22 @@ use crate::profile::Body;
 
 impl Unit {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: HiperdriveAction, services: &mut Services) {
         match action {
-            Action::ReadStatus => {
+            HiperdriveAction::ReadStatus => {
                 self.submit(HiperdriveJob::Status, services);
             }
-            Action::Check => {
+            HiperdriveAction::Check => {
                 self.submit(HiperdriveJob::Check, services);
             }
-            Action::SelectDrive(drive) => {
+            HiperdriveAction::SelectDrive(drive) => {
                 if self.drives().contains(&drive) {
                     self.show_drive(drive);
                     self.watch(services);
                 }
             }
-            Action::SetMeasure(measure) => self.measure = measure,
-            Action::SetPitch(drive, pitch) => {
+            HiperdriveAction::SetMeasure(measure) => self.measure = measure,
+            HiperdriveAction::SetPitch(drive, pitch) => {
                 match pitch.filter(|own| own.nanometres > 0) {
                     Some(pitch) => self.pitches.insert(drive, pitch),
                     None => self.pitches.remove(&drive),
@@ -40,16 +40,16 @@ impl Unit {
                     self.measure = super::Measure::default();
                 }
             }
-            Action::Edit(edit) => self.edit(&edit),
-            Action::Plan(change) => self.plan(*change, services),
-            Action::Take => self.take_control(services),
-            Action::Give => {
+            HiperdriveAction::Edit(edit) => self.edit(&edit),
+            HiperdriveAction::Plan(change) => self.plan(*change, services),
+            HiperdriveAction::Take => self.take_control(services),
+            HiperdriveAction::Give => {
                 self.moves.stop();
                 self.submit(HiperdriveJob::Give, services);
             }
-            Action::Drive(motor) => self.drive_by(motor, services),
-            Action::Axis(action) => self.act_axis(action, services),
-            Action::Save(path) => self.save(path, services),
+            HiperdriveAction::Drive(motor) => self.drive_by(motor, services),
+            HiperdriveAction::Axis(action) => self.act_axis(action, services),
+            HiperdriveAction::Save(path) => self.save(path, services),
         }
     }
 

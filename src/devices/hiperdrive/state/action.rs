@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEnd};
 
 /// Something in the HIPERDRIVE tab.
-pub enum Action {
+pub enum HiperdriveAction {
     /// Read states and errors.
     ReadStatus,
     /// The device check.
@@ -33,7 +33,7 @@ pub enum Action {
     /// Move the drive that is shown, or lead it to another state.
     Drive(Motor),
     /// Set up the axis of the drive that is shown.
-    Axis(axis::Action),
+    Axis(axis::AxisAction),
     /// Save the profile.
     Save(PathBuf),
 }
@@ -91,4 +91,4 @@ pub enum Motor {
     ConfirmLimits(DriveNumber),
 }
 
-impl DeviceAction for Action {}
+impl DeviceAction for HiperdriveAction {}

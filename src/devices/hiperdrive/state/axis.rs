@@ -25,7 +25,7 @@ pub mod words;
 #[cfg(test)]
 mod tests;
 
-pub use act::{Action, Ask, Button};
+pub use act::{Ask, AxisAction, Button};
 pub use entries::{Entries, Preview, Reference};
 pub use report::{Device, end_lines, report};
 pub use seen::Seen;
@@ -40,7 +40,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
 
 /// A step of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Step {
+pub enum AxisStep {
     /// The drive is requested: parameter 152.
     Request,
     /// Pitch and resolution become parameters 154 and 156.
@@ -89,7 +89,7 @@ pub enum End {
 
 /// A change made by the run, in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Change {
+pub enum AxisChange {
     /// A parameter, by the number of drive 1.
     Parameter(u16, i64),
     /// The position of a place.
@@ -122,7 +122,7 @@ struct Confirmed {
 pub struct Axis {
     drive: DriveNumber,
     /// The step that is shown.
-    step: Step,
+    step: AxisStep,
     /// The entered text.
     entries: Entries,
     /// The confirmed results.
@@ -143,7 +143,7 @@ pub struct Axis {
     going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
-    changes: Vec<Change>,
+    changes: Vec<AxisChange>,
     /// Not all of the changes may have been made.
     partly: bool,
     /// The values written back.
@@ -153,34 +153,34 @@ pub struct Axis {
     over: Option<Over>,
 }
 
-impl Step {
+impl AxisStep {
     /// All steps in their order.
-    pub const ALL: [Step; 10] = [
-        Step::Request,
-        Step::Scale,
-        Step::Confirm,
-        Step::Jog,
-        Step::Reference,
-        Step::Lower,
-        Step::Upper,
-        Step::Test,
-        Step::Save,
-        Step::PowerCycle,
+    pub const ALL: [AxisStep; 10] = [
+        AxisStep::Request,
+        AxisStep::Scale,
+        AxisStep::Confirm,
+        AxisStep::Jog,
+        AxisStep::Reference,
+        AxisStep::Lower,
+        AxisStep::Upper,
+        AxisStep::Test,
+        AxisStep::Save,
+        AxisStep::PowerCycle,
     ];
 
     /// It needs the cyclic connection.
     pub const fn moves(self) -> bool {
-        matches!(self, Step::Jog | Step::Reference | Step::Lower | Step::Upper | Step::Test)
+        matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
     /// The drive is moved by hand in it.
     pub const fn jogs(self) -> bool {
-        matches!(self, Step::Jog | Step::Reference | Step::Lower | Step::Upper)
+        matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
 
     /// It may be left out.
     pub const fn may_be_skipped(self) -> bool {
-        matches!(self, Step::Reference | Step::PowerCycle)
+        matches!(self, AxisStep::Reference | AxisStep::PowerCycle)
     }
 
     /// Its place, from 0.
@@ -189,8 +189,8 @@ impl Step {
         self as usize
     }
 
-    fn beside(self, by: isize) -> Option<Step> {
-        Step::ALL.get(self.index().checked_add_signed(by)?).copied()
+    fn beside(self, by: isize) -> Option<AxisStep> {
+        AxisStep::ALL.get(self.index().checked_add_signed(by)?).copied()
     }
 }
 
@@ -199,7 +199,7 @@ impl Axis {
     pub fn new(drive: DriveNumber, ruler: Option<Ruler>) -> Self {
         Axis {
             drive,
-            step: Step::Request,
+            step: AxisStep::Request,
             entries: Entries::new(ruler),
             chain: Chain::default(),
             confirmed: None,
@@ -227,7 +227,7 @@ impl Axis {
     }
 
     /// The step that is shown.
-    pub const fn step(&self) -> Step {
+    pub const fn step(&self) -> AxisStep {
         self.step
     }
 
@@ -252,7 +252,7 @@ impl Axis {
     }
 
     /// Returns the changes, the first one first.
-    pub fn changes(&self) -> &[Change] {
+    pub fn changes(&self) -> &[AxisChange] {
         &self.changes
     }
 
@@ -297,15 +297,17 @@ impl Axis {
     }
 
     /// An earlier step whose result the drive does not have any more: it has to be done again, and all behind it.
-    pub fn fallen(&self) -> Option<Step> {
+    pub fn fallen(&self) -> Option<AxisStep> {
         self.chain.end().filter(|step| *step < self.step)
     }
 
     /// Returns the progress of each step.
-    pub fn reached(&self, step: Step) -> Reached {
+    pub fn reached(&self, step: AxisStep) -> Reached {
         let is_shown = step == self.step && self.over.is_none();
         match step {
-            Step::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => Reached::Failed,
+            AxisStep::PowerCycle if matches!(self.power, Some(Power::Back { .. })) && !self.survived() => {
+                Reached::Failed
+            }
             _ if self.fallen() == Some(step) => Reached::Failed,
             _ if is_shown => Reached::Now,
             _ if self.chain.is_skipped(step) => Reached::Skipped,

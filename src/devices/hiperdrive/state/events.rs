@@ -14,7 +14,7 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{
     DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
 };
-use crate::devices::hiperdrive::procedures::Reading;
+use crate::devices::hiperdrive::procedures::DriveReading;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
 use crate::devices::hiperdrive::sim::Target;
@@ -145,7 +145,7 @@ impl Unit {
     }
 
     /// Takes the position of a drive; it is recorded for the one that is shown.
-    fn see(&mut self, reading: Reading) {
+    fn see(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
         if drive == self.drive() {
@@ -163,7 +163,7 @@ impl Unit {
 }
 
 impl SessionEvents for Unit {
-    fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
+    fn sampled(&mut self, samples: Vec<DriveReading>, dropped: u64) {
         if dropped > 0 {
             self.record.lose(dropped);
         }

@@ -38,7 +38,7 @@ mod write;
 
 pub use texts::TEXTS;
 
-pub use action::{Action, Motor};
+pub use action::{HiperdriveAction, Motor};
 pub use connect_form::{HiperdriveForm, HiperdriveWay, VirtualHub};
 pub use discovery::{Discover, Discovery, DiscoveryAction, DiscoveryFinder, FoundDevice};
 pub use moves::Moves;

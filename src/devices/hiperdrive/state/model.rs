@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{Action, Unit};
+use super::{HiperdriveAction, Unit};
 use crate::app::action::Opened;
 use crate::app::live_session::LiveSession;
 use crate::app::recorder::Recorder;
@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 
 impl DeviceModel for Unit {
     const TAB: Tab = Tab::named("Hiperdrive");
-    type Action = Action;
+    type Action = HiperdriveAction;
     type Done = Infallible;
 
     fn connect(&mut self, opened: Opened<Hiperdrive>, services: &mut Services) {
@@ -37,7 +37,7 @@ impl DeviceModel for Unit {
         self.submit(HiperdriveJob::Hello, services);
     }
 
-    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: HiperdriveAction, context: &mut ActContext<'_>) {
         Unit::act(self, action, context.services);
     }
 

@@ -8,7 +8,7 @@ use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
 use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
-use crate::devices::hiperdrive::procedures::Reading;
+use crate::devices::hiperdrive::procedures::DriveReading;
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
 /// A value recorded with the position.
@@ -24,7 +24,7 @@ pub(super) enum Beside {
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<Beside>,
-    last: Option<Reading>,
+    last: Option<DriveReading>,
 }
 
 impl Record {
@@ -40,7 +40,7 @@ impl Record {
     }
 
     /// Takes a reading, with where the drive is sent at that time.
-    pub(super) fn add(&mut self, reading: Reading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
+    pub(super) fn add(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
         let sighting = PositionSample {
@@ -63,7 +63,7 @@ impl Record {
         self.last = Some(reading);
     }
 
-    pub fn last(&self) -> Option<&Reading> {
+    pub fn last(&self) -> Option<&DriveReading> {
         self.last.as_ref()
     }
 

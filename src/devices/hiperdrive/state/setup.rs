@@ -3,7 +3,7 @@
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
 
-use super::axis::{Action, Ask, Axis, Button, Device, Seen, Step, report};
+use super::axis::{Ask, Axis, AxisAction, AxisStep, Button, Device, Seen, report};
 use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::action::{Action as StudioAction, Done};
@@ -102,47 +102,47 @@ impl Unit {
     }
 
     /// Does what is asked in the set-up of the drive that is shown.
-    pub(super) fn act_axis(&mut self, action: Action, services: &mut Services) {
+    pub(super) fn act_axis(&mut self, action: AxisAction, services: &mut Services) {
         let drive = self.drive();
         let seen = self.seen(drive);
-        if action == Action::Begin {
+        if action == AxisAction::Begin {
             return self.begin_axis(drive, services);
         }
         let when = services.now().strftime("%Y-%m-%d %H:%M").to_string();
         let Some(axis) = self.axes.get_mut(&drive) else { return };
         match action {
-            Action::Begin => {}
-            Action::Edit(entries) => axis.edit(*entries),
-            Action::Press(button) => match axis.ask(button, &seen) {
+            AxisAction::Begin => {}
+            AxisAction::Edit(entries) => axis.edit(*entries),
+            AxisAction::Press(button) => match axis.ask(button, &seen) {
                 Ok(ask) => self.carry_out(drive, button, ask, &seen, services),
                 Err(why) => self.tell_of(drive, Severity::Warning, vec![why], services),
             },
-            Action::TakePlace => axis.take_limit(&seen),
-            Action::Next => {
+            AxisAction::TakePlace => axis.take_limit(&seen),
+            AxisAction::Next => {
                 // The entries only served for a preview until now. Positions are measured on this spindle everywhere.
-                let confirms = axis.step() == Step::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
+                let confirms = axis.step() == AxisStep::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
                 let pitch = axis.entries().pitch().ok().filter(|_| confirms);
                 axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen }, &when);
                 if let Some(pitch) = pitch {
                     self.pitches.insert(drive, pitch);
                 }
             }
-            Action::Skip => axis.skip(&seen, &when),
-            Action::Back => axis.back(&seen),
-            Action::Cancel => {
+            AxisAction::Skip => axis.skip(&seen, &when),
+            AxisAction::Back => axis.back(&seen),
+            AxisAction::Cancel => {
                 axis.cancel(&seen, &when);
                 self.moves.stop();
             }
-            Action::AskReport => {
+            AxisAction::AskReport => {
                 let file = self.session.suggested_file();
                 let stem = file.file_stem().map_or_else(String::new, |own| own.to_string_lossy().into_owned());
                 let suggested = PathBuf::from(format!("{stem}-axis-{}.txt", drive.get()));
                 let words = (TEXTS.text("file.report_title"), TEXTS.text("file.reports"));
-                let save = |path, language| super::Action::Axis(Action::SaveReport(path, language));
+                let save = |path, language| super::HiperdriveAction::Axis(AxisAction::SaveReport(path, language));
                 let file = DeviceFile::to_write(self.session.id, words, &["txt"], suggested, save);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            Action::SaveReport(path, language) => {
+            AxisAction::SaveReport(path, language) => {
                 let Some(text) = self.axis_report(language) else { return };
                 services.tasks.run("report", move || {
                     let result = write_atomically(&path, text.as_bytes());
@@ -196,8 +196,8 @@ impl Unit {
                     return;
                 }
             }
-            Ask::Take => self.act(super::Action::Take, services),
-            Ask::Give => self.act(super::Action::Give, services),
+            Ask::Take => self.act(super::HiperdriveAction::Take, services),
+            Ask::Give => self.act(super::HiperdriveAction::Give, services),
             Ask::Move(target) => {
                 let wish = MotionRequest::Move { target: *target, effort: Effort::JOG };
                 if let Err(why) = self.may(drive, wish) {

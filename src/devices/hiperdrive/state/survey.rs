@@ -7,7 +7,7 @@ use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved, WithMemory};
 use crate::app::{Marks, Severity, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
-use crate::devices::hiperdrive::procedures::{DriveLimits, Identity, LimitsSeen, Reading, Survey};
+use crate::devices::hiperdrive::procedures::{DriveLimits, DriveReading, Identity, LimitsSeen, Survey};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, State, Value};
 use crate::devices::hiperdrive::state::TEXTS;
@@ -134,7 +134,7 @@ impl Unit {
     }
 
     /// A drive was asked where it is.
-    pub(super) fn take_reading(&mut self, reading: Reading) {
+    pub(super) fn take_reading(&mut self, reading: DriveReading) {
         let before = self.actual(reading.drive).map(|own| own.status.state());
         self.readings.insert(reading.drive, reading);
         self.notice_fault(reading.drive, before);

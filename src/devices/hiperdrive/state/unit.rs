@@ -18,7 +18,7 @@ use crate::app::session::{Phase, Session, Source};
 use crate::app::{Marks, PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::procedures::{
-    DriveIdentity, DriveLimits, DriveStatus, Identity, Network, Reading, Status, Survey,
+    DriveIdentity, DriveLimits, DriveReading, DriveStatus, Identity, Network, Status, Survey,
 };
 use crate::devices::hiperdrive::profile::{HiperdriveProfile, Image, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{
@@ -66,7 +66,7 @@ pub struct Unit {
     /// Whether another window has marked limits since control was taken.
     pub(super) marks: Marks,
     /// The last reading of each drive without control.
-    pub(super) readings: BTreeMap<DriveNumber, Reading>,
+    pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
     /// Limits and scaling may be others than those that were read: control was taken since.
     pub(super) is_stale: bool,
     /// The polled drive.

@@ -13,26 +13,26 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Action as Run, Axis, Button, End, Entries, Reached, Seen, Step, end_lines, words,
+    Axis, AxisAction as Run, AxisStep, Button, End, Entries, Reached, Seen, end_lines, words,
 };
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     allowed_button, button, card, card_with, enabled_button, paragraph, primary, row, severity, split,
 };
-use crate::ui::widgets::{Step as Line, StepState, Steps, steps};
+use crate::ui::widgets::{StepRow as Line, StepState, Steps, steps};
 use crate::ui::{Theme, icons};
 
 /// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct AxisUiState {
     /// The step that is drawn, and since when, on the window's clock.
-    since: Option<(Step, f64)>,
+    since: Option<(AxisStep, f64)>,
 }
 
 impl AxisUiState {
     /// For how long a step has been drawn; zero: it is new.
-    fn age(&mut self, step: Step, now: f64) -> Duration {
+    fn age(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
         Duration::from_secs_f64((now - since).max(0.0))
@@ -128,7 +128,7 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
         ui.add_space(theme.space.between);
         // Lines of text, not of buttons.
         ui.spacing_mut().interact_size.y = ui.text_style_height(&egui::TextStyle::Body);
-        for (number, step) in (1..).zip(Step::ALL) {
+        for (number, step) in (1..).zip(AxisStep::ALL) {
             ui.horizontal(|ui| {
                 let size = egui::vec2(NUMBERS, ui.spacing().interact_size.y);
                 let layout = egui::Layout::right_to_left(egui::Align::Center);
@@ -141,7 +141,7 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
 
 /// All steps, with what was found in those that are done.
 fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
-    let line = |step: Step| {
+    let line = |step: AxisStep| {
         let reached = shown.axis.reached(step);
         let state = match reached {
             Reached::Done => StepState::Done,
@@ -152,7 +152,7 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
         };
         let told = matches!(reached, Reached::Done | Reached::Failed);
         let found = match (step, reached) {
-            (Step::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
+            (AxisStep::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
             _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
         };
         Line {
@@ -163,7 +163,7 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
             ..Line::default()
         }
     };
-    let lines: Vec<Line> = Step::ALL.into_iter().map(line).collect();
+    let lines: Vec<Line> = AxisStep::ALL.into_iter().map(line).collect();
     steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
@@ -177,9 +177,9 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     if let Err(left) = Axis::may_leave(shown.looked_at) {
         ui.ctx().request_repaint_after(left);
     }
-    let place = Step::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
+    let place = AxisStep::ALL.iter().position(|own| *own == step).map_or(0, |at| at + 1);
     let aside = |ui: &mut Ui| {
-        ui.label(theme.caption(format!("{place}/{}", Step::ALL.len())));
+        ui.label(theme.caption(format!("{place}/{}", AxisStep::ALL.len())));
         if shown.unit.drives().len() > 1 {
             let drive = TEXTS.text("hd_axis.of_drive").with("drive", axis.drive().get());
             ui.label(theme.caption(theme.words(&drive)));
@@ -220,11 +220,11 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
     }
     content::messages_ui(ui, theme, shown, entries);
     // The limits to be looked at stand large above.
-    if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != Step::Confirm) {
+    if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
         ui.add_space(theme.space.inside);
         row(ui, theme, &say(theme, "hd_axis.now"), unbroken(theme.words(&found)));
     }
-    if let (Step::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
+    if let (AxisStep::Request, Some(differences)) = (axis.step(), words::differences(seen)) {
         warning(ui, theme, &differences);
     }
 }
@@ -267,7 +267,7 @@ fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
         if button(ui, icons::X, &say(theme, "hd_axis.cancel")).clicked() {
             shown.push(actions, Run::Cancel);
         }
-        let word = say(theme, if step == Step::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
+        let word = say(theme, if step == AxisStep::PowerCycle { "hd_axis.finish" } else { "hd_axis.next" });
         at_the_right(ui, |ui| {
             if primary(ui, theme, settled && allowed.is_ok(), icons::CARET_RIGHT, &word).clicked() {
                 shown.push(actions, Run::Next);
@@ -280,7 +280,7 @@ fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
 fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if step.may_be_skipped() {
-        let id = if step == Step::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
+        let id = if step == AxisStep::Reference { "hd_axis.skip_reference" } else { "hd_axis.skip_power" };
         let allowed = Axis::may_leave(shown.looked_at).is_ok() && shown.axis.may_skip(shown.seen);
         if enabled_button(ui, allowed, "", &say(theme, id)).clicked() {
             shown.push(actions, Run::Skip);

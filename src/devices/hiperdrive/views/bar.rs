@@ -5,7 +5,7 @@ use egui::{RichText, Stroke, Ui, vec2};
 use super::outside;
 use crate::app::{Action, Studio};
 use crate::devices::hiperdrive::protocol::{DriveNumber, State};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, name, paragraph};
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};

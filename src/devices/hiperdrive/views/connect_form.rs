@@ -2,7 +2,7 @@
 
 use egui::Ui;
 
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{
     Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveWay, TEXTS, VirtualHub,

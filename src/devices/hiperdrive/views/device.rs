@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::Service;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};

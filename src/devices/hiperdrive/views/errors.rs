@@ -7,7 +7,7 @@ use crate::app::Action;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::Service;
 use crate::devices::hiperdrive::protocol::ErrorCode;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};
 use crate::ui::{Theme, icons};

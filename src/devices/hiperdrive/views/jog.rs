@@ -7,7 +7,7 @@ use super::outside;
 use crate::app::{Action, HoldEvent, SessionId};
 use crate::devices::hiperdrive::procedures::dead_man::Outside;
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, forms};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{allowed_button, card, paragraph, problem};

@@ -7,7 +7,7 @@ use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Lock, Motive, Phase};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, RunEnd, State};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,

@@ -8,7 +8,7 @@ use crate::buses::ethernet_ip::protocol::AddressSource;
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::state::network::{self, Form};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, TEXTS, Unit};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, empty, enabled_button, entry, mono_entry, options, paragraph, problem, row,

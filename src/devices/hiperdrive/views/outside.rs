@@ -6,7 +6,7 @@ use super::motion::length_ui;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Motor, TEXTS, Unit, forms};
+use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{allowed_button, paragraph, problem};
 use crate::ui::{Theme, icons};

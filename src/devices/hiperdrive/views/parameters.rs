@@ -10,7 +10,7 @@ use egui::{RichText, ScrollArea, Ui};
 use super::scale;
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, Row, Unit, forms};
+use crate::devices::hiperdrive::state::{Edit, HiperdriveAction as Hiperdrive, Row, Unit, forms};
 use crate::ui::controls::{empty, options, paragraph, text_entry};
 use crate::ui::widgets::{
     RegisterEvent, RegisterGroup, RegisterKind, RegisterLocation, RegisterRow, RegisterTable, RegisterView,

@@ -3,7 +3,9 @@
 use egui::Ui;
 
 use crate::app::{Action, Text};
-use crate::devices::hiperdrive::state::{Action as Hiperdrive, Edit, LimitsStay, Measure, TEXTS, Unit, forms};
+use crate::devices::hiperdrive::state::{
+    Edit, HiperdriveAction as Hiperdrive, LimitsStay, Measure, TEXTS, Unit, forms,
+};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, enabled_button, entry, options, paragraph, problem, row, settled_entry, text_entry};
 use crate::ui::{Theme, icons};

@@ -13,7 +13,7 @@ use crate::cli::runner::unexpected;
 use crate::cli::{Done, Failure, Result, check};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
-use crate::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step, Verdict};
+use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult, Verdict};
 use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, KIND};
 use crate::devices::hiperface::state::explain as words;
 use crate::result_of;
@@ -153,11 +153,11 @@ fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
     let lines =
         result_of!(Runner::open(common)?.run(HiperfaceJob::Check { restart })?, HiperfaceOutput::Check(lines) => lines);
     let quality = lines.iter().flat_map(|line| &line.findings).find_map(|finding| match finding {
-        Finding::Line(quality) => Some(quality),
+        CheckFinding::Line(quality) => Some(quality),
         _ => None,
     });
     // A line on which nothing had to be repeated is no step: scripts have its figures in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
-        lines.iter().filter(|own| own.step != Step::Line || own.verdict != Verdict::Good).cloned().collect();
+        lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
     check::show_with(output, &words::check(&shown), quality)
 }

@@ -10,7 +10,7 @@ use crate::cli::args::{Common, Find, Position};
 use crate::cli::consent::can_ask;
 use crate::cli::output::{Lines, Output};
 use crate::cli::positions::try_readings;
-use crate::cli::runner::{Ended, unexpected};
+use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::{Runner, codes_met};
 use crate::devices::hiperface::commands::table::Table;
@@ -235,7 +235,7 @@ fn show(
             }
             None => show_no_position(output, &error),
         },
-        Err(error) => Err(Ended::<Hiperface>::Job(error).into_failure()),
+        Err(error) => Err(JobFailure::<Hiperface>::Job(error).into_failure()),
     }
 }
 

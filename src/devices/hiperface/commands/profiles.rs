@@ -8,7 +8,7 @@ use super::write::{commit, operations, plan_text};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
-use crate::cli::profiles::{Left, keep, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, keep, say_mounting_left, to_restore, write_restore};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
@@ -87,7 +87,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.redo().iter().map(ToString::to_string).collect();
     let missing = prepared.missing.iter().map(ToString::to_string).collect();
-    let left = Left { unchanged: prepared.unchanged, missing, redo };
+    let left = Unrestored { unchanged: prepared.unchanged, missing, redo };
     let plan = shown(&prepared);
     write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

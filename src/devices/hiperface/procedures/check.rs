@@ -10,11 +10,11 @@ use crate::devices::hiperface::protocol::{DataFieldStatus, EncoderTypes, Positio
 pub use crate::analysis::check::Verdict;
 
 /// One line of the check.
-pub type HiperfaceStepResult = crate::analysis::check::StepResult<Step, Finding>;
+pub type HiperfaceStepResult = crate::analysis::check::StepResult<CheckStep, CheckFinding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum CheckStep {
     /// 53h and the waits after it.
     Restart,
     /// 50h until the queue is empty.
@@ -33,7 +33,7 @@ pub enum Step {
 
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum CheckFinding {
     Code(StatusCode),
     Position(Position),
     /// The position word, where periods and turns are not known.
@@ -82,17 +82,19 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
     let mut lines = Vec::new();
     let codes = if restart {
         let codes = reset(master)?;
-        lines.push(HiperfaceStepResult { step: Step::Restart, verdict: Verdict::Good, findings: Vec::new() });
+        lines.push(HiperfaceStepResult { step: CheckStep::Restart, verdict: Verdict::Good, findings: Vec::new() });
         codes
     } else {
         read_status(master)?
     };
-    lines.push(HiperfaceStepResult { step: Step::Status, verdict: verdict(&codes), findings: found(&codes) });
+    lines.push(HiperfaceStepResult { step: CheckStep::Status, verdict: verdict(&codes), findings: found(&codes) });
     let identity = identify(master, types)?;
     let known = if identity.geometry.is_some() { Verdict::Good } else { Verdict::Attention };
-    let findings =
-        vec![Finding::Name(identity.name.clone()), Finding::SerialNumber(identity.serial.serial_number.clone())];
-    lines.push(HiperfaceStepResult { step: Step::Identity, verdict: known, findings });
+    let findings = vec![
+        CheckFinding::Name(identity.name.clone()),
+        CheckFinding::SerialNumber(identity.serial.serial_number.clone()),
+    ];
+    lines.push(HiperfaceStepResult { step: CheckStep::Identity, verdict: known, findings });
     lines.push(check_position(master, &identity)?);
     lines.extend(check_limits(master, &identity)?);
     lines.push(check_fields(master, &identity)?);
@@ -101,13 +103,13 @@ pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Re
 }
 
 fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<HiperfaceStepResult, Error> {
-    let step = Step::Position;
+    let step = CheckStep::Position;
     let reading = read_position(master, identity.geometry);
     match tolerated(master, reading)? {
         Ok(reading) => {
             let mut findings = vec![match reading.position {
-                Some(position) => Finding::Position(position),
-                None => Finding::RawPosition(reading.raw),
+                Some(position) => CheckFinding::Position(position),
+                None => CheckFinding::RawPosition(reading.raw),
             }];
             findings.extend(found(&reading.codes));
             let verdict = if reading.valid { verdict(&reading.codes) } else { Verdict::Bad };
@@ -116,7 +118,9 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
         Err(Error::Rejected { codes, .. }) => {
             Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: found(&codes) })
         }
-        Err(why) => Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: vec![Finding::Unreadable(why)] }),
+        Err(why) => {
+            Ok(HiperfaceStepResult { step, verdict: Verdict::Bad, findings: vec![CheckFinding::Unreadable(why)] })
+        }
     }
 }
 
@@ -132,17 +136,17 @@ fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<H
                 if value > limit {
                     worst = worst.max(Verdict::Attention);
                 }
-                findings.push(Finding::Limit { channel, value, limit });
+                findings.push(CheckFinding::Limit { channel, value, limit });
             }
             // The encoder does not have the channel.
             Err(Error::Rejected { .. }) => {}
             Err(why) => {
                 worst = Verdict::Bad;
-                findings.push(Finding::Unreadable(why));
+                findings.push(CheckFinding::Unreadable(why));
             }
         }
     }
-    Ok((!findings.is_empty()).then_some(HiperfaceStepResult { step: Step::Limits, verdict: worst, findings }))
+    Ok((!findings.is_empty()).then_some(HiperfaceStepResult { step: CheckStep::Limits, verdict: worst, findings }))
 }
 
 fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<HiperfaceStepResult, Error> {
@@ -150,29 +154,29 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     let mut verdict = Verdict::Good;
     for number in 0..identity.memory.map_or(0, |memory| memory.fields) {
         match try_read_field(master, number)? {
-            Ok(field) if field.bytes.is_some() => findings.push(Finding::Field { number, status: field.status }),
+            Ok(field) if field.bytes.is_some() => findings.push(CheckFinding::Field { number, status: field.status }),
             Ok(field) => {
-                findings.push(Finding::FieldLocked { number, status: field.status });
+                findings.push(CheckFinding::FieldLocked { number, status: field.status });
                 verdict = verdict.max(Verdict::Attention);
             }
             Err(UnreadableField { why: Error::Rejected { codes, .. }, .. }) => {
-                findings.push(Finding::FieldRefused { number, codes });
+                findings.push(CheckFinding::FieldRefused { number, codes });
                 verdict = Verdict::Bad;
             }
             Err(UnreadableField { why, .. }) => {
-                findings.push(Finding::FieldUnreadable { number, why });
+                findings.push(CheckFinding::FieldUnreadable { number, why });
                 verdict = Verdict::Bad;
             }
         }
     }
-    Ok(HiperfaceStepResult { step: Step::DataFields, verdict, findings })
+    Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
 /// Checks the line. One on which something had to be repeated works, but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };
-    HiperfaceStepResult { step: Step::Line, verdict, findings: vec![Finding::Line(quality)] }
+    HiperfaceStepResult { step: CheckStep::Line, verdict, findings: vec![CheckFinding::Line(quality)] }
 }
 
 fn verdict(codes: &[StatusCode]) -> Verdict {
@@ -185,6 +189,6 @@ fn verdict(codes: &[StatusCode]) -> Verdict {
     }
 }
 
-fn found(codes: &[StatusCode]) -> Vec<Finding> {
-    codes.iter().copied().map(Finding::Code).collect()
+fn found(codes: &[StatusCode]) -> Vec<CheckFinding> {
+    codes.iter().copied().map(CheckFinding::Code).collect()
 }

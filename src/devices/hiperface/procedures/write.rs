@@ -19,11 +19,11 @@ use crate::profile::Write;
 type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
 
 /// A write that ended early.
-pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, Left>;
+pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
 /// In which state an encoder was left.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Left {
+pub struct EndState {
     /// Fields that should be write protected and are not, because the encoder could no longer be reached.
     pub unlocked: Vec<u8>,
 }
@@ -32,13 +32,13 @@ pub struct Left {
 pub struct EncoderWrite<'w, 'm> {
     master: Master<'m>,
     identity: &'w Identity,
-    left: Left,
+    left: EndState,
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
     /// The encoder for which the plan was made has this identity.
     pub fn new(master: Master<'m>, identity: &'w Identity) -> Self {
-        EncoderWrite { master, identity, left: Left::default() }
+        EncoderWrite { master, identity, left: EndState::default() }
     }
 }
 
@@ -47,7 +47,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = Left;
+    type Left = EndState;
 
     /// Two new encoders have the same memory: it has to be the one for which the plan was made.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
@@ -109,7 +109,7 @@ impl Write for EncoderWrite<'_, '_> {
         ended
     }
 
-    fn left(&mut self, _: &Error) -> Left {
+    fn left(&mut self, _: &Error) -> EndState {
         std::mem::take(&mut self.left)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::action::Action;
+use super::action::HiperfaceAction;
 use super::encoder::Encoder;
 use super::write::with_options;
 use crate::app::Text;
@@ -19,40 +19,42 @@ const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: HiperfaceAction, services: &mut Services) {
         match action {
-            Action::ReadStatus => self.submit(HiperfaceJob::Status, services),
-            Action::Watch(what, on) => self.watch(what, on),
-            Action::ReadAnalogue(channel) => self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services),
-            Action::ReadRest => self.read_rest(services),
-            Action::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
-            Action::Check { restart } => {
+            HiperfaceAction::ReadStatus => self.submit(HiperfaceJob::Status, services),
+            HiperfaceAction::Watch(what, on) => self.watch(what, on),
+            HiperfaceAction::ReadAnalogue(channel) => {
+                self.submit(HiperfaceJob::Read(Item::Analogue(channel)), services)
+            }
+            HiperfaceAction::ReadRest => self.read_rest(services),
+            HiperfaceAction::ReadCounter => self.submit(HiperfaceJob::Read(Item::Counter), services),
+            HiperfaceAction::Check { restart } => {
                 let then = self.stored_settings().filter(|_| restart);
                 self.submit_to_settings(HiperfaceJob::Check { restart }, then, services);
             }
-            Action::Reset => self.submit_to_settings(HiperfaceJob::Reset, self.stored_settings(), services),
-            Action::ConfigureForNow(settings) => {
+            HiperfaceAction::Reset => self.submit_to_settings(HiperfaceJob::Reset, self.stored_settings(), services),
+            HiperfaceAction::ConfigureForNow(settings) => {
                 self.submit_to_settings(HiperfaceJob::ConfigureForNow(settings), Some(settings), services);
             }
-            Action::UseCode { number, code } => {
+            HiperfaceAction::UseCode { number, code } => {
                 if self.try_submit(HiperfaceJob::UseCode { number, code }, services) {
                     self.tried_code = Some(number);
                     self.know_code(number, code);
                 }
             }
-            Action::Put { field, address, bytes } => self.put(field, address, &bytes, services),
-            Action::Revert(range) => self.staged.revert_range(range),
-            Action::Plan(change) => self.plan(change, services),
-            Action::PlanAgain(options) => {
+            HiperfaceAction::Put { field, address, bytes } => self.put(field, address, &bytes, services),
+            HiperfaceAction::Revert(range) => self.staged.revert_range(range),
+            HiperfaceAction::Plan(change) => self.plan(change, services),
+            HiperfaceAction::PlanAgain(options) => {
                 if let Some(review) = &self.session.review {
                     self.plan_again(with_options(&review.change, options), services);
                 }
             }
-            Action::ForceWear(force) => self.force_wear(force),
-            Action::Write(plan) => self.write(plan, services),
-            Action::CloseReview => self.close_review(),
-            Action::Save(path) => self.save(path, services),
-            Action::Commutation(action) => self.act_commutation(action, services),
+            HiperfaceAction::ForceWear(force) => self.force_wear(force),
+            HiperfaceAction::Write(plan) => self.write(plan, services),
+            HiperfaceAction::CloseReview => self.close_review(),
+            HiperfaceAction::Save(path) => self.save(path, services),
+            HiperfaceAction::Commutation(action) => self.act_commutation(action, services),
         }
     }
 

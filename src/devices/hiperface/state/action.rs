@@ -11,7 +11,7 @@ use crate::devices::hiperface::protocol::{AccessCode, CodeNumber, LineSettings};
 use crate::profile::PlanId;
 
 /// Something in the HIPERFACE tab.
-pub enum Action {
+pub enum HiperfaceAction {
     /// Read the error queue.
     ReadStatus,
     /// While the position is read all the time, read this too, or no more.
@@ -57,7 +57,7 @@ pub enum Action {
     /// Save the profile.
     Save(PathBuf),
     /// The commutation assistant.
-    Commutation(commutation::Action),
+    Commutation(commutation::CommutationAction),
 }
 
-impl DeviceAction for Action {}
+impl DeviceAction for HiperfaceAction {}

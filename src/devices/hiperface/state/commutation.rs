@@ -23,7 +23,7 @@ pub use outcome::{Offset, Setting, Stored, may_read, stored};
 pub use report::kind_words;
 
 /// An action of the assistant.
-pub enum Action {
+pub enum CommutationAction {
     /// The form was edited.
     Edit(Box<Form>),
     /// Read the position at rest.
@@ -44,7 +44,7 @@ pub struct Commutation {
     pub form: Form,
     /// Why the last action was not carried out.
     pub problem: Option<Text>,
-    readings: [Option<Reading>; 3],
+    readings: [Option<RestReading>; 3],
     /// The last position read: the shaft is still there, as far as is known.
     last: Option<Slot>,
     /// The reading that is under way.
@@ -62,7 +62,7 @@ struct Asked {
 
 /// A position at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct RestReading {
     /// The position in periods, in the whole range of the encoder.
     pub fine_periods: f64,
     /// How it was obtained.
@@ -89,7 +89,7 @@ pub enum Kind {
 
 impl Commutation {
     /// The position for a slot.
-    pub fn reading(&self, slot: Slot) -> Option<&Reading> {
+    pub fn reading(&self, slot: Slot) -> Option<&RestReading> {
         let [one, other, second] = &self.readings;
         match slot {
             Slot::OneSide => one,
@@ -109,7 +109,7 @@ impl Commutation {
         self.asked = Some(Asked { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
 
-    fn note(&mut self, slot: Slot, reading: Reading) {
+    fn note(&mut self, slot: Slot, reading: RestReading) {
         let [one, other, second] = &mut self.readings;
         let place = match slot {
             Slot::OneSide => one,
@@ -151,18 +151,18 @@ impl Commutation {
 
     fn use_typed(&mut self, slot: Slot) {
         match self.form.fine(slot) {
-            Ok(fine_periods) => self.note(slot, Reading { fine_periods, kind: Kind::Typed, raw: None }),
+            Ok(fine_periods) => self.note(slot, RestReading { fine_periods, kind: Kind::Typed, raw: None }),
             Err(why) => self.problem = Some(why),
         }
     }
 }
 
 impl Asked {
-    fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<Reading, Text> {
+    fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<RestReading, Text> {
         if !rest.valid {
             return Err(Text::new("commutation.invalid"));
         }
-        let absolute = Reading {
+        let absolute = RestReading {
             fine_periods: (f64::from(rest.raw) + 0.5) / f64::from(STEPS_PER_PERIOD),
             kind: Kind::Absolute,
             raw: Some(rest.raw),
@@ -184,7 +184,7 @@ impl Asked {
 }
 
 /// Absolute position and phase brought together; a residual beyond 14/32 is no agreement.
-fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<Reading, Text> {
+fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
     // An unknown range does not wrap.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
@@ -196,7 +196,7 @@ fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f
     }
     let kind =
         Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };
-    Ok(Reading { fine_periods: told.periods(), kind, raw: Some(raw) })
+    Ok(RestReading { fine_periods: told.periods(), kind, raw: Some(raw) })
 }
 
 #[cfg(test)]
@@ -210,7 +210,7 @@ mod tests {
         Rest { raw, valid: true, signals: volts.map(|(sine_v, cosine_v)| Signals { sine_v, cosine_v }) }
     }
 
-    fn read(source: Source, phase: &str, rest: Rest) -> Result<Reading, &'static str> {
+    fn read(source: Source, phase: &str, rest: Rest) -> Result<RestReading, &'static str> {
         let asked = Asked { slot: Slot::OneSide, source, phase: phase.to_owned() };
         asked.reading(rest, SKM36).map_err(|text| text.id())
     }

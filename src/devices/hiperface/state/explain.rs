@@ -242,13 +242,13 @@ fn code_unknown(field: u8, number: impl ToString) -> Text {
 mod tests {
     use super::*;
     use crate::app::Language;
-    use crate::devices::hiperface::procedures::write::Left;
+    use crate::devices::hiperface::procedures::write::EndState;
     use crate::link::{LinkError, LinkErrorKind};
 
     fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
         let ops = usize::try_from(write_cycles).unwrap();
         let done = Written { ops, write_cycles, ..Written::default() };
-        Interrupted { done, unfinished: None, cause, left: Left::default() }
+        Interrupted { done, unfinished: None, cause, left: EndState::default() }
     }
 
     #[test]

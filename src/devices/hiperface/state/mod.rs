@@ -27,7 +27,7 @@ mod write;
 
 pub use texts::TEXTS;
 
-pub use action::Action;
+pub use action::HiperfaceAction;
 pub use connect_form::{LinkForm, LinkKind};
 pub use encoder::Encoder;
 pub use record::{Record, watch_name};

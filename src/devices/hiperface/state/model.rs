@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use super::{Action, Encoder};
+use super::{Encoder, HiperfaceAction};
 use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services, World};
 use crate::app::session::SessionEvents;
@@ -12,7 +12,7 @@ use crate::devices::hiperface::procedures::AccessCodes;
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Hiperface");
-    type Action = Action;
+    type Action = HiperfaceAction;
     type Done = Infallible;
 
     fn prepare(&self, world: &World) -> Prepare<Hiperface> {
@@ -30,7 +30,7 @@ impl DeviceModel for Encoder {
         self.read_encoder(services);
     }
 
-    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: HiperfaceAction, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 

@@ -1,6 +1,6 @@
 //! Reading the shaft at rest, for the commutation assistant or on request.
 
-use super::{Action, Encoder};
+use super::{Encoder, HiperfaceAction};
 use crate::app::services::Services;
 use crate::app::session::SessionEvents;
 use crate::app::{SineCosineOrigin, SineCosineRange, SineCosineReading, SineCosineSource, SineCosineVolts, Text};
@@ -57,7 +57,7 @@ impl SineCosineSource for Encoder {
     }
 
     fn read_action(&self) -> crate::app::Action {
-        crate::app::Action::device(self.session.id, Action::ReadRest)
+        crate::app::Action::device(self.session.id, HiperfaceAction::ReadRest)
     }
 
     fn origin(&self) -> SineCosineOrigin {

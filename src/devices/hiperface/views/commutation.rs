@@ -7,9 +7,9 @@ use egui::{RichText, Ui};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, Text};
 use crate::devices::hiperface::state::commutation::{
-    Action as Assistant, Form, Slot, Source, Vector, kind_words, may_read,
+    CommutationAction as Assistant, Form, Slot, Source, Vector, kind_words, may_read,
 };
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     allowed_button, card, card_with, choice, entry, icon_button, labelled_entry, paragraph, row, split, text_entry,

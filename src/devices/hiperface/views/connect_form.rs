@@ -8,7 +8,7 @@ use crate::devices::hiperface::views::say;
 use egui::Ui;
 
 use crate::app::Action;
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use crate::devices::hiperface::procedures::find::FindOptions;
 use crate::devices::hiperface::protocol::BAUDS;
 use crate::devices::hiperface::state::explain as words;

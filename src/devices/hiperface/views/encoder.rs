@@ -6,7 +6,7 @@ use super::wiring;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::hiperface::procedures::Identity;
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, empty, enabled_button, paragraph, row, two_columns};

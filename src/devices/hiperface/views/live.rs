@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, Rgb};
 use crate::devices::hiperface::procedures::Watch;
-use crate::devices::hiperface::state::{self, Action as Hiperface, Encoder};
+use crate::devices::hiperface::state::{self, Encoder, HiperfaceAction as Hiperface};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{enabled_button, icon_menu, paragraph, row, text_entry};
 use crate::ui::panels::live::{LOW, mark};

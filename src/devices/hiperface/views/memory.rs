@@ -9,7 +9,7 @@ use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
 use crate::devices::hiperface::protocol::{CodeNumber, DataFieldStatus, FieldSize, FreeMemory};
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, Staged, TEXTS, forms, rules};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, Staged, TEXTS, forms, rules};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
 use crate::ui::widgets::{

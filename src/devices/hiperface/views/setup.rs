@@ -7,7 +7,7 @@ use crate::app::{Action, Text, explain};
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::protocol::{BAUDS, CodeNumber, LineSettings};
 use crate::devices::hiperface::state::explain as words;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS, forms};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{
     card, choice, enabled_button, entry, forget_secret, paragraph, problem, row, secret_entry, text_entry, two_columns,

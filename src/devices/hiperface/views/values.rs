@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
 use crate::devices::hiperface::jobs::Change;
-use crate::devices::hiperface::state::{Action as Hiperface, Encoder, TEXTS, forms};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, TEXTS, forms};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{card, card_with, enabled_button, entry, paragraph, text_entry, two_columns};
 use crate::ui::{Theme, icons};

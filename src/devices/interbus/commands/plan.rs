@@ -7,7 +7,7 @@ use crate::cli::Result;
 use crate::cli::args::Consenting;
 use crate::cli::consent::{agreed, check_wear};
 use crate::cli::output::Output;
-use crate::cli::plan::{PlanReport, Step, WriteSummary};
+use crate::cli::plan::{PlanReport, PlanStep, WriteSummary};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob, InterbusOutput, Prepared, WEAR_LIMIT, Wear};
 use crate::devices::interbus::profile::{InterbusPlan, Op, programs_needed};
 use crate::devices::interbus::protocol::{Parameter, ProgramNumber};
@@ -77,13 +77,14 @@ pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }
 
-fn steps(op: &Op) -> Vec<Step> {
+fn steps(op: &Op) -> Vec<PlanStep> {
     let cost = op.write_cycles();
-    let last = |item: &str, new: String| Step { item: item.to_owned(), old: None, new: Some(new), write_cycles: cost };
-    let mut steps: Vec<Step> = op
+    let last =
+        |item: &str, new: String| PlanStep { item: item.to_owned(), old: None, new: Some(new), write_cycles: cost };
+    let mut steps: Vec<PlanStep> = op
         .steps()
         .into_iter()
-        .map(|step| Step { item: step.name, old: Some(step.from), new: Some(step.to), write_cycles: 0 })
+        .map(|step| PlanStep { item: step.name, old: Some(step.from), new: Some(step.to), write_cycles: 0 })
         .collect();
     steps.push(match op {
         Op::Parameterise(_) => last("parameters", "stored".to_owned()),

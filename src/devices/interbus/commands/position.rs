@@ -10,7 +10,7 @@ use crate::cli::args::{Common, Position};
 use crate::cli::output::Output;
 use crate::cli::positions::readings;
 use crate::devices::interbus::jobs::{InterbusJob, InterbusOutput};
-use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::result_of;
 
@@ -33,7 +33,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     })
 }
 
-fn show(output: &Output, reading: &Reading) -> Result<()> {
+fn show(output: &Output, reading: &WordReading) -> Result<()> {
     let t = reading.at.since_start().as_secs_f64();
     let place = reading.place();
     let cams = reading.cams().map(|own| on(own.outputs));
@@ -63,7 +63,7 @@ fn on(outputs: u8) -> Vec<u8> {
     CamNumber::all().map(CamNumber::get).filter(|cam| outputs >> cam & 1 != 0).collect()
 }
 
-fn words(reading: &Reading, cams: Option<&[u8]>) -> String {
+fn words(reading: &WordReading, cams: Option<&[u8]>) -> String {
     if !reading.is_valid() {
         return "not valid".to_owned();
     }
@@ -87,7 +87,7 @@ fn words(reading: &Reading, cams: Option<&[u8]>) -> String {
     }
 }
 
-fn row(reading: &Reading) -> String {
+fn row(reading: &WordReading) -> String {
     let place = reading.place();
     let column = |number: Option<String>| number.unwrap_or_default();
     format!(

@@ -7,7 +7,7 @@ use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Left, keep, restore_options, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, keep, restore_options, say_mounting_left, to_restore, write_restore};
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
@@ -90,7 +90,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
-    let left = Left { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
+    let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };
     let plan = shown(&prepared);
     write_restore(output, restore, &plan, &left, || commit(&mut runner, output, prepared, &restore.consent))
 }

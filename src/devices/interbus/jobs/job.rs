@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::devices::interbus::procedures::check::InterbusStepResult;
 use crate::devices::interbus::procedures::write::{Interrupted, Written};
-use crate::devices::interbus::procedures::{Error, Handshake, Identity, Reading, Status, Survey};
+use crate::devices::interbus::procedures::{Error, Handshake, Identity, Status, Survey, WordReading};
 use crate::devices::interbus::profile::{
     Image, InterbusPlan, InterbusProfile, Item, ItemValue, OtherType, Parameters, PlanError, RestoreOptions,
 };
@@ -203,13 +203,13 @@ impl fmt::Display for JobStep {
 /// The result of a job.
 #[derive(Debug)]
 pub enum InterbusOutput {
-    Hello(Reading),
+    Hello(WordReading),
     Surveyed(Box<Survey>),
     Programs(Vec<(ProgramNumber, Program)>, WindowShift),
     Identity(Box<Identity>),
     Status(Box<Status>),
     Check(Vec<InterbusStepResult>),
-    Position(Reading),
+    Position(WordReading),
     Item(ItemValue),
     ReadOut(ReadOut, Value),
     /// With the mode that it says to be in.

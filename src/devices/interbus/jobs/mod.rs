@@ -20,7 +20,7 @@ use journal::Notes;
 
 use crate::devices::interbus::procedures::check::{Wear as Limits, check as check_device};
 use crate::devices::interbus::procedures::{
-    Error, Handshake, Identity, Master, Reading, SaveStep, Station, identify, read_item, read_one, read_programs,
+    Error, Handshake, Identity, Master, SaveStep, Station, WordReading, identify, read_item, read_one, read_programs,
     read_status, save, select, survey,
 };
 use crate::link::{ByteLink, Clock, LinkError};
@@ -83,7 +83,7 @@ impl Device for Interbus {
     type Output = InterbusOutput;
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
-    type Sample = Reading;
+    type Sample = WordReading;
     /// Nothing can be watched: every other value replaces the position.
     type Watch = Infallible;
     type JobStep = JobStep;
@@ -139,11 +139,11 @@ impl Device for Interbus {
         }
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Reading, JobError> {
+    fn sample(&mut self, desk: &mut SessionContext) -> Result<WordReading, JobError> {
         Ok(self.master(desk, |_| {}).reading()?)
     }
 
-    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<Reading>, JobError> {
+    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<WordReading>, JobError> {
         match *what {}
     }
 

@@ -12,11 +12,11 @@ use crate::devices::interbus::protocol::{ErrorWord, ReadOut, Reply, StartupMode}
 pub use crate::analysis::check::{Verdict, Wear};
 
 /// One line of the check.
-pub type InterbusStepResult = check::StepResult<Step, Finding>;
+pub type InterbusStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum CheckStep {
     /// The gateway answers.
     Gateway,
     /// The order of the two halves of a word.
@@ -34,7 +34,7 @@ pub enum Step {
 
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum CheckFinding {
     /// The IN word was read so often, within so long a reply each.
     Replies {
         /// Number of requests.
@@ -122,15 +122,17 @@ pub fn check(
             let asked = survey.read_outs().count() as u64;
             let each_ms = master.now().since(begun).as_millis() as u64 / asked.max(1);
             lines.push(InterbusStepResult::of(
-                Step::Handshake,
-                vec![(Verdict::Good, Finding::ReadOuts { asked, each_ms })],
+                CheckStep::Handshake,
+                vec![(Verdict::Good, CheckFinding::ReadOuts { asked, each_ms })],
             ));
             lines.push(identity(&survey));
             lines.push(temperature(survey.temperature_tenths));
             lines.extend(worn(wear(&survey.identity)));
         }
         Err(error) if error.is_lost() || error.is_cancelled() => return Err(error),
-        Err(error) => lines.push(InterbusStepResult::of(Step::Handshake, vec![(Verdict::Bad, Finding::Failed(error))])),
+        Err(error) => {
+            lines.push(InterbusStepResult::of(CheckStep::Handshake, vec![(Verdict::Bad, CheckFinding::Failed(error))]))
+        }
     }
     Ok(lines)
 }
@@ -144,25 +146,27 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
         slowest = slowest.max(master.now().since(begun));
     }
     let slowest_ms = slowest.as_millis() as u64;
-    let answers =
-        InterbusStepResult::of(Step::Gateway, vec![(Verdict::Good, Finding::Replies { asked: LOOKS, slowest_ms })]);
+    let answers = InterbusStepResult::of(
+        CheckStep::Gateway,
+        vec![(Verdict::Good, CheckFinding::Replies { asked: LOOKS, slowest_ms })],
+    );
     let (order, fits) = match master.suspected_order(word)? {
-        Some(swapped) => ((Verdict::Bad, Finding::OrderSwapped { input: word, swapped }), false),
-        None => ((Verdict::Good, Finding::OrderFits), true),
+        Some(swapped) => ((Verdict::Bad, CheckFinding::OrderSwapped { input: word, swapped }), false),
+        None => ((Verdict::Good, CheckFinding::OrderFits), true),
     };
     let (input, free) = match Reply::parse(word) {
-        Reply::Run { stray: 0, .. } => ((Verdict::Good, Finding::Runs(word)), true),
-        Reply::Run { .. } => ((Verdict::Attention, Finding::Stray(word)), true),
-        Reply::Error(error) => ((Verdict::Bad, Finding::Error(error)), true),
-        Reply::ReadOut(_) | Reply::UnknownReadOut(_) => ((Verdict::Attention, Finding::Occupied(word)), false),
+        Reply::Run { stray: 0, .. } => ((Verdict::Good, CheckFinding::Runs(word)), true),
+        Reply::Run { .. } => ((Verdict::Attention, CheckFinding::Stray(word)), true),
+        Reply::Error(error) => ((Verdict::Bad, CheckFinding::Error(error)), true),
+        Reply::ReadOut(_) | Reply::UnknownReadOut(_) => ((Verdict::Attention, CheckFinding::Occupied(word)), false),
         Reply::Echo { .. } | Reply::Busy { .. } | Reply::Unknown { .. } => {
-            ((Verdict::Bad, Finding::Occupied(word)), false)
+            ((Verdict::Bad, CheckFinding::Occupied(word)), false)
         }
     };
     let lines = vec![
         answers,
-        InterbusStepResult::of(Step::WordOrder, vec![order]),
-        InterbusStepResult::of(Step::InputWord, vec![input]),
+        InterbusStepResult::of(CheckStep::WordOrder, vec![order]),
+        InterbusStepResult::of(CheckStep::InputWord, vec![input]),
     ];
     Ok((lines, fits && free))
 }
@@ -171,32 +175,32 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
 fn identity(survey: &Survey) -> InterbusStepResult {
     let identity = &survey.identity;
     let mut findings = vec![
-        (Verdict::Good, Finding::SerialNumber(identity.serial_number.clone())),
-        (Verdict::Good, Finding::SoftwareVersion(identity.software_version)),
-        (Verdict::Good, Finding::Mode(identity.mode)),
+        (Verdict::Good, CheckFinding::SerialNumber(identity.serial_number.clone())),
+        (Verdict::Good, CheckFinding::SoftwareVersion(identity.software_version)),
+        (Verdict::Good, CheckFinding::Mode(identity.mode)),
     ];
     match identity.gear() {
         Ok(gear) => {
-            findings.push((Verdict::Good, Finding::Gear { steps: gear.steps(), turns: gear.turns() }));
+            findings.push((Verdict::Good, CheckFinding::Gear { steps: gear.steps(), turns: gear.turns() }));
             let (preset, last) = (survey.parameters.preset, gear.steps() - 1);
             if preset > last {
-                findings.push((Verdict::Attention, Finding::PresetBeyond { preset, last }));
+                findings.push((Verdict::Attention, CheckFinding::PresetBeyond { preset, last }));
             }
         }
-        Err(why) => findings.push((Verdict::Bad, Finding::Implausible(why))),
+        Err(why) => findings.push((Verdict::Bad, CheckFinding::Implausible(why))),
     }
     if identity.flags.steps_minus_one() {
-        findings.push((Verdict::Attention, Finding::StepsMinusOne));
+        findings.push((Verdict::Attention, CheckFinding::StepsMinusOne));
     }
-    InterbusStepResult::of(Step::Identity, findings)
+    InterbusStepResult::of(CheckStep::Identity, findings)
 }
 
 fn temperature(tenths: i32) -> InterbusStepResult {
     let verdict = if TEMPERATURES.contains(&tenths) { Verdict::Good } else { Verdict::Attention };
-    InterbusStepResult::of(Step::Temperature, vec![(verdict, Finding::Temperature(tenths))])
+    InterbusStepResult::of(CheckStep::Temperature, vec![(verdict, CheckFinding::Temperature(tenths))])
 }
 
 fn worn(wear: Wear) -> Option<InterbusStepResult> {
     let (verdict, seen) = wear.judged()?;
-    Some(InterbusStepResult::of(Step::Wear, vec![(verdict, Finding::Wear { seen, limit: wear.limit })]))
+    Some(InterbusStepResult::of(CheckStep::Wear, vec![(verdict, CheckFinding::Wear { seen, limit: wear.limit })]))
 }

@@ -10,7 +10,7 @@ use crate::profile::DeviceError;
 
 /// A request to a gateway.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Asked {
+pub enum RequestedItem {
     /// The IN word: two input registers, function 4.
     Input {
         /// The first of them.
@@ -29,30 +29,34 @@ pub enum Asked {
     },
 }
 
-impl Asked {
+impl RequestedItem {
     /// The function of Modbus.
     pub const fn function(self) -> u8 {
         match self {
-            Asked::Input { .. } => 4,
-            Asked::Output { .. } => 3,
-            Asked::Write { .. } => 16,
+            RequestedItem::Input { .. } => 4,
+            RequestedItem::Output { .. } => 3,
+            RequestedItem::Write { .. } => 16,
         }
     }
 
     /// The first register.
     pub const fn register(self) -> u16 {
         match self {
-            Asked::Input { register } | Asked::Output { register } | Asked::Write { register, .. } => register,
+            RequestedItem::Input { register }
+            | RequestedItem::Output { register }
+            | RequestedItem::Write { register, .. } => register,
         }
     }
 }
 
-impl fmt::Display for Asked {
+impl fmt::Display for RequestedItem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Asked::Input { register } => write!(f, "reading the IN word from input register {register}"),
-            Asked::Output { register } => write!(f, "reading the OUT word from holding register {register}"),
-            Asked::Write { register, word } => write!(f, "writing OUT {word:08X} to holding register {register}"),
+            RequestedItem::Input { register } => write!(f, "reading the IN word from input register {register}"),
+            RequestedItem::Output { register } => write!(f, "reading the OUT word from holding register {register}"),
+            RequestedItem::Write { register, word } => {
+                write!(f, "writing OUT {word:08X} to holding register {register}")
+            }
         }
     }
 }
@@ -190,14 +194,14 @@ pub enum Error {
     /// The gateway does not answer.
     #[error("the gateway does not answer while {asked} ({tries} tries)")]
     NoReply {
-        asked: Asked,
+        asked: RequestedItem,
         /// Number of attempts.
         tries: u32,
     },
     /// Every reply is damaged.
     #[error("damaged reply while {asked} ({tries} tries): {cause}")]
     Damaged {
-        asked: Asked,
+        asked: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
@@ -209,7 +213,7 @@ pub enum Error {
     /// It refuses.
     #[error("the gateway refuses {asked}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception {
-        asked: Asked,
+        asked: RequestedItem,
         /// Its code.
         exception: Exception,
     },

@@ -10,7 +10,7 @@ use rmodbus::{ModbusProto, guess_response_frame_len};
 
 use super::LinkParameters;
 use super::data::ProcessData;
-use super::error::{Asked, Damage, Exception};
+use super::error::{Damage, Exception, RequestedItem};
 use super::station::Station;
 use super::{Error, Known};
 use crate::bits::MaskedBytes;
@@ -77,7 +77,7 @@ impl<'a> Gateway<'a> {
     }
 
     /// Asks, and again where that may help.
-    fn ask(&mut self, asked: Asked) -> Result<Vec<u16>, Error> {
+    fn ask(&mut self, asked: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -116,7 +116,7 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn ask_once(&mut self, asked: Asked) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
+    fn ask_once(&mut self, asked: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
         // Not 0: what answers without looking at the number has it.
@@ -161,7 +161,7 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn request(&self, asked: Asked, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
+    fn request(&self, asked: RequestedItem, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
         request(asked, self.link.unit, number, self.link.order)
     }
 
@@ -183,7 +183,7 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn read(&mut self, asked: Asked) -> Result<u32, Error> {
+    fn read(&mut self, asked: RequestedItem) -> Result<u32, Error> {
         match *self.ask(asked)?.as_slice() {
             [first, second] => Ok(self.link.order.word([first, second])),
             _ => Err(Error::Damaged { asked, tries: 1, cause: Damage::Registers }),
@@ -192,13 +192,13 @@ impl<'a> Gateway<'a> {
 }
 
 /// The frame of a request.
-fn request(asked: Asked, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
+fn request(asked: RequestedItem, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
     let mut request = ModbusRequest::new_tcp_udp(unit, number);
     let mut bytes = Vec::new();
     let made = match asked {
-        Asked::Input { register } => request.generate_get_inputs(register, 2, &mut bytes),
-        Asked::Output { register } => request.generate_get_holdings(register, 2, &mut bytes),
-        Asked::Write { register, word } => {
+        RequestedItem::Input { register } => request.generate_get_inputs(register, 2, &mut bytes),
+        RequestedItem::Output { register } => request.generate_get_holdings(register, 2, &mut bytes),
+        RequestedItem::Write { register, word } => {
             request.generate_set_holdings_bulk(register, &order.registers(word), &mut bytes)
         }
     };
@@ -232,20 +232,20 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
 }
 
 /// Parses the request of a frame in the trace, with its number and its unit.
-fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, Asked)> {
+fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
     let asked = match (function, carried(true, sent, order)) {
-        (4, _) => Asked::Input { register },
-        (3, _) => Asked::Output { register },
-        (_, Some(Carried::Out(word))) => Asked::Write { register, word },
+        (4, _) => RequestedItem::Input { register },
+        (3, _) => RequestedItem::Output { register },
+        (_, Some(Carried::Out(word))) => RequestedItem::Write { register, word },
         _ => return None,
     };
     Some((u16::from_be_bytes([number_high, number_low]), unit, asked))
 }
 
 /// Parses a reply with the right number.
-fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
+fn judge(request: &ModbusRequest, asked: RequestedItem, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
     let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
     // A recording has the number of its own request.
     frame.splice(..2, request.tr_id.to_be_bytes());
@@ -264,10 +264,10 @@ fn judge(request: &ModbusRequest, asked: Asked, mut frame: Vec<u8>) -> Result<Ve
     let body = frame.get(HEADER + 1..).unwrap_or_default();
     let mut registers: Vec<u16> = Vec::new();
     let fits = match asked {
-        Asked::Input { .. } | Asked::Output { .. } => {
+        RequestedItem::Input { .. } | RequestedItem::Output { .. } => {
             matches!(body, [4, _, _, _, _]) && request.parse_u16(&frame, &mut registers).is_ok()
         }
-        Asked::Write { register, .. } => {
+        RequestedItem::Write { register, .. } => {
             let [high, low] = register.to_be_bytes();
             body == [high, low, 0, 2] && request.parse_ok(&frame).is_ok()
         }
@@ -280,7 +280,7 @@ impl ProcessData for Gateway<'_> {
         if self.written != Some(out) {
             // It may have been written when its reply is lost.
             self.written = None;
-            self.ask(Asked::Write { register: self.link.output, word: out })?;
+            self.ask(RequestedItem::Write { register: self.link.output, word: out })?;
             self.written = Some(out);
         }
         self.line.wait(self.link.cycle)?;
@@ -288,11 +288,11 @@ impl ProcessData for Gateway<'_> {
     }
 
     fn input(&mut self) -> Result<u32, Error> {
-        self.read(Asked::Input { register: self.link.input })
+        self.read(RequestedItem::Input { register: self.link.input })
     }
 
     fn output(&mut self) -> Result<Option<u32>, Error> {
-        match self.read(Asked::Output { register: self.link.output }) {
+        match self.read(RequestedItem::Output { register: self.link.output }) {
             Ok(word) => Ok(Some(word)),
             Err(Error::Exception { .. }) => Ok(None),
             Err(error) => Err(error),

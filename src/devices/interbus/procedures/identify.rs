@@ -1,7 +1,7 @@
 //! Reads the identity and settings of an encoder, and everything else that it provides (reference 3 and 5).
 
 use super::error::Implausible;
-use super::{Error, Master, Reading};
+use super::{Error, Master, WordReading};
 use crate::devices::interbus::profile::{Direction, Image, Parameters};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Command, ErrorWord, Flags, Gear, Program, ProgramNumber, READ_OUTS, ReadOut, ReadOutValue, Reply,
@@ -61,7 +61,7 @@ impl Survey {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Status {
     /// The IN word.
-    pub reading: Reading,
+    pub reading: WordReading,
     /// The error that it sends instead of a position.
     pub error: Option<ErrorWord>,
     /// Its mode, now and at power-up.

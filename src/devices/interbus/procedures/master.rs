@@ -12,10 +12,10 @@ use held::{CycleResult, Held, LEAST_PATIENCE};
 use notes::Notes;
 
 use super::data::ProcessData;
-use super::error::{Asked, Awaited};
+use super::error::{Awaited, RequestedItem};
 use super::handshake::{Handshake, LeftState, Says, is_echo};
 use super::reading::{swapped, swapped_unexplained};
-use super::{Error, Gateway, Known, Reading, Station};
+use super::{Error, Gateway, Known, Station, WordReading};
 use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::link::Ctx;
 use crate::units::Moment;
@@ -131,10 +131,10 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// The way to it.
-    pub fn reading(&mut self) -> Result<Reading, Error> {
+    pub fn reading(&mut self) -> Result<WordReading, Error> {
         let word = self.data.input()?;
         let Known { mode, gear, shift, .. } = *self.known;
-        Ok(Reading { at: self.data.now(), word, mode, gear, shift })
+        Ok(WordReading { at: self.data.now(), word, mode, gear, shift })
     }
 
     /// In which state the encoder may be.
@@ -338,5 +338,5 @@ impl<'a> Master<'a> {
 
 /// The gateway refuses the word as such: it was not written. With any other exception it may have been.
 fn is_unwritten(error: &Error) -> bool {
-    matches!(error, Error::Exception { asked: Asked::Write { .. }, exception } if !exception.passes())
+    matches!(error, Error::Exception { asked: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

@@ -5,7 +5,7 @@ use crate::units::Moment;
 
 /// An IN word as it was read, with what the session knows of the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Reading {
+pub struct WordReading {
     /// When it came.
     pub at: Moment,
     /// As it came.
@@ -29,7 +29,7 @@ pub struct TurnPosition {
     pub degrees: f64,
 }
 
-impl Reading {
+impl WordReading {
     /// Returns the meaning of the word.
     pub fn reply(&self) -> Reply {
         Reply::parse(self.word)
@@ -120,9 +120,9 @@ mod tests {
     use super::*;
     use crate::devices::interbus::protocol::ProgramNumber;
 
-    fn reading(word: u32, mode: StartupMode, gear: (u32, u32), shift: u8) -> Reading {
+    fn reading(word: u32, mode: StartupMode, gear: (u32, u32), shift: u8) -> WordReading {
         let gear = Gear::new(gear.0, gear.1).ok();
-        Reading { at: Moment::START, word, mode: Some(mode), gear, shift: WindowShift::new(shift) }
+        WordReading { at: Moment::START, word, mode: Some(mode), gear, shift: WindowShift::new(shift) }
     }
 
     #[test]

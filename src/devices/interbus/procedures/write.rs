@@ -18,11 +18,11 @@ use crate::devices::interbus::protocol::{
 use crate::profile::{Confirmed, Write};
 
 /// A write that ended early.
-pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, Left>;
+pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
 /// In which state an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Left {
+pub enum EndState {
     /// In the mode in which it was found, running.
     AsFound,
     /// It could not be led back: what is known of it.
@@ -47,7 +47,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = Left;
+    type Left = EndState;
 
     fn confirm(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
         let Self { master, identity } = self;
@@ -74,10 +74,10 @@ impl Write for EncoderWrite<'_, '_> {
         self.master.end(ended)
     }
 
-    fn left(&mut self, cause: &Error) -> Left {
+    fn left(&mut self, cause: &Error) -> EndState {
         match cause {
-            Error::NotLedBack { standing, .. } => Left::Unknown(*standing),
-            _ => Left::AsFound,
+            Error::NotLedBack { standing, .. } => EndState::Unknown(*standing),
+            _ => EndState::AsFound,
         }
     }
 }

@@ -22,7 +22,7 @@ pub use entry_error::EntryError;
 pub use error::{OtherType, PlanError};
 pub use image::{Direction, DirectionError, Image, Parameters};
 pub use item::{Item, ItemError, ItemValue};
-pub use note::Step;
+pub use note::ChangeStep;
 pub use plan::{Base, CamChange, Edge, InterbusPlan, Op, ParameterChange, ProgramChange};
 pub use record::{InterbusProfile, MountingMark, Names, ProfileIdentity, Recorded, UnknownEntries};
 pub use restore::{

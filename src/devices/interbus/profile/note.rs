@@ -6,7 +6,7 @@ use crate::devices::interbus::protocol::Parameter;
 
 /// A line of an operation.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Step {
+pub struct ChangeStep {
     /// Name of the changed item, or of an edge of one.
     pub name: String,
     /// Old value.
@@ -29,8 +29,8 @@ impl Op {
     }
 
     /// Returns the changes one by one: a parameter, a mask, an edge of a cam. Empty if nothing can be read.
-    pub fn steps(&self) -> Vec<Step> {
-        let step = |name: String, from: &dyn ToString, to: &dyn ToString| Step {
+    pub fn steps(&self) -> Vec<ChangeStep> {
+        let step = |name: String, from: &dyn ToString, to: &dyn ToString| ChangeStep {
             name,
             from: from.to_string(),
             to: to.to_string(),

@@ -1,6 +1,6 @@
 //! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
 
-use super::action::Action;
+use super::action::InterbusAction;
 use super::encoder::Encoder;
 use super::staged::Edit;
 use crate::app::services::Services;
@@ -14,43 +14,44 @@ use crate::profile::Body;
 
 impl Encoder {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, services: &mut Services) {
+    pub(crate) fn act(&mut self, action: InterbusAction, services: &mut Services) {
         match action {
-            Action::Stopped(stopped) => self.say_stopped(stopped),
-            Action::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
-            Action::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
-            Action::Select(mode) => self.submit(InterbusJob::Select(mode), services),
-            Action::Check => self.submit(InterbusJob::Check, services),
-            Action::Edit(edit) => self.edit(&edit),
-            Action::Plan(change) => self.plan(*change, services),
-            Action::LeadBack => self.submit(InterbusJob::LeadBack, services),
-            Action::AskTable(program) => {
+            InterbusAction::Stopped(stopped) => self.say_stopped(stopped),
+            InterbusAction::ReadPrograms(programs) => self.submit(InterbusJob::Programs(programs), services),
+            InterbusAction::ReadOut(what) => self.submit(InterbusJob::ReadOut(what), services),
+            InterbusAction::Select(mode) => self.submit(InterbusJob::Select(mode), services),
+            InterbusAction::Check => self.submit(InterbusJob::Check, services),
+            InterbusAction::Edit(edit) => self.edit(&edit),
+            InterbusAction::Plan(change) => self.plan(*change, services),
+            InterbusAction::LeadBack => self.submit(InterbusJob::LeadBack, services),
+            InterbusAction::AskTable(program) => {
                 self.table_program = program;
                 let words = (TEXTS.text("file.open_cams_title"), TEXTS.text("file.tables"));
-                let file = DeviceFile::to_read(self.session.id, words, &["csv", "txt", "tsv"], Action::OpenTable);
+                let file =
+                    DeviceFile::to_read(self.session.id, words, &["csv", "txt", "tsv"], InterbusAction::OpenTable);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            Action::OpenTable(path) => self.open_table(path, services),
-            Action::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
-            Action::TakeTable(take) => self.take_table(take),
-            Action::AskSaveTable { decimal_comma } => {
+            InterbusAction::OpenTable(path) => self.open_table(path, services),
+            InterbusAction::PasteTable(program, text) => self.read_table(TEXTS.text("ib_table.pasted"), text, program),
+            InterbusAction::TakeTable(take) => self.take_table(take),
+            InterbusAction::AskSaveTable { decimal_comma } => {
                 let suggested = self.session.suggested_file().with_extension("csv");
                 let words = (TEXTS.text("file.cams_title"), TEXTS.text("file.tables"));
-                let save = move |path, _| Action::SaveTable { path, decimal_comma };
+                let save = move |path, _| InterbusAction::SaveTable { path, decimal_comma };
                 let file = DeviceFile::to_write(self.session.id, words, &["csv"], suggested, save);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            Action::SaveTable { path, decimal_comma } => self.save_table(path, decimal_comma, services),
-            Action::SetScale(scale) => {
+            InterbusAction::SaveTable { path, decimal_comma } => self.save_table(path, decimal_comma, services),
+            InterbusAction::SetScale(scale) => {
                 self.scale = scale;
                 self.read_table_anew();
             }
-            Action::Turn(rpm) => {
+            InterbusAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
                     motor.set_rpm(rpm);
                 }
             }
-            Action::Save(path) => self.save(path, services),
+            InterbusAction::Save(path) => self.save(path, services),
         }
     }
 

@@ -9,7 +9,7 @@ use crate::devices::interbus::profile::Scale;
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOut, StartupMode};
 
 /// Something in the INTERBUS tab.
-pub enum Action {
+pub enum InterbusAction {
     /// A person says that the machine stands, or that it does not any more.
     Stopped(bool),
     /// Read cam programs: the encoder's outputs switch to each of them.
@@ -46,4 +46,4 @@ pub enum Action {
     Save(PathBuf),
 }
 
-impl DeviceAction for Action {}
+impl DeviceAction for InterbusAction {}

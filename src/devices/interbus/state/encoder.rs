@@ -14,7 +14,7 @@ use crate::app::services::Services;
 use crate::app::session::{Drafted, Phase, Saved, Session, Source, WithMemory, some};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::interbus::jobs::Interbus;
-use crate::devices::interbus::procedures::{Handshake, Identity, Reading, Survey};
+use crate::devices::interbus::procedures::{Handshake, Identity, Survey, WordReading};
 use crate::devices::interbus::profile::{InterbusProfile, ProfileIdentity, Scale};
 use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMode, Value, WindowShift, WordOrder};
 use crate::devices::interbus::state::TEXTS;
@@ -144,7 +144,7 @@ impl Encoder {
 
     /// The position that came last, in steps; `None` where the word does not tell it.
     pub fn position(&self) -> Option<u32> {
-        self.record.last().and_then(Reading::position)
+        self.record.last().and_then(WordReading::position)
     }
 
     /// Returns which of the two words of a register pair comes first.

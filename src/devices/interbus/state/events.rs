@@ -9,7 +9,7 @@ use crate::app::services::{JobEnd, Services};
 use crate::app::session::{EarlyEnd, Kind, Saved, SessionEvents, WithMemory};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{DeviceMessage, Interbus, InterbusJob, InterbusOutput, JobError, JobStep};
-use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::KIND;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
@@ -74,7 +74,7 @@ impl Encoder {
 }
 
 impl SessionEvents for Encoder {
-    fn sampled(&mut self, samples: Vec<Reading>, dropped: u64) {
+    fn sampled(&mut self, samples: Vec<WordReading>, dropped: u64) {
         if let Some(image) = self.staged.device() {
             self.preview.follow(&image.programs);
         }

@@ -29,7 +29,7 @@ mod write;
 
 pub use texts::TEXTS;
 
-pub use action::Action;
+pub use action::InterbusAction;
 pub use connect_form::{InterbusForm, InterbusWay};
 pub use encoder::Encoder;
 pub use preview::{Differing, Preview};

@@ -1,7 +1,7 @@
 //! An INTERBUS encoder among the devices of the studio.
 
 use super::trace::Meaning;
-use super::{Action, Done, Encoder, TEXTS};
+use super::{Done, Encoder, InterbusAction, TEXTS};
 use crate::app::action::Opened;
 use crate::app::services::{JobEnd, Services};
 use crate::app::session::{Saved, SessionEvents};
@@ -10,7 +10,7 @@ use crate::devices::interbus::jobs::{Interbus, InterbusJob};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Interbus");
-    type Action = Action;
+    type Action = InterbusAction;
     type Done = Done;
 
     fn connect(&mut self, opened: Opened<Interbus>, services: &mut Services) {
@@ -22,7 +22,7 @@ impl DeviceModel for Encoder {
         self.submit(InterbusJob::Hello, services);
     }
 
-    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: InterbusAction, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context.services);
     }
 

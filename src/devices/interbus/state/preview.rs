@@ -1,6 +1,6 @@
 //! The cams that an encoder holds, made ready to be asked for every word: whether its outputs are what they give.
 
-use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, StartupMode, Value};
 
 /// Programs as they were read, and how the outputs of an encoder agree with them.
@@ -46,7 +46,7 @@ impl Preview {
     }
 
     /// Compares the outputs in a word with those of its program, where both and the position are known.
-    pub(super) fn compare(&mut self, reading: &Reading) {
+    pub(super) fn compare(&mut self, reading: &WordReading) {
         let Some(StartupMode::Cams(program)) = reading.mode else { return };
         let at = usize::from(program.get() - 1);
         let is_known = self.programs.get(at).is_some_and(Option::is_some);
@@ -78,7 +78,7 @@ mod tests {
         programs[1] = Some(program);
         let mut preview = Preview::default();
         preview.follow(&programs);
-        let reading = |number: u8, position: u32, outputs: u32| Reading {
+        let reading = |number: u8, position: u32, outputs: u32| WordReading {
             at: Moment::START,
             word: position << 8 | outputs,
             mode: ProgramNumber::new(number).map(StartupMode::Cams),

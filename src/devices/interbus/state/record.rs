@@ -8,7 +8,7 @@ use jiff::Zoned;
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
 use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
-use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
 
@@ -25,7 +25,7 @@ pub(super) enum Beside {
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<Beside>,
-    last: Option<Reading>,
+    last: Option<WordReading>,
 }
 
 impl Record {
@@ -36,7 +36,7 @@ impl Record {
     }
 
     /// Takes what has come; `dropped` were not taken in time.
-    pub(super) fn add(&mut self, readings: Vec<Reading>, dropped: u64) {
+    pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.lose(dropped);
         for reading in readings {
             self.see(&reading);
@@ -45,11 +45,11 @@ impl Record {
     }
 
     /// Records the first word: it is not known yet whether it is a position, so it is in no line.
-    pub(super) fn glimpse(&mut self, reading: Reading) {
+    pub(super) fn glimpse(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }
 
-    fn see(&mut self, reading: &Reading) {
+    fn see(&mut self, reading: &WordReading) {
         let at = reading.at;
         match reading.mode {
             Some(StartupMode::Velocity) => {
@@ -88,7 +88,7 @@ impl Record {
     }
 
     /// The word that came last.
-    pub fn last(&self) -> Option<&Reading> {
+    pub fn last(&self) -> Option<&WordReading> {
         self.last.as_ref()
     }
 

@@ -13,7 +13,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::Chart;
-use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, empty, enabled_button, paragraph, two_columns};
 use crate::ui::{Theme, icons};

@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, StartupMode};
-use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, explain, said, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, said, words};
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, paragraph, row, two_columns};

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::Rgb;
-use crate::devices::interbus::procedures::Reading;
+use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::StartupMode;
 use crate::devices::interbus::state::{Encoder, TEXTS};
 use crate::devices::interbus::views::say;
@@ -18,7 +18,7 @@ const LAMP: f32 = 16.0;
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {
     let last = encoder.record.last();
-    let (main, unit) = match (last.and_then(Reading::rpm), encoder.position()) {
+    let (main, unit) = match (last.and_then(WordReading::rpm), encoder.position()) {
         (Some(rpm), _) => (rpm.to_string(), theme.say("unit.revolutions_per_minute")),
         (None, Some(position)) => (position.to_string(), theme.say("unit.steps")),
         (None, None) => ("–".to_owned(), String::new()),

@@ -12,7 +12,7 @@ use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WE
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
-use crate::devices::interbus::state::{Action as Interbus, Encoder, cams, explain, forms, said, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, said, words};
 use crate::ui::controls::{
     card, choice, empty, enabled_button, entry, paragraph, problem, row, settled_entry, two_columns,
 };

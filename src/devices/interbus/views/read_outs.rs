@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{READ_OUTS, ReadOut};
-use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, explain, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, words};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, icon_button, paragraph};
 use crate::ui::{Theme, icons};

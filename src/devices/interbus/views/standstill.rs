@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::{Action, DeviceCommand};
-use crate::devices::interbus::state::{Action as Interbus, Encoder};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Theme, icons};

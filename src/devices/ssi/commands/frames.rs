@@ -8,7 +8,7 @@ use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{
-    Finding, Flags, FrameTextError, Layout, Location, Meaning, Reading, Role, frame_bits, parse_frame,
+    Flags, FrameFinding, FrameReading, FrameTextError, Layout, Location, Meaning, Role, frame_bits, parse_frame,
 };
 use crate::devices::ssi::state::explain as words;
 
@@ -35,7 +35,7 @@ fn frame(layout: &Layout, text: &str) -> Result<u64> {
 pub(super) struct DecodedFrame<'a> {
     pub(super) layout: &'a Layout,
     pub(super) frame: u64,
-    pub(super) reading: Reading,
+    pub(super) reading: FrameReading,
 }
 
 impl<'a> DecodedFrame<'a> {
@@ -126,15 +126,15 @@ fn fields(layout: &Layout, frame: u64) -> String {
 }
 
 /// Returns the name of a finding in JSON.
-pub(super) fn name(finding: &Finding) -> String {
+pub(super) fn name(finding: &FrameFinding) -> String {
     match finding {
-        Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
-        Finding::StuckHigh { .. } => "line stuck high".to_owned(),
-        Finding::StuckLow { .. } => "line stuck low".to_owned(),
-        Finding::Code => "invalid code".to_owned(),
-        Finding::Padding => "format mismatch".to_owned(),
-        Finding::Parity => "parity".to_owned(),
-        Finding::Repeat => "repetition".to_owned(),
+        FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
+        FrameFinding::StuckHigh { .. } => "line stuck high".to_owned(),
+        FrameFinding::StuckLow { .. } => "line stuck low".to_owned(),
+        FrameFinding::Code => "invalid code".to_owned(),
+        FrameFinding::Padding => "format mismatch".to_owned(),
+        FrameFinding::Parity => "parity".to_owned(),
+        FrameFinding::Repeat => "repetition".to_owned(),
     }
 }
 

@@ -12,7 +12,7 @@ use crate::cli::output::{Lines, Output, count, say};
 use crate::cli::positions::readings;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::jobs::SsiJob;
-use crate::devices::ssi::protocol::{Finding, Layout, Location, Meaning, Tally};
+use crate::devices::ssi::protocol::{FrameFinding, Layout, Location, Meaning, Tally};
 use crate::devices::ssi::state::explain as explained;
 use crate::units::Moment;
 
@@ -58,8 +58,8 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
 }
 
 /// Returns whether a finding is reported: passing a position that looks like an idle line is not, starting with one is.
-fn is_told(finding: &Finding, is_first: bool) -> bool {
-    is_first || !matches!(finding, Finding::StuckHigh { sure: false } | Finding::StuckLow { sure: false })
+fn is_told(finding: &FrameFinding, is_first: bool) -> bool {
+    is_first || !matches!(finding, FrameFinding::StuckHigh { sure: false } | FrameFinding::StuckLow { sure: false })
 }
 
 fn seconds(at: Time) -> String {
@@ -164,9 +164,9 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
 }
 
 /// With the number of its clock, where it has one.
-fn item(layout: &Layout, finding: &Finding) -> Json {
+fn item(layout: &Layout, finding: &FrameFinding) -> Json {
     let clock = match finding {
-        Finding::Error { name, .. } => layout.descriptor().errors.iter().find(|bit| bit.name == *name),
+        FrameFinding::Error { name, .. } => layout.descriptor().errors.iter().find(|bit| bit.name == *name),
         _ => None,
     };
     json!({"code": clock.map(|bit| bit.clock), "text": name(finding)})

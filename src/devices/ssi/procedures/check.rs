@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use super::{Error, Identity, Master};
 use crate::analysis::check;
-use crate::devices::ssi::protocol::{Finding as Said, Flags, Layout, Meaning};
+use crate::devices::ssi::protocol::{Flags, FrameFinding as Said, Layout, Meaning};
 
 pub use crate::analysis::check::Verdict;
 
@@ -15,11 +15,11 @@ pub const WORDS: u64 = 50;
 const TREMBLES: u64 = 4;
 
 /// One line of the check.
-pub type SsiStepResult = check::StepResult<Step, Finding>;
+pub type SsiStepResult = check::StepResult<CheckStep, CheckFinding>;
 
 /// A step of the check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum CheckStep {
     /// The adapter, and its clock.
     Adapter,
     /// The supply of the encoder.
@@ -36,7 +36,7 @@ pub enum Step {
 
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Finding {
+pub enum CheckFinding {
     /// The adapter's name and firmware.
     Adapter(String, String),
     /// The clock in hertz as it was asked for, and as it is.
@@ -118,10 +118,10 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
         }
     }
     let different = words.iter().collect::<BTreeSet<_>>().len();
-    let taken = Finding::Words { taken: words.len() as u64, different };
+    let taken = CheckFinding::Words { taken: words.len() as u64, different };
     let among = |wanted: fn(&Said) -> bool| {
         let wanted = said.iter().filter(move |(what, _)| wanted(what));
-        wanted.map(|(what, count)| Finding::Said { what: what.clone(), count: *count })
+        wanted.map(|(what, count)| CheckFinding::Said { what: what.clone(), count: *count })
     };
     let verdict = |wanted: fn(&Said) -> bool| {
         let worst = said.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
@@ -133,7 +133,7 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     let is_stuck = |what: &Said| matches!(what, Said::StuckHigh { .. } | Said::StuckLow { .. });
     let is_of_the_form = |what: &Said| matches!(what, Said::Code | Said::Padding | Said::Parity | Said::Repeat);
     let is_error = |what: &Said| matches!(what, Said::Error { .. } | Said::Pattern { .. });
-    let or = |findings: Vec<Finding>, none: Finding| if findings.is_empty() { vec![none] } else { findings };
+    let or = |findings: Vec<CheckFinding>, none: CheckFinding| if findings.is_empty() { vec![none] } else { findings };
     // A wrong layout is bad even where each of its signs is a warning.
     let form = verdict(is_of_the_form);
     let form = if form == Verdict::Good { Verdict::Good } else { Verdict::Bad };
@@ -141,19 +141,19 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
         adapter(identity),
         supply(identity),
         SsiStepResult {
-            step: Step::Line,
+            step: CheckStep::Line,
             verdict: verdict(is_stuck),
             findings: std::iter::once(taken).chain(among(is_stuck)).collect(),
         },
         SsiStepResult {
-            step: Step::Layout,
+            step: CheckStep::Layout,
             verdict: form,
-            findings: or(among(is_of_the_form).collect(), Finding::Fits),
+            findings: or(among(is_of_the_form).collect(), CheckFinding::Fits),
         },
         SsiStepResult {
-            step: Step::Errors,
+            step: CheckStep::Errors,
             verdict: verdict(is_error),
-            findings: or(among(is_error).collect(), Finding::Silent),
+            findings: or(among(is_error).collect(), CheckFinding::Silent),
         },
         motion(layout, &positions),
     ]
@@ -162,11 +162,11 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
 fn adapter(identity: &Identity) -> SsiStepResult {
     let Identity { hello, asking, clock_hz, .. } = identity;
     let verdict = if *clock_hz == asking.clock_hz { Verdict::Good } else { Verdict::Attention };
-    let who = Finding::Adapter(hello.name.clone(), hello.firmware.clone());
+    let who = CheckFinding::Adapter(hello.name.clone(), hello.firmware.clone());
     SsiStepResult {
-        step: Step::Adapter,
+        step: CheckStep::Adapter,
         verdict,
-        findings: vec![who, Finding::Clock { asked: asking.clock_hz, got: *clock_hz }],
+        findings: vec![who, CheckFinding::Clock { asked: asking.clock_hz, got: *clock_hz }],
     }
 }
 
@@ -177,11 +177,11 @@ fn supply(identity: &Identity) -> SsiStepResult {
             // A tenth is what encoders for 5 V stand.
             let is_near = measured.abs_diff(wished) <= wished / 10;
             let verdict = if is_near && milliampere > 0 { Verdict::Good } else { Verdict::Attention };
-            (verdict, Finding::Supply { wished, measured, milliampere })
+            (verdict, CheckFinding::Supply { wished, measured, milliampere })
         }
-        None => (Verdict::Good, Finding::SuppliedElsewhere),
+        None => (Verdict::Good, CheckFinding::SuppliedElsewhere),
     };
-    SsiStepResult { step: Step::Supply, verdict, findings: vec![finding] }
+    SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
 /// Judges the motion of the position from word to word, the short way round.
@@ -197,13 +197,15 @@ fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
         .first()
         .map_or(0, |first| positions.iter().map(|position| apart(*first, *position)).max().unwrap_or(0));
     let (verdict, finding) = match positions.last() {
-        None => return SsiStepResult { step: Step::Motion, verdict: Verdict::Bad, findings: Vec::new() },
-        Some(position) if spread <= TREMBLES => (Verdict::Good, Finding::Stands { position: *position, steps: spread }),
+        None => return SsiStepResult { step: CheckStep::Motion, verdict: Verdict::Bad, findings: Vec::new() },
+        Some(position) if spread <= TREMBLES => {
+            (Verdict::Good, CheckFinding::Stands { position: *position, steps: spread })
+        }
         // From a word to the next by more than a quarter of all positions: no shaft turns like that.
-        Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, Finding::Turns { most }),
-        Some(_) => (Verdict::Good, Finding::Turns { most }),
+        Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, CheckFinding::Turns { most }),
+        Some(_) => (Verdict::Good, CheckFinding::Turns { most }),
     };
-    SsiStepResult { step: Step::Motion, verdict, findings: vec![finding] }
+    SsiStepResult { step: CheckStep::Motion, verdict, findings: vec![finding] }
 }
 
 #[cfg(test)]
@@ -247,8 +249,8 @@ mod tests {
         assert_eq!(judged(&[0x1F_FFFF; 3]), [Good, Good, Bad, Good, Bad, Good], "every bit is 1");
         assert_eq!(judged(&[0x10 << 3, 0x2_0010 << 3]), [Good, Good, Good, Good, Good, Attention], "half a turn");
         let lines = judge(&identity(400_000, None), &layout, &[good, good + 8]);
-        assert_eq!(lines[5].findings, [Finding::Stands { position: 0x2_ABCE, steps: 1 }]);
-        assert_eq!(lines[2].findings, [Finding::Words { taken: 2, different: 2 }]);
+        assert_eq!(lines[5].findings, [CheckFinding::Stands { position: 0x2_ABCE, steps: 1 }]);
+        assert_eq!(lines[2].findings, [CheckFinding::Words { taken: 2, different: 2 }]);
     }
 
     #[test]
@@ -257,8 +259,8 @@ mod tests {
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = judge(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);
-        assert_eq!(lines[3].findings, [Finding::Said { what: Said::Padding, count: 2 }]);
-        assert_eq!(judge(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [Finding::Fits]);
+        assert_eq!(lines[3].findings, [CheckFinding::Said { what: Said::Padding, count: 2 }]);
+        assert_eq!(judge(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [CheckFinding::Fits]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The meaning of every bit of a frame, and the findings about the frame as a whole.
 
 use super::descriptor::{Meaning, Word};
-use super::layout::{Flags, Layout, Reading};
+use super::layout::{Flags, FrameReading, Layout};
 use super::range::Range;
 
 /// The content of a clock of a frame.
@@ -36,7 +36,7 @@ pub struct Cell {
 
 /// Something to say of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Finding {
+pub enum FrameFinding {
     /// An error bit speaks.
     Error {
         /// Its name.
@@ -73,14 +73,14 @@ pub enum Finding {
     Repeat,
 }
 
-impl Finding {
+impl FrameFinding {
     /// Returns its meaning for the position.
     pub const fn meaning(&self) -> Meaning {
         match self {
-            Finding::Error { meaning, .. } | Finding::Pattern { meaning, .. } => *meaning,
-            Finding::StuckHigh { sure: true } | Finding::StuckLow { sure: true } => Meaning::Invalid,
-            Finding::Code | Finding::Parity | Finding::Repeat => Meaning::Invalid,
-            Finding::StuckHigh { .. } | Finding::StuckLow { .. } | Finding::Padding => Meaning::Warning,
+            FrameFinding::Error { meaning, .. } | FrameFinding::Pattern { meaning, .. } => *meaning,
+            FrameFinding::StuckHigh { sure: true } | FrameFinding::StuckLow { sure: true } => Meaning::Invalid,
+            FrameFinding::Code | FrameFinding::Parity | FrameFinding::Repeat => Meaning::Invalid,
+            FrameFinding::StuckHigh { .. } | FrameFinding::StuckLow { .. } | FrameFinding::Padding => Meaning::Warning,
         }
     }
 }
@@ -132,33 +132,33 @@ impl Layout {
     }
 
     /// Returns the findings about a reading, those that invalidate the position first.
-    pub fn findings(&self, reading: Reading) -> Vec<Finding> {
+    pub fn findings(&self, reading: FrameReading) -> Vec<FrameFinding> {
         let descriptor = self.descriptor();
         let flags = reading.flags;
         let mut findings = Vec::new();
         for (index, pattern) in descriptor.patterns.iter().enumerate() {
             if flags.has(Flags::pattern(index)) {
-                findings.push(Finding::Pattern { name: pattern.name.clone(), meaning: pattern.meaning });
+                findings.push(FrameFinding::Pattern { name: pattern.name.clone(), meaning: pattern.meaning });
             }
         }
         let told = descriptor.patterns.iter().any(|pattern| pattern.word == Word::Ones);
         if flags.has(Flags::ONES) && !told {
-            findings.push(Finding::StuckHigh { sure: self.is_no_position(reading) });
+            findings.push(FrameFinding::StuckHigh { sure: self.is_no_position(reading) });
         }
         if flags.has(Flags::ZEROS) {
-            findings.push(Finding::StuckLow { sure: self.is_no_position(reading) });
+            findings.push(FrameFinding::StuckLow { sure: self.is_no_position(reading) });
         }
         for (index, bit) in descriptor.errors.iter().enumerate() {
             if flags.has(Flags::error(index)) {
                 let (name, meaning) = (bit.name.clone(), bit.meaning);
-                findings.push(Finding::Error { name, meaning, cleared_by_transfer: bit.cleared_by_transfer });
+                findings.push(FrameFinding::Error { name, meaning, cleared_by_transfer: bit.cleared_by_transfer });
             }
         }
         let of_the_form = [
-            (Flags::CODE, Finding::Code),
-            (Flags::PARITY, Finding::Parity),
-            (Flags::REPEAT, Finding::Repeat),
-            (Flags::PADDING, Finding::Padding),
+            (Flags::CODE, FrameFinding::Code),
+            (Flags::PARITY, FrameFinding::Parity),
+            (Flags::REPEAT, FrameFinding::Repeat),
+            (Flags::PADDING, FrameFinding::Padding),
         ];
         findings.extend(of_the_form.into_iter().filter(|(flag, _)| flags.has(*flag)).map(|(_, finding)| finding));
         findings.sort_by_key(|finding| finding.meaning() == Meaning::Warning);
@@ -166,13 +166,13 @@ impl Layout {
     }
 
     /// The position may be used.
-    pub fn is_valid(&self, reading: Reading) -> bool {
+    pub fn is_valid(&self, reading: FrameReading) -> bool {
         let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_no_position(reading);
         !reading.flags.any(self.invalid()) && !stuck
     }
 
     /// A healthy encoder does not send this.
-    fn is_no_position(&self, reading: Reading) -> bool {
+    fn is_no_position(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));
         reading.flags.any(errors)

@@ -49,7 +49,7 @@ pub(super) struct Part {
 
 /// A decoded frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reading {
+pub struct FrameReading {
     /// The position; 0 where [`Flags::CODE`] says that there is none.
     pub position: u64,
     /// The flags besides the position.
@@ -190,7 +190,7 @@ impl Layout {
 
     /// Decodes a frame. Bits above its clocks are ignored.
     #[inline]
-    pub fn decode(&self, frame: u64) -> Reading {
+    pub fn decode(&self, frame: u64) -> FrameReading {
         let all = ones(self.clocks());
         let frame = frame & all;
         let mut flags = Flags::ONES.when(frame == all).with(Flags::ZEROS.when(frame == 0));
@@ -225,14 +225,14 @@ impl Layout {
         flags = flags.with(Flags::PADDING.when(word & self.zeros != 0));
         let code = self.parts.iter().fold(0, |code, part| code | (word >> part.in_word & part.mask) << part.in_code);
         match self.coding.decode(code) {
-            Some(position) if self.lost => Reading { position: position & !1, flags },
-            Some(position) => Reading { position, flags },
-            None => Reading { position: 0, flags: flags.with(Flags::CODE) },
+            Some(position) if self.lost => FrameReading { position: position & !1, flags },
+            Some(position) => FrameReading { position, flags },
+            None => FrameReading { position: 0, flags: flags.with(Flags::CODE) },
         }
     }
 
     /// Decodes frames in order, as many as the shorter of both has.
-    pub fn decode_all(&self, frames: &[u64], readings: &mut [Reading]) {
+    pub fn decode_all(&self, frames: &[u64], readings: &mut [FrameReading]) {
         for (frame, reading) in frames.iter().zip(readings) {
             *reading = self.decode(*frame);
         }

@@ -24,7 +24,7 @@ pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
-pub use explain::{Cell, Finding, Role};
+pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
     FormatError, NoFormat, bit_table, c99, frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg,
     to_linuxcnc,
@@ -37,7 +37,7 @@ pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
-pub use layout::{AsAWhole, Flags, Layout, LayoutError, Reading, Several, Taker};
+pub use layout::{AsAWhole, Flags, FrameReading, Layout, LayoutError, Several, Taker};
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
 pub use tally::{Noted, Tally};

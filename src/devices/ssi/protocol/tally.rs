@@ -1,8 +1,8 @@
 //! Counts findings in frames: error bits that a transfer clears are gone with the next frame, and would be missed by
 //! looking at intervals.
 
-use super::explain::Finding;
-use super::layout::{Flags, Layout, Reading};
+use super::explain::FrameFinding;
+use super::layout::{Flags, FrameReading, Layout};
 use crate::analysis::Time;
 
 /// The number of findings in frames that were noted in order.
@@ -17,7 +17,7 @@ pub struct Tally {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noted {
     /// The finding.
-    pub finding: Finding,
+    pub finding: FrameFinding,
     /// Its count: findings about one transfer (an error bit that it clears, parity, repetition) count with each frame,
     /// lasting ones each time they begin.
     pub count: u64,
@@ -32,7 +32,7 @@ pub struct Noted {
 impl Tally {
     /// Notes what a frame says; gives what the frame before did not have. `layout` is that of all frames since the last
     /// [`reset`](Self::reset).
-    pub fn note(&mut self, layout: &Layout, reading: Reading, at: Time) -> Vec<Finding> {
+    pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: Time) -> Vec<FrameFinding> {
         let (flags, same) = &self.before;
         if *flags == reading.flags {
             for index in same {
@@ -84,8 +84,11 @@ impl Tally {
 }
 
 /// The next frame may have it again without its having stood in between.
-fn is_of_one_transfer(finding: &Finding) -> bool {
-    matches!(finding, Finding::Error { cleared_by_transfer: true, .. } | Finding::Parity | Finding::Repeat)
+fn is_of_one_transfer(finding: &FrameFinding) -> bool {
+    matches!(
+        finding,
+        FrameFinding::Error { cleared_by_transfer: true, .. } | FrameFinding::Parity | FrameFinding::Repeat
+    )
 }
 
 #[cfg(test)]
@@ -104,8 +107,8 @@ mod tests {
 
     /// Name, count, first and last frame in milliseconds, whether it stands.
     fn rows(tally: &Tally) -> Vec<(String, u64, i64, i64, bool)> {
-        let name = |finding: &Finding| match finding {
-            Finding::Error { name, .. } | Finding::Pattern { name, .. } => name.clone(),
+        let name = |finding: &FrameFinding| match finding {
+            FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
             other => format!("{other:?}"),
         };
         let milliseconds = |time: Time| time.nanoseconds() / 1_000_000;

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use super::action::{Action, Try};
+use super::action::{SsiAction, Try};
 use super::design::Edit;
 use super::encoder::Encoder;
 use super::families::families;
@@ -20,10 +20,10 @@ use crate::store::write_atomically;
 
 impl Encoder {
     /// Does what is asked.
-    pub(crate) fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    pub(crate) fn act(&mut self, action: SsiAction, context: &mut ActContext<'_>) {
         let services = &mut *context.services;
         match action {
-            Action::SendLayout => {
+            SsiAction::SendLayout => {
                 let Some(url) = self.link_to_send() else { return };
                 // The draft belongs to the encoder that the link before stands for.
                 self.leave_draft(services);
@@ -31,61 +31,61 @@ impl Encoder {
                 self.session.source = Source::Link(url);
                 context.then(DeviceCommand::Reconnect);
             }
-            Action::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
-            Action::Edit(edit) => self.edit(*edit),
-            Action::Enter(field, input) => match self.designer.entered(field, &input) {
+            SsiAction::Check => self.submit(SsiJob::Check(Box::new(self.designer.layout().clone())), services),
+            SsiAction::Edit(edit) => self.edit(*edit),
+            SsiAction::Enter(field, input) => match self.designer.entered(field, &input) {
                 Ok(edit) => self.edit(edit),
                 Err(why) => self.designer.refuse(why),
             },
-            Action::Move(handle, to) => {
+            SsiAction::Move(handle, to) => {
                 let layout = self.designer.layout();
                 let moved = strip::moved(layout, handle, to, self.designer.errors_follow());
                 self.edit(Edit::Frame(Box::new(moved.descriptor().clone())));
             }
-            Action::AddErrorBit => {
+            SsiAction::AddErrorBit => {
                 if let Some(frame) = self.designer.with_error_bit() {
                     self.edit(Edit::Frame(Box::new(frame)));
                 }
             }
-            Action::RemoveErrorBit(index) => {
+            SsiAction::RemoveErrorBit(index) => {
                 let frame = self.designer.without_error_bit(index);
                 self.edit(Edit::Frame(Box::new(frame)));
             }
-            Action::Try(with) => self.try_with(with),
-            Action::SetClocks(clocks) => {
+            SsiAction::Try(with) => self.try_with(with),
+            SsiAction::SetClocks(clocks) => {
                 self.clocks = clocks
                     .map(|clocks| clocks.clamp(1, 64))
                     .filter(|clocks| *clocks != self.designer.layout().clocks());
             }
-            Action::Find => self.find_live(services),
-            Action::AskFrames => {
+            SsiAction::Find => self.find_live(services),
+            SsiAction::AskFrames => {
                 let words = (TEXTS.text("file.open_frames_title"), TEXTS.text("file.frames"));
-                let file = DeviceFile::to_read(self.session.id, words, &["txt", "csv"], Action::FindIn);
+                let file = DeviceFile::to_read(self.session.id, words, &["txt", "csv"], SsiAction::FindIn);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            Action::FindIn(path) => self.find_in(path, services),
-            Action::ForgetSearch => self.hunt = Hunt::Nothing,
-            Action::Take(class, member) => self.take_found(class, member),
-            Action::ForgetErrors => self.record.forget_tally(),
-            Action::AskExport(format) => {
+            SsiAction::FindIn(path) => self.find_in(path, services),
+            SsiAction::ForgetSearch => self.hunt = Hunt::Nothing,
+            SsiAction::Take(class, member) => self.take_found(class, member),
+            SsiAction::ForgetErrors => self.record.forget_tally(),
+            SsiAction::AskExport(format) => {
                 let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
                 let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
-                let export = move |path, _| Action::Export(format, path);
+                let export = move |path, _| SsiAction::Export(format, path);
                 let file = DeviceFile::to_write(self.session.id, words, format.endings(), suggested, export);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            Action::Export(format, path) => match self.designer.export(format) {
+            SsiAction::Export(format, path) => match self.designer.export(format) {
                 Ok(text) => self.write_text(path, text, services),
                 Err(why) => self.session.refuse(why, services),
             },
-            Action::AskSaveFrames => {
+            SsiAction::AskSaveFrames => {
                 let suggested = self.suggested("txt");
                 let words = (TEXTS.text("file.frames_title"), TEXTS.text("file.frames"));
-                let save = |path, _| Action::SaveFrames(path);
+                let save = |path, _| SsiAction::SaveFrames(path);
                 let file = DeviceFile::to_write(self.session.id, words, &["txt"], suggested, save);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            Action::SaveFrames(path) => {
+            SsiAction::SaveFrames(path) => {
                 let clocks = self.clocks();
                 let words = self.record.words(clocks);
                 if words.is_empty() {
@@ -94,7 +94,7 @@ impl Encoder {
                 let lines: Vec<String> = words.iter().map(|word| frame_bits(*word, clocks)).collect();
                 self.write_text(path, lines.join("\n") + "\n", services);
             }
-            Action::Turn(rpm) => {
+            SsiAction::Turn(rpm) => {
                 if let Some(motor) = &self.motor {
                     motor.set_rpm(rpm);
                 }

@@ -9,7 +9,7 @@ use super::strip::Handle;
 use crate::app::DeviceAction;
 
 /// Something in the SSI tab.
-pub enum Action {
+pub enum SsiAction {
     /// The device check.
     Check,
     /// Change the layout.
@@ -67,4 +67,4 @@ pub enum Try {
     Live,
 }
 
-impl DeviceAction for Action {}
+impl DeviceAction for SsiAction {}

@@ -11,7 +11,7 @@ use crate::app::explain::link;
 use crate::buses::bridge::state::adapter;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
-    Advice, Code, Coded, Doubt, Evidence, Finding, Layout, Meaning, Noted, Open, Range, Warning,
+    Advice, Code, Coded, Doubt, Evidence, FrameFinding, Layout, Meaning, Noted, Open, Range, Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
@@ -37,9 +37,9 @@ pub fn loss(error: &JobError) -> Option<Text> {
 }
 
 /// Something that a frame gives cause to say.
-pub fn finding(finding: &Finding) -> Text {
+pub fn finding(finding: &FrameFinding) -> Text {
     match finding {
-        Finding::Error { name, meaning, cleared_by_transfer } => {
+        FrameFinding::Error { name, meaning, cleared_by_transfer } => {
             let id = match (meaning, cleared_by_transfer) {
                 (Meaning::Invalid, false) => "ssi.error",
                 (Meaning::Invalid, true) => "ssi.error_since",
@@ -47,16 +47,18 @@ pub fn finding(finding: &Finding) -> Text {
             };
             TEXTS.text(id).with("name", name)
         }
-        Finding::Pattern { name, meaning: Meaning::Invalid } => TEXTS.text("ssi.pattern").with("name", name),
-        Finding::Pattern { name, meaning: Meaning::Warning } => TEXTS.text("ssi.pattern_perhaps").with("name", name),
-        Finding::StuckHigh { sure: true } => TEXTS.text("ssi.stuck_high"),
-        Finding::StuckHigh { sure: false } => TEXTS.text("ssi.stuck_high_perhaps"),
-        Finding::StuckLow { sure: true } => TEXTS.text("ssi.stuck_low"),
-        Finding::StuckLow { sure: false } => TEXTS.text("ssi.stuck_low_perhaps"),
-        Finding::Code => TEXTS.text("ssi.code"),
-        Finding::Padding => TEXTS.text("ssi.padding"),
-        Finding::Parity => TEXTS.text("ssi.parity"),
-        Finding::Repeat => TEXTS.text("ssi.repeat"),
+        FrameFinding::Pattern { name, meaning: Meaning::Invalid } => TEXTS.text("ssi.pattern").with("name", name),
+        FrameFinding::Pattern { name, meaning: Meaning::Warning } => {
+            TEXTS.text("ssi.pattern_perhaps").with("name", name)
+        }
+        FrameFinding::StuckHigh { sure: true } => TEXTS.text("ssi.stuck_high"),
+        FrameFinding::StuckHigh { sure: false } => TEXTS.text("ssi.stuck_high_perhaps"),
+        FrameFinding::StuckLow { sure: true } => TEXTS.text("ssi.stuck_low"),
+        FrameFinding::StuckLow { sure: false } => TEXTS.text("ssi.stuck_low_perhaps"),
+        FrameFinding::Code => TEXTS.text("ssi.code"),
+        FrameFinding::Padding => TEXTS.text("ssi.padding"),
+        FrameFinding::Parity => TEXTS.text("ssi.parity"),
+        FrameFinding::Repeat => TEXTS.text("ssi.repeat"),
     }
 }
 

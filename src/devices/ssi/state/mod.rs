@@ -27,7 +27,7 @@ mod words;
 
 pub use texts::TEXTS;
 
-pub use action::{Action, Try};
+pub use action::{SsiAction, Try};
 pub use connect_form::{SsiForm, SsiWay};
 pub use design::{Design, Designer, Edit};
 pub use encoder::Encoder;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::design::Edit;
-use super::{Action, Done, Encoder, Hunt, TEXTS};
+use super::{Done, Encoder, Hunt, SsiAction, TEXTS};
 use crate::app::action::Opened;
 use crate::app::documents::{document_of, only_looked_at};
 use crate::app::services::{JobEnd, Services, World};
@@ -17,7 +17,7 @@ use crate::profile::{Body, Document, ProfileError};
 
 impl DeviceModel for Encoder {
     const TAB: Tab = Tab::named("Ssi");
-    type Action = Action;
+    type Action = SsiAction;
     type Done = Done;
 
     fn prepare(&self, _world: &World) -> Prepare<Ssi> {
@@ -37,7 +37,7 @@ impl DeviceModel for Encoder {
         self.submit(SsiJob::Hello, services);
     }
 
-    fn act(&mut self, action: Action, context: &mut ActContext<'_>) {
+    fn act(&mut self, action: SsiAction, context: &mut ActContext<'_>) {
         Encoder::act(self, action, context);
     }
 

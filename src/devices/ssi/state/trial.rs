@@ -1,7 +1,7 @@
 //! A frame to try a layout with: a position and its bits, from the one to the other and back.
 
 use crate::app::Text;
-use crate::devices::ssi::protocol::{Cell, Finding, Flags, Layout, Location, Reading, parse_frame};
+use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Layout, Location, parse_frame};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
@@ -18,10 +18,10 @@ pub struct Decoded {
     /// The frame, right-justified.
     pub frame: u64,
     /// Its position and flags.
-    pub reading: Reading,
+    pub reading: FrameReading,
     /// The position, if the bits are one, and what it is on the shaft or scale.
     pub place: Option<(u64, Location)>,
-    pub findings: Vec<Finding>,
+    pub findings: Vec<FrameFinding>,
     /// The position may be used.
     pub is_valid: bool,
 }

@@ -6,7 +6,7 @@ use super::wiring;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Action as Ssi, Encoder, TEXTS};
+use crate::devices::ssi::state::{Encoder, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card_with, empty, enabled_button, paragraph, row, two_columns};

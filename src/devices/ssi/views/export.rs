@@ -3,7 +3,7 @@
 use egui::{ScrollArea, Ui};
 
 use crate::app::{Action, DeviceCommand};
-use crate::devices::ssi::state::{Action as Ssi, Encoder, Format, TEXTS};
+use crate::devices::ssi::state::{Encoder, Format, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{button, card, card_with, enabled_button, name, paragraph, problem};
 use crate::ui::{Theme, icons};

@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Class, Descriptor, Doubt, Proposal, Search};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Action as Ssi, Encoder, Hunt, Origin, TEXTS, read_clocks};
+use crate::devices::ssi::state::{Encoder, Hunt, Origin, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
     card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,

@@ -7,7 +7,7 @@ use crate::devices::ssi::views::say;
 use egui::{Key, Ui};
 
 use crate::app::{Action, Text};
-use crate::devices::ssi::state::{Action as Ssi, Encoder, Entry, Field, Input, Row, whole};
+use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
 use crate::ui::controls::{LABELS, choice, entry, problem, settled_entry};
 

@@ -9,7 +9,7 @@ use crate::app::{Action, AnyDevice, DeviceCommand, DeviceModel, PendingEdits, St
 use crate::devices::ssi::protocol::Family;
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::strip::{self, Strip};
-use crate::devices::ssi::state::{Action as Ssi, Edit, Encoder, Group, TEXTS, Try};
+use crate::devices::ssi::state::{Edit, Encoder, Group, SsiAction as Ssi, TEXTS, Try};
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{BitStrip, StripEvent, bit_strip};
 use crate::ui::controls::{

@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Location, Meaning, frame_bits};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Action as Ssi, Decoded, Encoder, TEXTS, Try, whole};
+use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, Try, whole};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{card_with, entry, icon_button, mono_entry, name, paragraph, problem, row, settled_entry};
 use crate::ui::{Theme, icons};

@@ -7,7 +7,7 @@ use crate::analysis::capture::Capture;
 use crate::analysis::quality::Family;
 use crate::app::services::World;
 use crate::app::{Kinds, Tool};
-use crate::signals::state::{Action, Judge};
+use crate::signals::state::{Judge, SignalsAction};
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
@@ -17,7 +17,7 @@ fn services() -> (Services, tempfile::TempDir) {
 
 fn started(services: &mut Services) -> Signals {
     let mut signals = Signals::default();
-    signals.act(Action::Source(SourceAction::Start), services);
+    signals.act(SignalsAction::Source(SourceAction::Start), services);
     assert!(signals.source.is_running());
     signals
 }
@@ -65,11 +65,11 @@ fn what_was_measured_by_other_limits_is_judged_again() {
     let (mut services, _folder) = services();
     let mut signals = started(&mut services);
     let before = signals.judge();
-    signals.act(Action::SetFamily(Family::AfsAfm60), &mut services);
+    signals.act(SignalsAction::SetFamily(Family::AfsAfm60), &mut services);
     // 0.84 V are too little for HIPERFACE alone.
     signals.measured(signals.source.runs, measurement(before), &mut services);
     assert!(!signals.findings().is_empty());
-    signals.act(Action::Source(SourceAction::Stop), &mut services);
+    signals.act(SignalsAction::Source(SourceAction::Stop), &mut services);
     until(&mut signals, &mut services, |signals| signals.findings().is_empty());
 }
 
@@ -96,7 +96,7 @@ fn a_task_that_fails_is_told_and_nothing_waits_for_it() {
     assert!(signals.source.is_running(), "of an earlier start");
     signals.done(Done::Failed(Failed::Measure(signals.source.runs)), &mut services);
     assert!(!signals.source.is_running());
-    signals.act(Action::Open("/nowhere/at.all.csv".into()), &mut services);
+    signals.act(SignalsAction::Open("/nowhere/at.all.csv".into()), &mut services);
     let number = signals.reading().unwrap().number;
     signals.done(Done::Failed(Failed::Read(number + 1)), &mut services);
     assert!(signals.reading().is_some(), "of another attempt");

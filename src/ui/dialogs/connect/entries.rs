@@ -2,7 +2,7 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::connect::{Action as Connect, Connect as Dialog, Typed};
+use crate::app::connect::{Connect as Dialog, ConnectAction as Connect, Typed};
 use crate::app::{Action, explain};
 use crate::link::Echo;
 use crate::parameter::Entry;

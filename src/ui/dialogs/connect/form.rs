@@ -5,7 +5,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::app::connect::form::FormModel;
-use crate::app::connect::{Action as Connect, Connect as Dialog};
+use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use crate::ui::Theme;
 
 /// The form of a kind of device, as the device implements it.

@@ -4,7 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 
 use super::{theme, window};
-use crate::ui::widgets::{Gauge, Step, StepState, Steps, StepsEvent, steps};
+use crate::ui::widgets::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 
 #[derive(Default)]
 struct Run {
@@ -13,8 +13,8 @@ struct Run {
     events: Vec<StepsEvent>,
 }
 
-fn step(title: &str, state: StepState, note: &str) -> Step {
-    Step { title: title.to_owned(), state, word: format!("{state:?}"), note: note.to_owned(), ..Step::default() }
+fn step(title: &str, state: StepState, note: &str) -> StepRow {
+    StepRow { title: title.to_owned(), state, word: format!("{state:?}"), note: note.to_owned(), ..StepRow::default() }
 }
 
 fn procedure(run: Run) -> Harness<'static, Run> {
@@ -28,7 +28,7 @@ fn procedure(run: Run) -> Harness<'static, Run> {
             limits: "498…502 rpm".to_owned(),
             scale: 450.0..=550.0,
         };
-        let turn = Step { gauges: vec![speed], ..step("Turn", StepState::Waiting, "Run the motor at 500 rpm.") };
+        let turn = StepRow { gauges: vec![speed], ..step("Turn", StepState::Waiting, "Run the motor at 500 rpm.") };
         let list = [step("Ask", StepState::Done, "Another drive"), turn, step("Check", StepState::ToCome, "")];
         let start = Some(("Start", run.refused.map_or(Ok(()), Err)));
         let model = Steps { steps: &list, start, skip: Some("Leave out") };

@@ -7,7 +7,7 @@ use super::form;
 use crate::bits::{hex, hex_compact};
 use crate::buses::ubicom::protocol::PositionWord;
 use crate::cli::decode::Explained;
-use crate::devices::biss::protocol::{FrameError, Layout, Reading};
+use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 
 /// Bytes that hold a frame, right-justified.
 pub(super) const BYTES: usize = 6;
@@ -42,7 +42,7 @@ pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
 }
 
 /// Turns, steps and angle, for a person and for a script.
-fn place(layout: &Layout, reading: &Reading, raw: u64, more: &mut Map<String, Json>) -> String {
+fn place(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
     let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
     more.extend(pairs.map(|(key, value)| (key.to_owned(), value)));

@@ -6,7 +6,7 @@ use std::time::Duration;
 use super::{Attempt, ExchangeError, Master, Taken};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
 use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
-use crate::devices::biss::procedures::error::{Asked, Damage, Error};
+use crate::devices::biss::procedures::error::{Damage, Error, RequestedItem};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::station::Bus;
 use crate::devices::biss::protocol::{FrameError, RegisterAddress};
@@ -76,7 +76,7 @@ impl<'a> Master<'a> {
     /// Selects the bank of a register, where it is not known to be selected.
     pub(super) fn select_bank(&mut self, address: RegisterAddress) -> Result<(), Error> {
         let Some(bank) = address.bank() else { return Ok(()) };
-        self.ask(Asked::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_once(address))
+        self.ask(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_once(address))
     }
 
     fn select_once(&mut self, address: RegisterAddress) -> Attempt<()> {

@@ -9,7 +9,7 @@ use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
 };
-use crate::devices::biss::procedures::error::{Asked, Damage, asked_register};
+use crate::devices::biss::procedures::error::{Damage, RequestedItem, asked_register};
 use crate::devices::biss::procedures::position::PositionReading;
 use crate::devices::biss::procedures::{Echo, Error};
 use crate::devices::biss::protocol::RegisterAddress;
@@ -53,7 +53,9 @@ impl Master<'_> {
     fn register_once(&mut self, register: u16, order: ByteOrder) -> Attempt<u8> {
         Ok(match self.exchange(Request::Read { register }, order)? {
             Ok(Timed { reply: Reply::Value(value), .. }) => Ok(value),
-            Ok(Timed { reply, .. }) => return Err(Error::other_reply(Asked::Read(asked_register(register)), &reply)),
+            Ok(Timed { reply, .. }) => {
+                return Err(Error::other_reply(RequestedItem::Read(asked_register(register)), &reply));
+            }
             Err(trouble) => Err(trouble),
         })
     }
@@ -63,7 +65,7 @@ impl Master<'_> {
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
             Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(Taken::Yes),
             Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(Taken::No(None)),
-            Ok(Timed { reply, .. }) => return Err(Error::other_reply(Asked::Write(address, value), &reply)),
+            Ok(Timed { reply, .. }) => return Err(Error::other_reply(RequestedItem::Write(address, value), &reply)),
             Err(trouble) => Err(trouble),
         })
     }
@@ -71,7 +73,7 @@ impl Master<'_> {
     pub(super) fn pin_position_once(&mut self) -> Attempt<PositionReading> {
         let (word, at) = match self.exchange(Request::POSITION, ByteOrder::LowFirst)? {
             Ok(Timed { reply: Reply::Position(word), at }) => (word, at),
-            Ok(Timed { reply, .. }) => return Err(Error::other_reply(Asked::Position, &reply)),
+            Ok(Timed { reply, .. }) => return Err(Error::other_reply(RequestedItem::Position, &reply)),
             Err(trouble) => return Ok(Err(trouble)),
         };
         let layout = self.station.frame();

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use super::guide::{Attended, Course, Guide};
-use super::{Failure, Motion, Outcome, Run, Step, Task};
+use super::{Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{
     CalibrationCommand, CalibrationStatus, Filter, Procedure, ProcedureKind, Role, Temperature,
@@ -29,7 +29,7 @@ pub struct CalibrationReport {
 impl Guide<'_, '_> {
     pub(super) fn calibrate(&mut self) -> Result<Outcome, Failure> {
         let procedure = self.procedure(ProcedureKind::Calibration)?;
-        self.step(Step::Conditions);
+        self.step(ProcedureStep::Conditions);
         if let Some(filter) =
             self.role(Role::Filter).filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
         {
@@ -59,7 +59,7 @@ impl Guide<'_, '_> {
 
     /// One run. The second is not given up half-way when the user wishes an end: that would lose the table.
     fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
-        self.step(Step::Run(run));
+        self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
         let (command, before, done) = if run.is_clockwise() {
             let (before, done) = (CalibrationStatus::CounterclockwiseDone, CalibrationStatus::ClockwiseDone);

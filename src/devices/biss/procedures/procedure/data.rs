@@ -4,7 +4,7 @@
 //! [`Master`]: crate::devices::biss::procedures::Master
 
 use super::guide::{Attended, Guide};
-use super::{Activity, Detail, Failure, Outcome, Step, Task};
+use super::{Activity, Detail, Failure, Outcome, ProcedureStep, Task};
 use crate::devices::biss::profile::RegisterChange;
 use crate::devices::biss::protocol::{Area, DataCommand, DataStatus, Procedure, ProcedureKind};
 
@@ -15,19 +15,19 @@ impl Guide<'_, '_> {
         // Manual 6.5: not during motor operation.
         let Attended::Go(_) = self.attend(Task::Stand)? else { return Ok(Outcome::Skipped { after: None }) };
         self.enter(&procedure)?;
-        self.step(Step::Open);
+        self.step(ProcedureStep::Open);
         self.await_status(&procedure, DataStatus::Closed.byte())?;
         self.command(&procedure, open)?;
         self.await_status(&procedure, DataStatus::Open.byte())?;
         self.does(Activity::Entered);
-        self.step(Step::Write);
+        self.step(ProcedureStep::Write);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {
             self.say(Detail::Count { done, total });
             self.master.write(change.address, change.new)?;
         }
         self.await_status(&procedure, DataStatus::Open.byte())?;
-        self.step(Step::Save);
+        self.step(ProcedureStep::Save);
         self.save(&procedure, DataCommand::Save.byte())?;
         // From here on what is stored has to be told, also when the user wishes an end.
         self.shielded(|guide| guide.finish_data(&procedure, registers))
@@ -36,7 +36,7 @@ impl Guide<'_, '_> {
     fn finish_data(&mut self, procedure: &Procedure, registers: &[RegisterChange]) -> Result<Outcome, Failure> {
         self.await_status(procedure, DataStatus::Closed.byte())?;
         self.lead_back()?;
-        self.step(Step::ReadBack);
+        self.step(ProcedureStep::ReadBack);
         let total = registers.len() as u64;
         for (done, change) in (0..).zip(registers) {
             self.say(Detail::Count { done, total });

@@ -1,7 +1,7 @@
 //! The choice of a filter (manual 6.6), at the end of which the encoder restarts.
 
 use super::guide::Guide;
-use super::{Activity, Failure, Outcome, Step};
+use super::{Activity, Failure, Outcome, ProcedureStep};
 use crate::devices::biss::protocol::{Filter, FilterCommand, FilterStatus, ProcedureKind, Role};
 
 impl Guide<'_, '_> {
@@ -9,19 +9,19 @@ impl Guide<'_, '_> {
         let procedure = self.procedure(ProcedureKind::FilterSelection)?;
         let in_force = self.role(Role::Filter).ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         self.enter(&procedure)?;
-        self.step(Step::Open);
+        self.step(ProcedureStep::Open);
         self.await_status(&procedure, FilterStatus::Closed.byte())?;
         self.command(&procedure, FilterCommand::Open.byte())?;
         self.await_status(&procedure, FilterStatus::WaitForValue.byte())?;
         self.does(Activity::Entered);
-        self.step(Step::Write);
+        self.step(ProcedureStep::Write);
         self.command(&procedure, to.byte())?;
         self.await_status(&procedure, FilterStatus::WaitForSave.byte())?;
-        self.step(Step::Save);
+        self.step(ProcedureStep::Save);
         self.save(&procedure, FilterCommand::Save.byte())?;
         self.shielded(|guide| {
             guide.restart()?;
-            guide.step(Step::ReadBack);
+            guide.step(ProcedureStep::ReadBack);
             guide.read_back(in_force, to.byte())?;
             Ok(Outcome::FilterSelected(to))
         })

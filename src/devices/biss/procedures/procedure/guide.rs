@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use super::operator::Measured;
 use super::speed_monitor::SpeedMonitor;
-use super::{Activity, Answer, Demand, Detail, Failure, LeftState, Motion, News, Operator, Run, Step, Task};
+use super::{Activity, Answer, Demand, Detail, Failure, LeftState, Motion, News, Operator, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
@@ -43,7 +43,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     tell: &'g mut dyn FnMut(News),
     standing: LeftState,
     op: usize,
-    step: Step,
+    step: ProcedureStep,
     cycles: u64,
 }
 
@@ -80,7 +80,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         tell: &'g mut dyn FnMut(News),
     ) -> Self {
         let standing = LeftState::in_operation(false);
-        Guide { master, description, operator, tell, standing, op: 0, step: Step::LeadBack, cycles: 0 }
+        Guide { master, description, operator, tell, standing, op: 0, step: ProcedureStep::LeadBack, cycles: 0 }
     }
 
     /// The host's side of the line.
@@ -103,7 +103,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.cycles
     }
 
-    pub(in crate::devices::biss::procedures) fn at(&self) -> Step {
+    pub(in crate::devices::biss::procedures) fn at(&self) -> ProcedureStep {
         self.step
     }
 
@@ -112,7 +112,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.op = op;
     }
 
-    pub(super) fn step(&mut self, step: Step) {
+    pub(super) fn step(&mut self, step: ProcedureStep) {
         self.step = step;
         self.say(Detail::Begins);
     }
@@ -140,7 +140,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// Back to operation and without the password, whatever has happened. Nothing is sent where it is so already.
     pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
-        self.step(Step::LeadBack);
+        self.step(ProcedureStep::LeadBack);
         let description = self.description.clone();
         let (master, standing) = (&mut *self.master, &mut self.standing);
         let ended = master.shielded(|master| {
@@ -155,7 +155,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// Password and device mode.
     pub(super) fn enter(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         let mode = DeviceMode::new(procedure.mode);
-        self.step(Step::Enter(mode));
+        self.step(ProcedureStep::Enter(mode));
         let Some(lock) = self.description.lock() else { return Err(Failure::NotDescribed { kind: procedure.kind }) };
         unlock(self.master, lock, &mut self.standing)?;
         set_mode(self.master, lock, mode, &mut self.standing)?;
@@ -273,7 +273,7 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     /// The encoder restarts, or may: waits until it answers again, and looks where it is then.
     pub(super) fn restart(&mut self) -> Result<(), Error> {
-        self.step(Step::Restart);
+        self.step(ProcedureStep::Restart);
         self.standing.may_have_restarted();
         let Some(lock) = self.description.lock() else { return Ok(()) };
         let standing = &mut self.standing;
@@ -289,7 +289,7 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     /// Asks the person at the motor for something, measures it, and goes on when it fits and the person says so.
     pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
-        self.step(Step::Await(task));
+        self.step(ProcedureStep::Await(task));
         let begun = self.master.now();
         let mut gauge = SpeedMonitor::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
         let mut is_told = false;

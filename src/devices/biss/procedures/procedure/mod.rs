@@ -30,7 +30,7 @@ pub(super) use guide::Guide;
 pub use left_state::{Activity, LeftState, Possible};
 pub use operator::{Advice, Answer, Blocker, Demand, Operator, OperatorChannel, Run, SpeedRange, Task, Unattended};
 pub use speed_monitor::Motion;
-pub use steps::{Detail, News, Step, steps_of};
+pub use steps::{Detail, News, ProcedureStep, steps_of};
 pub use wiegand::WiegandReport;
 
 use super::{Error, Master, PositionReading, identify};
@@ -84,14 +84,14 @@ impl Guide<'_, '_> {
             Op::Calibrate => self.calibrate(),
             Op::WiegandTest { save } => self.test_wiegand(*save),
             Op::WriteRegister { address, old, new, cycles } => {
-                self.step(Step::Write);
+                self.step(ProcedureStep::Write);
                 let ended = self.master.write(*address, *new);
                 if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {
                     (0..*cycles).for_each(|_| self.spend());
                 }
                 ended?;
                 if old.is_some() {
-                    self.step(Step::ReadBack);
+                    self.step(ProcedureStep::ReadBack);
                     self.shielded(|guide| guide.read_back(*address, *new))?;
                 }
                 Ok(Outcome::Stored { registers: 1 })

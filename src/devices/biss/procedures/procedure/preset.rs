@@ -2,7 +2,7 @@
 //! either.
 
 use super::guide::{Attended, Guide};
-use super::{Activity, Failure, Outcome, Step, Task};
+use super::{Activity, Failure, Outcome, ProcedureStep, Task};
 use crate::devices::biss::procedures::PositionReading;
 use crate::devices::biss::profile::{PresetParts, RegisterRange};
 use crate::devices::biss::protocol::{
@@ -17,19 +17,19 @@ impl Guide<'_, '_> {
         let procedure = self.procedure(ProcedureKind::Preset)?;
         let registers: Vec<(RegisterAddress, u8)> = value_of(&procedure)?.addresses().zip(to.emit()).collect();
         self.enter(&procedure)?;
-        self.step(Step::Open);
+        self.step(ProcedureStep::Open);
         self.command(&procedure, PresetCommand::Edit.byte())?;
         self.await_status(&procedure, PresetStatus::WaitForValue.byte())?;
         self.does(Activity::Entered);
-        self.step(Step::Write);
+        self.step(ProcedureStep::Write);
         for (address, byte) in &registers {
             self.master.write(*address, *byte)?;
         }
-        self.step(Step::Save);
+        self.step(ProcedureStep::Save);
         self.save(&procedure, PresetCommand::Save.byte())?;
         self.shielded(|guide| {
             guide.restart()?;
-            guide.step(Step::ReadBack);
+            guide.step(ProcedureStep::ReadBack);
             for (address, byte) in &registers {
                 guide.read_back(*address, *byte)?;
             }
@@ -43,11 +43,11 @@ impl Guide<'_, '_> {
         let Attended::Go(_) = self.attend(Task::StandAtPlace)? else { return Ok(Outcome::Skipped { after: None }) };
         let from = self.master.position()?;
         self.enter(&procedure)?;
-        self.step(Step::Fire);
+        self.step(ProcedureStep::Fire);
         self.save(&procedure, parts.command().byte())?;
         self.shielded(|guide| {
             guide.restart()?;
-            guide.step(Step::ReadBack);
+            guide.step(ProcedureStep::ReadBack);
             let to = guide.master.position()?;
             let expected = preset(&from, parts, value);
             if distance(expected, &to) > ((1_u64 << to.singleturn_bits) / TREMBLE).max(1) {

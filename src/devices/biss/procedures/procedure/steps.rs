@@ -8,7 +8,7 @@ use crate::devices::biss::protocol::DeviceMode;
 
 /// A step of an operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Step {
+pub enum ProcedureStep {
     /// Checks conditions that do not depend on the motor: the filter.
     Conditions,
     /// Waits for the person at the motor.
@@ -40,7 +40,7 @@ pub struct News {
     /// Index of the operation in the plan, counted from 0.
     pub op: usize,
     /// The step of the operation.
-    pub step: Step,
+    pub step: ProcedureStep,
     /// Detail of the step.
     pub detail: Detail,
 }
@@ -66,56 +66,79 @@ pub enum Detail {
 }
 
 /// The steps of an operation. A restart of the encoder leads back by itself.
-pub fn steps_of(op: &Op) -> Vec<Step> {
-    let entered = |mode, steps: &[Step]| {
-        let mut all = vec![Step::Enter(mode)];
+pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
+    let entered = |mode, steps: &[ProcedureStep]| {
+        let mut all = vec![ProcedureStep::Enter(mode)];
         all.extend(steps);
         all
     };
     match op {
         Op::StoreData { .. } => {
-            let own = [Step::Open, Step::Write, Step::Save, Step::LeadBack, Step::ReadBack];
-            let mut steps = vec![Step::Await(Task::Stand)];
+            let own = [
+                ProcedureStep::Open,
+                ProcedureStep::Write,
+                ProcedureStep::Save,
+                ProcedureStep::LeadBack,
+                ProcedureStep::ReadBack,
+            ];
+            let mut steps = vec![ProcedureStep::Await(Task::Stand)];
             steps.extend(entered(DeviceMode::DATA_WRITE, &own));
             steps
         }
-        Op::StorePreset { .. } => {
-            entered(DeviceMode::PRESET, &[Step::Open, Step::Write, Step::Save, Step::Restart, Step::ReadBack])
-        }
+        Op::StorePreset { .. } => entered(
+            DeviceMode::PRESET,
+            &[
+                ProcedureStep::Open,
+                ProcedureStep::Write,
+                ProcedureStep::Save,
+                ProcedureStep::Restart,
+                ProcedureStep::ReadBack,
+            ],
+        ),
         Op::FirePreset { .. } => {
-            let mut steps = vec![Step::Await(Task::StandAtPlace)];
-            steps.extend(entered(DeviceMode::PRESET, &[Step::Fire, Step::Restart, Step::ReadBack]));
+            let mut steps = vec![ProcedureStep::Await(Task::StandAtPlace)];
+            steps.extend(entered(
+                DeviceMode::PRESET,
+                &[ProcedureStep::Fire, ProcedureStep::Restart, ProcedureStep::ReadBack],
+            ));
             steps
         }
-        Op::SelectFilter { .. } => {
-            entered(DeviceMode::FILTER, &[Step::Open, Step::Write, Step::Save, Step::Restart, Step::ReadBack])
-        }
+        Op::SelectFilter { .. } => entered(
+            DeviceMode::FILTER,
+            &[
+                ProcedureStep::Open,
+                ProcedureStep::Write,
+                ProcedureStep::Save,
+                ProcedureStep::Restart,
+                ProcedureStep::ReadBack,
+            ],
+        ),
         Op::Calibrate => {
             let (first, second) = (Run::CalibrationCounterclockwise, Run::CalibrationClockwise);
             vec![
-                Step::Conditions,
-                Step::Await(Task::Turn(first)),
-                Step::Enter(DeviceMode::CALIBRATION),
-                Step::Run(first),
-                Step::Await(Task::Turn(second)),
-                Step::Run(second),
-                Step::LeadBack,
+                ProcedureStep::Conditions,
+                ProcedureStep::Await(Task::Turn(first)),
+                ProcedureStep::Enter(DeviceMode::CALIBRATION),
+                ProcedureStep::Run(first),
+                ProcedureStep::Await(Task::Turn(second)),
+                ProcedureStep::Run(second),
+                ProcedureStep::LeadBack,
             ]
         }
         Op::WiegandTest { save } => {
             let (first, second) = (Run::WiegandClockwise, Run::WiegandCounterclockwise);
             let mut steps = vec![
-                Step::Await(Task::Turn(first)),
-                Step::Enter(DeviceMode::WIEGAND_TEST),
-                Step::Run(first),
-                Step::Await(Task::Turn(second)),
-                Step::Run(second),
-                Step::Results,
+                ProcedureStep::Await(Task::Turn(first)),
+                ProcedureStep::Enter(DeviceMode::WIEGAND_TEST),
+                ProcedureStep::Run(first),
+                ProcedureStep::Await(Task::Turn(second)),
+                ProcedureStep::Run(second),
+                ProcedureStep::Results,
             ];
-            steps.extend(save.then_some(Step::Save));
-            steps.push(Step::LeadBack);
+            steps.extend(save.then_some(ProcedureStep::Save));
+            steps.push(ProcedureStep::LeadBack);
             steps
         }
-        Op::WriteRegister { .. } => vec![Step::Write, Step::ReadBack],
+        Op::WriteRegister { .. } => vec![ProcedureStep::Write, ProcedureStep::ReadBack],
     }
 }

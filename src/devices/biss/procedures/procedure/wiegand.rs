@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::guide::{Attended, Course, Guide};
-use super::{Activity, Failure, Motion, Outcome, Run, Step, Task};
+use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
 
@@ -35,7 +35,7 @@ impl Guide<'_, '_> {
             return Ok(Outcome::Skipped { after: Some(first) });
         };
         self.collect(second, &procedure, counterclockwise)?;
-        self.step(Step::Results);
+        self.step(ProcedureStep::Results);
         let results = procedure.data.and_then(|error| error.plus(1));
         let results = results.ok_or(Failure::NotDescribed { kind: procedure.kind })?;
         let bytes = self.master.read_run(results, 4)?;
@@ -51,7 +51,7 @@ impl Guide<'_, '_> {
 
     /// One direction.
     fn collect(&mut self, run: Run, procedure: &Procedure, motion: Option<Motion>) -> Result<(), Failure> {
-        self.step(Step::Run(run));
+        self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
         let (command, [before, active, done]) = if run.is_clockwise() {
             let statuses = [WiegandStatus::Stopped, WiegandStatus::Clockwise, WiegandStatus::WaitForDirection];
@@ -86,7 +86,7 @@ impl Guide<'_, '_> {
 
     /// Keeps the result. Nothing reads it back before a restart: the encoder's word is all there is.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
-        self.step(Step::Save);
+        self.step(ProcedureStep::Save);
         self.does(Activity::Saving);
         let ended = self.master.write(procedure.command, WiegandCommand::Save.byte());
         if !matches!(ended, Err(Error::Cancelled | Error::Refused { .. })) {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::{BISS, Host};
-use crate::devices::biss::protocol::{FrameError, Layout, Reading};
+use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 use crate::devices::biss::sim::{AtAdapter, Encoder};
 use crate::sim::ByteDevice;
 
@@ -81,7 +81,7 @@ fn a_fast_stream_has_no_gap() {
         let Data::Biss(data) = data else { panic!("{data:?}") };
         assert_eq!((data.t0_us, data.period_us, data.width), (start_us + 50 * count, 50, 6));
         for (status, raw) in &data.values {
-            let Reading { multiturn, singleturn, error, .. } = layout.parse(*raw).unwrap();
+            let PositionData { multiturn, singleturn, error, .. } = layout.parse(*raw).unwrap();
             // Ten revolutions a second from the start of time.
             let steps = (start_us + 50 * count) * 10 * (1 << 17) / 1_000_000;
             let found = u64::from(multiturn) << 17 | u64::from(singleturn);

@@ -5,7 +5,7 @@ use super::{mismatch, name};
 use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
-use crate::devices::biss::procedures::check::{BissStepResult, Finding, Step};
+use crate::devices::biss::procedures::check::{BissStepResult, CheckFinding, CheckStep};
 use crate::devices::biss::protocol::Name;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::sheet;
@@ -14,66 +14,66 @@ pub fn check(lines: &[BissStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 
-fn step(step: Step) -> Text {
+fn step(step: CheckStep) -> Text {
     TEXTS.text(match step {
-        Step::Identity => "check.identity",
-        Step::Status => "check.status",
-        Step::Position => "check.position",
-        Step::DataSheet => "check.data_sheet",
-        Step::Limits => "check.limits",
-        Step::Wiegand => "check.wiegand",
-        Step::Readings => "check.line",
-        Step::Wear => "check.wear",
+        CheckStep::Identity => "check.identity",
+        CheckStep::Status => "check.status",
+        CheckStep::Position => "check.position",
+        CheckStep::DataSheet => "check.data_sheet",
+        CheckStep::Limits => "check.limits",
+        CheckStep::Wiegand => "check.wiegand",
+        CheckStep::Readings => "check.line",
+        CheckStep::Wear => "check.wear",
     })
 }
 
-fn finding(finding: &Finding) -> Text {
+fn finding(finding: &CheckFinding) -> Text {
     match finding {
-        Finding::Name(name) => plain(name),
-        Finding::SerialNumber(number) => Text::new("check.serial").with("number", number),
-        Finding::Firmware(firmware) => TEXTS.text("check.firmware").with("firmware", firmware),
-        Finding::Mismatch(found) => mismatch(found),
-        Finding::Error(bit, name) => bit_words("check.error", *bit, name.as_ref()),
-        Finding::Warning(bit, name) => bit_words("check.warning", *bit, name.as_ref()),
-        Finding::NotTold => TEXTS.text("check.not_told"),
-        Finding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode(*found)),
-        Finding::Open => TEXTS.text("check.open"),
-        Finding::Position(reading) if !reading.is_split_known => {
+        CheckFinding::Name(name) => plain(name),
+        CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),
+        CheckFinding::Firmware(firmware) => TEXTS.text("check.firmware").with("firmware", firmware),
+        CheckFinding::Mismatch(found) => mismatch(found),
+        CheckFinding::Error(bit, name) => bit_words("check.error", *bit, name.as_ref()),
+        CheckFinding::Warning(bit, name) => bit_words("check.warning", *bit, name.as_ref()),
+        CheckFinding::NotTold => TEXTS.text("check.not_told"),
+        CheckFinding::Mode(found) => TEXTS.text("check.mode").with_text("mode", mode(*found)),
+        CheckFinding::Open => TEXTS.text("check.open"),
+        CheckFinding::Position(reading) if !reading.is_split_known => {
             TEXTS.text("check.place_raw").with("raw", reading.raw())
         }
-        Finding::Position(reading) => TEXTS
+        CheckFinding::Position(reading) => TEXTS
             .text("check.place")
             .with("turns", reading.turns)
             .with("steps", reading.steps)
             .with_number("degrees", reading.degrees(), 3),
-        Finding::ErrorBit => TEXTS.text("check.error_bit"),
-        Finding::WarningBit => TEXTS.text("check.warning_bit"),
-        Finding::NoPosition => TEXTS.text("check.no_position"),
-        Finding::SumsFit => TEXTS.text("check.sums"),
-        Finding::Sheet(error) => TEXTS.text("check.sheet").with_text("why", sheet(error)),
-        Finding::NoSheet => TEXTS.text("check.no_sheet"),
-        Finding::OtherFrame { sheet, description } => TEXTS
+        CheckFinding::ErrorBit => TEXTS.text("check.error_bit"),
+        CheckFinding::WarningBit => TEXTS.text("check.warning_bit"),
+        CheckFinding::NoPosition => TEXTS.text("check.no_position"),
+        CheckFinding::SumsFit => TEXTS.text("check.sums"),
+        CheckFinding::Sheet(error) => TEXTS.text("check.sheet").with_text("why", sheet(error)),
+        CheckFinding::NoSheet => TEXTS.text("check.no_sheet"),
+        CheckFinding::OtherFrame { sheet, description } => TEXTS
             .text("check.other_frame")
             .with("sheet", format!("{}+{}", sheet.0, sheet.1))
             .with("description", format!("{}+{}", description.0, description.1)),
-        Finding::Temperature { celsius, low, high } => {
+        CheckFinding::Temperature { celsius, low, high } => {
             TEXTS.text("check.temperature").with_number("celsius", *celsius, 0).with("low", low).with("high", high)
         }
-        Finding::Supply { millivolt, low, high } => {
+        CheckFinding::Supply { millivolt, low, high } => {
             TEXTS.text("check.supply").with("millivolt", millivolt).with("low", low).with("high", high)
         }
-        Finding::Current { milliampere, high } => {
+        CheckFinding::Current { milliampere, high } => {
             TEXTS.text("check.current").with("milliampere", milliampere).with("high", high)
         }
-        Finding::Wiegand(result) => TEXTS
+        CheckFinding::Wiegand(result) => TEXTS
             .text("check.pulses")
             .with_number("cw", result.lowest_cw.volts(), 1)
             .with_number("ccw", result.lowest_ccw.volts(), 1),
-        Finding::NotTested => TEXTS.text("check.not_tested"),
-        Finding::Readings { asked, damaged } => {
+        CheckFinding::NotTested => TEXTS.text("check.not_tested"),
+        CheckFinding::Readings { asked, damaged } => {
             TEXTS.text("check.readings").with("asked", asked).with("damaged", damaged)
         }
-        Finding::Wear { seen, limit } => TEXTS.text("check.cycles").with("seen", seen).with("limit", limit),
+        CheckFinding::Wear { seen, limit } => TEXTS.text("check.cycles").with("seen", seen).with("limit", limit),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
-    Advice, Blocker, CalibrationReport, Demand, Motion, Outcome, Run, SpeedRange, Step, Task, WiegandReport,
+    Advice, Blocker, CalibrationReport, Demand, Motion, Outcome, ProcedureStep, Run, SpeedRange, Task, WiegandReport,
 };
 use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage};
@@ -21,25 +21,25 @@ pub fn procedure(op: &Op) -> Text {
     })
 }
 
-pub fn step(step: Step) -> Text {
+pub fn step(step: ProcedureStep) -> Text {
     match step {
-        Step::Await(task) => self::task(task),
-        Step::Run(run) => TEXTS.text(match run {
+        ProcedureStep::Await(task) => self::task(task),
+        ProcedureStep::Run(run) => TEXTS.text(match run {
             Run::CalibrationCounterclockwise => "guide.run_calibration_ccw",
             Run::CalibrationClockwise => "guide.run_calibration_cw",
             Run::WiegandClockwise => "guide.run_wiegand_cw",
             Run::WiegandCounterclockwise => "guide.run_wiegand_ccw",
         }),
-        Step::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode(mode)),
-        Step::Conditions => TEXTS.text("guide.conditions"),
-        Step::Open => TEXTS.text("guide.open"),
-        Step::Write => TEXTS.text("guide.write"),
-        Step::Results => TEXTS.text("guide.results"),
-        Step::Save => TEXTS.text("guide.save"),
-        Step::Fire => TEXTS.text("guide.fire"),
-        Step::Restart => TEXTS.text("guide.restart"),
-        Step::LeadBack => TEXTS.text("guide.lead_back"),
-        Step::ReadBack => TEXTS.text("guide.read_back"),
+        ProcedureStep::Enter(mode) => TEXTS.text("guide.enter").with_text("mode", self::mode(mode)),
+        ProcedureStep::Conditions => TEXTS.text("guide.conditions"),
+        ProcedureStep::Open => TEXTS.text("guide.open"),
+        ProcedureStep::Write => TEXTS.text("guide.write"),
+        ProcedureStep::Results => TEXTS.text("guide.results"),
+        ProcedureStep::Save => TEXTS.text("guide.save"),
+        ProcedureStep::Fire => TEXTS.text("guide.fire"),
+        ProcedureStep::Restart => TEXTS.text("guide.restart"),
+        ProcedureStep::LeadBack => TEXTS.text("guide.lead_back"),
+        ProcedureStep::ReadBack => TEXTS.text("guide.read_back"),
     }
 }
 

@@ -244,13 +244,13 @@ mod tests {
     use super::*;
     use crate::app::Language::{English, German};
     use crate::devices::biss::procedures::Error;
-    use crate::devices::biss::procedures::procedure::{Blocker, Possible, Step, Task};
-    use crate::devices::biss::procedures::write::Left;
+    use crate::devices::biss::procedures::procedure::{Blocker, Possible, ProcedureStep, Task};
+    use crate::devices::biss::procedures::write::EndState;
     use crate::devices::biss::protocol::{DeviceMode, ProcedureKind, RegisterAddress};
 
     fn cut_off(write_cycles: u64, cause: Failure, standing: Option<LeftState>) -> Interrupted {
         let done = Written { ops: 1, write_cycles, ..Written::default() };
-        let left = Left { at: Step::Run(Run::CalibrationClockwise), standing };
+        let left = EndState { at: ProcedureStep::Run(Run::CalibrationClockwise), standing };
         Interrupted { done, unfinished: None, cause, left }
     }
 

@@ -12,7 +12,7 @@ use crate::buses::ethernet_ip::protocol::{
     NetworkPriority, NetworkType, Owner, Path, RealTimeFormat, RequestTimeout, SocketAddress, Transport,
 };
 use crate::devices::hiperdrive::procedures::Error;
-use crate::devices::hiperdrive::procedures::error::{Asked, Refusal};
+use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
 use crate::devices::hiperdrive::protocol::{ASSEMBLIES, Layout, Topology};
 
 /// A cyclic connection that was opened.
@@ -87,7 +87,7 @@ impl Master<'_> {
             }
         }
         match refused {
-            Some(refusal) => Err(Error::Refused { asked: Asked::Open, refusal }),
+            Some(refusal) => Err(Error::Refused { asked: RequestedItem::Open, refusal }),
             None => Err(Error::NoCyclic),
         }
     }
@@ -98,7 +98,7 @@ impl Master<'_> {
     /// [`Error::Refused`]; the way.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
-        match self.shielded(|master| master.request(Asked::Close, &close.request(), Repeats::Always)) {
+        match self.shielded(|master| master.request(RequestedItem::Close, &close.request(), Repeats::Always)) {
             Err(Error::Refused { refusal, .. }) if refusal.extended.first() == Some(&ENDED) => Ok(()),
             ended => ended.map(|_| ()),
         }
@@ -142,10 +142,10 @@ impl Master<'_> {
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
         // Opened twice it would be refused as in use: it is sent once. Where its reply is not understood it may be open.
-        let asked = self.request_with(Asked::Open, &open.request(), &[ours], ONCE);
+        let asked = self.request_with(RequestedItem::Open, &open.request(), &[ours], ONCE);
         let opened = asked.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
-            Err(cause) => Err(Error::Damaged { asked: Asked::Open, tries: 1, cause: cause.into() }),
+            Err(cause) => Err(Error::Damaged { asked: RequestedItem::Open, tries: 1, cause: cause.into() }),
         });
         if let Err(Error::NoReply { .. } | Error::Damaged { .. }) = &opened {
             self.close_blindly(&close);

@@ -4,7 +4,7 @@
 use super::{Master, Repeats, settable};
 use crate::buses::ethernet_ip::protocol::{GeneralStatus, Request};
 use crate::devices::hiperdrive::procedures::Error;
-use crate::devices::hiperdrive::procedures::error::{Asked, Refusal};
+use crate::devices::hiperdrive::procedures::error::{Refusal, RequestedItem};
 use crate::devices::hiperdrive::procedures::identify::topology;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NUMERATOR, POSITION, REFERENCE, REQUESTED, UPPER, VARIANT,
@@ -20,7 +20,7 @@ impl Master<'_> {
     /// The way.
     pub(super) fn why_refused(
         &mut self,
-        asked: Asked,
+        asked: RequestedItem,
         number: ParameterNumber,
         refusal: Refusal,
     ) -> Result<Error, Error> {
@@ -48,7 +48,7 @@ impl Master<'_> {
             return Ok(false);
         };
         let request = Request::get(number.class(), 1, number.attribute());
-        match self.request(Asked::Parameter(number), &request, Repeats::Always) {
+        match self.request(RequestedItem::Parameter(number), &request, Repeats::Always) {
             Ok(reply) => Ok(number.row().is_some_and(|row| row.kind.parse(&reply.data) == Ok(Value::Number(0)))),
             Err(Error::Refused { .. }) => Ok(false),
             Err(error) => Err(error),
@@ -68,10 +68,10 @@ impl Master<'_> {
                 let range = self.range_now(number, row)?;
                 Ok(match range {
                     Some(range) => Error::Refuses(OutOfRange { number, name: row.name, value, range }),
-                    None => Error::Refused { asked: Asked::Set(number), refusal },
+                    None => Error::Refused { asked: RequestedItem::Set(number), refusal },
                 })
             }
-            _ => self.why_refused(Asked::Set(number), number, refusal),
+            _ => self.why_refused(RequestedItem::Set(number), number, refusal),
         }
     }
 

@@ -59,7 +59,7 @@ pub enum Button {
 
 /// An action of the user in the run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Action {
+pub enum AxisAction {
     /// Begin it, or begin it again.
     Begin,
     /// Something was typed.

@@ -1,7 +1,7 @@
 //! The results of the set-up, step by step. Each keeps the facts of the drive that it depends on. If one of them
 //! changes, whoever changed it, the result is void, and with it all later ones.
 
-use super::{Seen, Step};
+use super::{AxisStep, Seen};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
@@ -48,22 +48,22 @@ impl Origin {
 
 impl Chain {
     /// The first step that has no result; `None`: all of them have.
-    pub(super) fn end(&self) -> Option<Step> {
-        Step::ALL.get(self.0.len()).copied()
+    pub(super) fn end(&self) -> Option<AxisStep> {
+        AxisStep::ALL.get(self.0.len()).copied()
     }
 
     /// A step has a result.
-    pub(super) fn holds(&self, step: Step) -> bool {
+    pub(super) fn holds(&self, step: AxisStep) -> bool {
         step.index() < self.0.len()
     }
 
     /// A step was left out.
-    pub(super) fn is_skipped(&self, step: Step) -> bool {
+    pub(super) fn is_skipped(&self, step: AxisStep) -> bool {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
     /// A step has a result now. The same as before leaves those behind it; another one lets them fall: true.
-    pub(super) fn make(&mut self, step: Step, on: Basis, skipped: bool) -> bool {
+    pub(super) fn make(&mut self, step: AxisStep, on: Basis, skipped: bool) -> bool {
         let made = Made { on, skipped };
         let before = self.0.get(step.index()).copied();
         if before.is_some_and(|before| before.skipped == skipped && is_same(step, &before.on, &on)) {
@@ -77,28 +77,28 @@ impl Chain {
     }
 
     /// Lets fall what does not rest on the facts of now any more: the first step of those.
-    pub(super) fn fall(&mut self, now: &Basis) -> Option<Step> {
-        let stands = |(step, made): (&Step, &Made)| stands(*step, &made.on, now);
-        let left = Step::ALL.iter().zip(&self.0).take_while(|own| stands(*own)).count();
-        let fallen = (left < self.0.len()).then(|| Step::ALL.get(left).copied()).flatten();
+    pub(super) fn fall(&mut self, now: &Basis) -> Option<AxisStep> {
+        let stands = |(step, made): (&AxisStep, &Made)| stands(*step, &made.on, now);
+        let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| stands(*own)).count();
+        let fallen = (left < self.0.len()).then(|| AxisStep::ALL.get(left).copied()).flatten();
         self.0.truncate(left);
         fallen
     }
 }
 
 /// Returns whether the drive's own facts of a step are unchanged. Those of earlier steps are checked there.
-fn stands(step: Step, on: &Basis, now: &Basis) -> bool {
+fn stands(step: AxisStep, on: &Basis, now: &Basis) -> bool {
     match step {
-        Step::Request => now.requested == Some(true),
-        Step::Scale => (on.scale, on.pitch) == (now.scale, now.pitch),
-        Step::Confirm => now.confirmed,
-        Step::Reference => on.origin == now.origin,
-        Step::Upper => on.limits == now.limits,
-        Step::Jog | Step::Lower | Step::Test | Step::Save | Step::PowerCycle => true,
+        AxisStep::Request => now.requested == Some(true),
+        AxisStep::Scale => (on.scale, on.pitch) == (now.scale, now.pitch),
+        AxisStep::Confirm => now.confirmed,
+        AxisStep::Reference => on.origin == now.origin,
+        AxisStep::Upper => on.limits == now.limits,
+        AxisStep::Jog | AxisStep::Lower | AxisStep::Test | AxisStep::Save | AxisStep::PowerCycle => true,
     }
 }
 
 /// Returns whether a result equals the previous one.
-fn is_same(step: Step, before: &Basis, now: &Basis) -> bool {
-    stands(step, before, now) && (step != Step::Lower || before.lower == now.lower)
+fn is_same(step: AxisStep, before: &Basis, now: &Basis) -> bool {
+    stands(step, before, now) && (step != AxisStep::Lower || before.lower == now.lower)
 }

@@ -3,7 +3,7 @@
 use super::entries::{Entries, typed};
 use super::standstill::Shift;
 use super::supply::Power;
-use super::{Ask, Axis, Change, Confirmed, End, Outcome, Over, Seen, Step, TestTarget, Travel};
+use super::{Ask, Axis, AxisChange, AxisStep, Confirmed, End, Outcome, Over, Seen, TestTarget, Travel};
 
 impl Axis {
     /// Changes the entries.
@@ -21,8 +21,8 @@ impl Axis {
         let Some((ruler, position)) = seen.ruler().zip(seen.position) else { return };
         let Some(text) = typed(ruler, position) else { return };
         match self.step {
-            Step::Lower => self.entries.lower = text,
-            Step::Upper => self.entries.upper = text,
+            AxisStep::Lower => self.entries.lower = text,
+            AxisStep::Upper => self.entries.upper = text,
             _ => {}
         }
     }
@@ -47,7 +47,7 @@ impl Axis {
         if self.fallen().is_some() {
             return;
         }
-        if self.step == Step::Reference {
+        if self.step == AxisStep::Reference {
             // The person has set it, or said that it is right.
             self.unexplained = None;
         }
@@ -55,7 +55,7 @@ impl Axis {
         if self.chain.make(self.step, self.basis(seen), skipped)
             && let Some(next) = next
         {
-            self.undo_from(next, next == Step::Upper);
+            self.undo_from(next, next == AxisStep::Upper);
         }
         match next {
             Some(step) => self.enter(step, seen),
@@ -73,9 +73,9 @@ impl Axis {
         }
     }
 
-    fn enter(&mut self, step: Step, seen: &Seen) {
+    fn enter(&mut self, step: AxisStep, seen: &Seen) {
         self.step = step;
-        if step == Step::PowerCycle {
+        if step == AxisStep::PowerCycle {
             self.power = Some(Power::on(seen));
         }
     }
@@ -119,20 +119,20 @@ impl Axis {
         match self.asked.take() {
             Some(Ask::Try(values)) => {
                 self.agree(&values, true);
-                self.changes.extend(values.into_iter().map(|(number, value)| Change::Parameter(number, value)));
+                self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The mark is never saved.
-                self.saved &= self.step == Step::PowerCycle;
+                self.saved &= self.step == AxisStep::PowerCycle;
                 self.returned.clear();
             }
             Some(Ask::SetPosition(position)) => {
                 self.sets = Some(position);
-                self.changes.push(Change::Position(position));
+                self.changes.push(AxisChange::Position(position));
                 self.saved = false;
                 self.returned.clear();
             }
             Some(Ask::Save) => (self.saved, self.partly) = (true, false),
             Some(Ask::Restore(values)) => {
-                self.changes.retain(|change| matches!(change, Change::Position(_)));
+                self.changes.retain(|change| matches!(change, AxisChange::Position(_)));
                 (self.partly, self.returned) = (false, values);
             }
             _ => {}
@@ -146,7 +146,7 @@ impl Axis {
             i32::try_from(*value).ok()
         };
         match (&mut self.confirmed, value(158).zip(value(160))) {
-            (Some(confirmed), Some(limits)) if self.step == Step::Upper => match whole {
+            (Some(confirmed), Some(limits)) if self.step == AxisStep::Upper => match whole {
                 true => (confirmed.agreed, confirmed.begun) = (limits, None),
                 false => confirmed.begun = Some(limits),
             },
@@ -160,14 +160,14 @@ impl Axis {
         match self.asked.take() {
             Some(Ask::Try(values)) if begun => {
                 self.agree(&values, false);
-                self.changes.extend(values.into_iter().map(|(number, value)| Change::Parameter(number, value)));
+                self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The mark is never saved: without it everything else is as it was saved.
-                if self.step != Step::PowerCycle {
+                if self.step != AxisStep::PowerCycle {
                     (self.partly, self.saved) = (true, false);
                 }
             }
             Some(Ask::SetPosition(position)) if begun => {
-                self.changes.push(Change::Position(position));
+                self.changes.push(AxisChange::Position(position));
                 (self.partly, self.saved) = (true, false);
             }
             Some(Ask::Restore(_) | Ask::Save) if begun => self.partly = true,
@@ -196,7 +196,7 @@ impl Axis {
         if self.over.is_some() {
             return;
         }
-        if self.step == Step::Jog {
+        if self.step == AxisStep::Jog {
             self.travel.note(seen);
         }
         self.power = self.power.map(|power| power.followed(seen));
@@ -221,7 +221,7 @@ impl Axis {
         }
         match self.standstill.note(seen, self.origin(seen)) {
             Some(Shift::Jump) => self.jumps += 1,
-            Some(Shift::Unexplained(way)) if self.chain.holds(Step::Reference) => {
+            Some(Shift::Unexplained(way)) if self.chain.holds(AxisStep::Reference) => {
                 self.unexplained = Some(self.unexplained.unwrap_or_default() + way);
             }
             _ => {}
@@ -236,22 +236,22 @@ impl Axis {
     }
 
     /// Undoes the results of this step and the later ones. Taught entries (`taught`) stay as entered.
-    fn undo_from(&mut self, step: Step, taught: bool) {
-        if step <= Step::Confirm {
+    fn undo_from(&mut self, step: AxisStep, taught: bool) {
+        if step <= AxisStep::Confirm {
             self.confirmed = None;
         }
-        if step <= Step::Jog {
+        if step <= AxisStep::Jog {
             self.travel = Travel::default();
         }
-        if step <= Step::Reference {
+        if step <= AxisStep::Reference {
             (self.reference, self.unexplained) = (None, None);
         }
-        if step <= Step::Lower && !taught {
+        if step <= AxisStep::Lower && !taught {
             (self.entries.lower, self.entries.upper) = (String::new(), String::new());
         }
         (self.outcomes, self.going) = ([None; 3], None);
         self.saved = false;
-        if self.step != Step::PowerCycle {
+        if self.step != AxisStep::PowerCycle {
             self.power = None;
         }
     }

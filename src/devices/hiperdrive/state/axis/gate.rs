@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::supply::{MARK, Power, Restart, is_marked, mark};
-use super::{Ask, Axis, Button, Seen, Step, TestTarget, differences, words};
+use super::{Ask, Axis, AxisStep, Button, Seen, TestTarget, differences, words};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
@@ -76,9 +76,9 @@ impl Axis {
 
     fn ask_of_step(&self, seen: &Seen) -> Result<Ask, Text> {
         match self.step {
-            Step::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
-            Step::Request => Ok(Ask::Try(vec![(152, 1)])),
-            Step::Scale => {
+            AxisStep::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
+            AxisStep::Request => Ok(Ask::Try(vec![(152, 1)])),
+            AxisStep::Scale => {
                 let preview = self.entries.preview(seen)?;
                 if seen.scale == Some(preview.scale) {
                     return Err(TEXTS.text("hd_axis.already"));
@@ -88,25 +88,25 @@ impl Axis {
                 let all = [(154, numerator.into()), (156, denominator.into()), (158, low.into()), (160, high.into())];
                 Ok(Ask::Try(all.to_vec()))
             }
-            Step::Reference => {
+            AxisStep::Reference => {
                 let reference = self.entries.reference(seen.ruler(), seen.limits)?;
                 Ok(Ask::SetPosition(reference.becomes))
             }
-            Step::Upper => {
+            AxisStep::Upper => {
                 let (low, high) = self.taught(seen)?;
                 if seen.limits == Some((low, high)) {
                     return Err(TEXTS.text("hd_axis.already"));
                 }
                 Ok(Ask::Try(vec![(158, low.into()), (160, high.into())]))
             }
-            Step::Save => Ok(Ask::Save),
-            Step::PowerCycle => match (self.power, is_marked(seen), mark()) {
+            AxisStep::Save => Ok(Ask::Save),
+            AxisStep::PowerCycle => match (self.power, is_marked(seen), mark()) {
                 (Some(Power::On(_) | Power::Back { restart: Restart::Unproven, .. }), Some(false), Some(mark)) => {
                     Ok(Ask::Try(vec![(MARK, mark)]))
                 }
                 _ => Err(TEXTS.text("hd_axis.already")),
             },
-            Step::Confirm | Step::Jog | Step::Lower | Step::Test => Err(TEXTS.text("hd_axis.already")),
+            AxisStep::Confirm | AxisStep::Jog | AxisStep::Lower | AxisStep::Test => Err(TEXTS.text("hd_axis.already")),
         }
     }
 
@@ -185,7 +185,7 @@ impl Axis {
 
     /// Returns whether the previous step can be shown now.
     pub fn may_go_back(&self, seen: &Seen) -> bool {
-        self.step != Step::Request && self.asked.is_none() && !seen.moves
+        self.step != AxisStep::Request && self.asked.is_none() && !seen.moves
     }
 
     /// Returns whether the step can be skipped now.
@@ -209,34 +209,34 @@ impl Axis {
             return Err(words::fallen(step));
         }
         match self.step {
-            Step::Request => {
+            AxisStep::Request => {
                 lacks(seen.requested == Some(true), "hd_axis.needs_request")?;
                 lacks(seen.actual.is_some_and(|own| own.status.is_present()), "hd_axis.needs_drive")
             }
-            Step::Scale => {
+            AxisStep::Scale => {
                 let preview = self.entries.preview(seen)?;
                 lacks(seen.scale == Some(preview.scale), "hd_axis.needs_scale")
             }
-            Step::Confirm => lacks(self.is_confirmed(seen), "hd_axis.needs_confirm"),
-            Step::Jog => {
+            AxisStep::Confirm => lacks(self.is_confirmed(seen), "hd_axis.needs_confirm"),
+            AxisStep::Jog => {
                 lacks(self.travel.up > 0, "hd_axis.needs_up")?;
                 lacks(self.travel.down > 0, "hd_axis.needs_down")
             }
-            Step::Reference => {
+            AxisStep::Reference => {
                 let is_set = self.reference.is_some_and(|(_, origin)| origin == self.origin(seen));
-                lacks(is_set || self.chain.holds(Step::Reference), "hd_axis.needs_reference")
+                lacks(is_set || self.chain.holds(AxisStep::Reference), "hd_axis.needs_reference")
             }
-            Step::Lower => self.entries.lower(seen.ruler()).map(|_| ()),
-            Step::Upper => {
+            AxisStep::Lower => self.entries.lower(seen.ruler()).map(|_| ()),
+            AxisStep::Upper => {
                 let taught = self.taught(seen)?;
                 lacks(seen.limits == Some(taught), "hd_axis.needs_limits")
             }
-            Step::Test => {
+            AxisStep::Test => {
                 let reached = |place| self.outcome(place).is_some_and(|own| own.is_good());
                 lacks(TestTarget::ALL.into_iter().all(reached), "hd_axis.needs_test")
             }
-            Step::Save => lacks(self.saved, "hd_axis.needs_save"),
-            Step::PowerCycle => match self.power {
+            AxisStep::Save => lacks(self.saved, "hd_axis.needs_save"),
+            AxisStep::PowerCycle => match self.power {
                 Some(Power::Back { restart: Restart::Unproven, .. }) => Err(TEXTS.text("hd_axis.needs_proof")),
                 Some(Power::Back { restart: Restart::Disproved, .. }) => Err(TEXTS.text("hd_axis.not_restarted")),
                 _ => lacks(self.survived(), "hd_axis.needs_power"),

@@ -1,6 +1,6 @@
 //! The end of a run as it is written down, to be kept and printed: plain text that fits a page, lengths in millimetres.
 
-use super::{Axis, End, Reached, Seen, Step, TestTarget, words};
+use super::{Axis, AxisStep, End, Reached, Seen, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -34,13 +34,13 @@ pub fn report(axis: &Axis, now: &Seen, device: &Device, language: Language) -> O
         page.line("", &pitch);
     }
     page.space();
-    Step::ALL.into_iter().for_each(|step| step_lines(&mut page, axis, step, seen));
+    AxisStep::ALL.into_iter().for_each(|step| step_lines(&mut page, axis, step, seen));
     page.space();
     end_lines(axis, now).iter().for_each(|line| page.line("", line));
     Some(page.text)
 }
 
-fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
+fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &Seen) {
     let reached = axis.reached(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
     page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::reached(reached)));
@@ -49,7 +49,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: Step, seen: &Seen) {
     {
         page.line(INDENT, &found);
     }
-    if step == Step::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome(place).is_some()) {
+    if step == AxisStep::Test && TestTarget::ALL.into_iter().any(|place| axis.outcome(place).is_some()) {
         page.line(INDENT, &words::effort("hd_axis.report_effort"));
         for place in TestTarget::ALL {
             let Some(outcome) = axis.outcome(place) else { continue };

@@ -84,7 +84,7 @@ fn press(axis: &mut Axis, seen: &mut Seen, button: Button) -> Ask {
 }
 
 #[track_caller]
-fn next(axis: &mut Axis, seen: &Seen, step: Step) {
+fn next(axis: &mut Axis, seen: &Seen, step: AxisStep) {
     assert_eq!(axis.may_go_on(seen), Ok(()));
     go_on(axis, seen);
     assert_eq!(axis.step(), step);
@@ -92,7 +92,7 @@ fn next(axis: &mut Axis, seen: &Seen, step: Step) {
 
 fn go_on(axis: &mut Axis, seen: &Seen) {
     // The pitch that is typed is confirmed with that.
-    let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= Step::Scale);
+    let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= AxisStep::Scale);
     axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
 }
 
@@ -104,7 +104,7 @@ fn type_spindle(axis: &mut Axis) {
 /// Past it: what was confirmed measures from then on.
 #[track_caller]
 fn confirm_spindle(axis: &mut Axis, seen: &mut Seen) {
-    next(axis, seen, Step::Confirm);
+    next(axis, seen, AxisStep::Confirm);
     seen.pitch = axis.entries().pitch().ok();
     axis.look(seen);
 }
@@ -137,7 +137,8 @@ fn what_is_proposed_has_the_decimal_sign_of_the_language() {
 #[test]
 fn what_was_written_again_is_told_as_it_is_now() {
     let mut axis = run();
-    axis.changes = vec![Change::Parameter(158, 9), Change::Parameter(160, 10_050), Change::Parameter(160, 250)];
+    axis.changes =
+        vec![AxisChange::Parameter(158, 9), AxisChange::Parameter(160, 10_050), AxisChange::Parameter(160, 250)];
     let said = words::changes(&axis).words(Language::English);
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
@@ -146,7 +147,7 @@ fn what_was_written_again_is_told_as_it_is_now() {
 fn until_jog() -> (Axis, Seen) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(152, 1)]));
-    next(&mut axis, &seen, Step::Scale);
+    next(&mut axis, &seen, AxisStep::Scale);
     type_spindle(&mut axis);
     // Reference 5: 400/256; 511 · 400 = 204400.
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
@@ -154,7 +155,7 @@ fn until_jog() -> (Axis, Seen) {
     confirm_spindle(&mut axis, &mut seen);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
     press(&mut axis, &mut seen, Button::Confirm);
-    next(&mut axis, &seen, Step::Jog);
+    next(&mut axis, &seen, AxisStep::Jog);
     (axis, seen)
 }
 
@@ -177,21 +178,21 @@ fn until_test() -> (Axis, Seen) {
     jog(&mut axis, &mut seen, 100, Direction::Counterclockwise);
     assert_eq!((axis.travel().up, axis.travel().down), (500, 400));
     assert_eq!(axis.travel().clockwise_is_up, Some(true));
-    next(&mut axis, &seen, Step::Reference);
+    next(&mut axis, &seen, AxisStep::Reference);
     axis.edit(Entries { reference: "1,00".to_owned(), ..axis.entries().clone() });
     // 100 steps become 128: the nearest multiple of 64.
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::SetPosition(128));
-    next(&mut axis, &seen, Step::Lower);
+    next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
     at(&mut seen, -1000);
     axis.take_limit(&seen);
     assert_eq!(axis.entries().lower, "-10.00");
-    next(&mut axis, &seen, Step::Upper);
+    next(&mut axis, &seen, AxisStep::Upper);
     at(&mut seen, 2000);
     axis.take_limit(&seen);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_limits");
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -1000), (160, 2000)]));
-    next(&mut axis, &seen, Step::Test);
+    next(&mut axis, &seen, AxisStep::Test);
     (axis, seen)
 }
 
@@ -213,10 +214,10 @@ fn until_power() -> (Axis, Seen) {
         assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_test");
         go(&mut axis, &mut seen, place, ends);
     }
-    next(&mut axis, &seen, Step::Save);
+    next(&mut axis, &seen, AxisStep::Save);
     press(&mut axis, &mut seen, Button::Do);
     assert!(axis.is_saved());
-    next(&mut axis, &seen, Step::PowerCycle);
+    next(&mut axis, &seen, AxisStep::PowerCycle);
     press(&mut axis, &mut seen, Button::Give);
     (axis, seen)
 }
@@ -242,13 +243,13 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
     assert_eq!((kept, moved, allowed, restart), (true, Some(-6), 6, Restart::Read));
     go_on(&mut axis, &seen);
     assert_eq!(axis.end(), Some(End::Done));
-    assert!(Step::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
+    assert!(AxisStep::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
     // By hand, in the order in which they were written.
     let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
-    let mut changes: Vec<Change> = numbers.map(|(number, value)| Change::Parameter(number, value)).to_vec();
-    changes.push(Change::Position(128));
+    let mut changes: Vec<AxisChange> = numbers.map(|(number, value)| AxisChange::Parameter(number, value)).to_vec();
+    changes.push(AxisChange::Position(128));
     let more = [(158, -1000), (160, 2000), (182, 1001)];
-    changes.extend(more.map(|(number, value)| Change::Parameter(number, value)));
+    changes.extend(more.map(|(number, value)| AxisChange::Parameter(number, value)));
     assert_eq!((axis.changes(), axis.is_saved()), (&changes[..], true));
 }
 
@@ -261,9 +262,9 @@ fn what_did_not_survive_the_supply_is_told() {
         seen.values.insert(182, 1000);
         change(&mut seen);
         axis.surveyed(&seen, false);
-        assert!(!axis.survived() && axis.reached(Step::PowerCycle) == Reached::Failed);
+        assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
         assert!(axis.may_go_on(&seen).is_err());
-        words::found(&axis, Step::PowerCycle, &seen).unwrap().id()
+        words::found(&axis, AxisStep::PowerCycle, &seen).unwrap().id()
     };
     assert_eq!(survive(|seen| at(seen, 2002 + 7)), "hd_axis.power_moved");
     assert_eq!(survive(|seen| seen.limits = Some((-1000, 1000))), "hd_axis.power_lost");
@@ -298,7 +299,7 @@ fn nothing_is_pressed_that_cannot_be_done() {
     assert_eq!(why(&axis, &seen, Button::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
     axis.back(&seen);
-    assert_eq!(axis.step(), Step::Test);
+    assert_eq!(axis.step(), AxisStep::Test);
 }
 
 #[test]
@@ -349,12 +350,12 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     let (mut axis, mut seen) = until_test();
     axis.cancel(&seen, "");
     assert_eq!((axis.end(), axis.is_saved()), (Some(End::Cancelled), false));
-    assert!(axis.changes().len() == 8 && axis.reached(Step::Test) == Reached::Ahead);
+    assert!(axis.changes().len() == 8 && axis.reached(AxisStep::Test) == Reached::Ahead);
     assert_eq!(axis.ask(Button::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, Button::Recall), Ask::Restore(vec![(152, 0)]));
     // The place has the position that it got.
-    assert_eq!(axis.changes(), [Change::Position(128)]);
+    assert_eq!(axis.changes(), [AxisChange::Position(128)]);
     let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
     assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved", "hd_axis.place_left"]);
     let mut axis = run();
@@ -374,16 +375,16 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
 fn a_position_that_is_right_is_left_as_it_is() {
     let (mut axis, mut seen) = until_jog();
     axis.skip(&seen, "");
-    assert_eq!(axis.step(), Step::Jog, "this one cannot be left out");
+    assert_eq!(axis.step(), AxisStep::Jog, "this one cannot be left out");
     press(&mut axis, &mut seen, Button::Take);
     jog(&mut axis, &mut seen, 500, Direction::Counterclockwise);
     jog(&mut axis, &mut seen, 0, Direction::Clockwise);
     assert_eq!(axis.travel().clockwise_is_up, Some(false));
-    next(&mut axis, &seen, Step::Reference);
+    next(&mut axis, &seen, AxisStep::Reference);
     axis.skip(&seen, "");
-    assert_eq!((axis.step(), axis.reached(Step::Reference)), (Step::Lower, Reached::Skipped));
+    assert_eq!((axis.step(), axis.reached(AxisStep::Reference)), (AxisStep::Lower, Reached::Skipped));
     axis.back(&seen);
-    assert_eq!(axis.reached(Step::Reference), Reached::Now);
+    assert_eq!(axis.reached(AxisStep::Reference), Reached::Now);
 }
 
 #[test]
@@ -415,7 +416,7 @@ fn pitch_and_step_are_seen_before_they_are_written() {
 #[test]
 fn every_step_says_what_to_do_and_what_was_found() {
     let (axis, seen) = until_power();
-    for step in Step::ALL {
+    for step in AxisStep::ALL {
         let texts = [words::title(step), words::todo(step, &seen), words::button(step)];
         let found = words::found(&axis, step, &seen).unwrap();
         for text in texts.iter().chain([&found]) {
@@ -426,9 +427,13 @@ fn every_step_says_what_to_do_and_what_was_found() {
         }
     }
     let found = |step| words::found(&axis, step, &seen).unwrap().words(Language::English);
-    assert_eq!(found(Step::Scale), "The drive's scaling is 400/256: 400 steps per turn.");
-    assert_eq!(found(Step::Confirm), "The drive's limits are -2044.00 mm … 2044.00 mm.", "those that were looked at");
-    assert_eq!(found(Step::Upper), "The drive's limits are -10.00 mm … 20.00 mm.");
-    assert_eq!(found(Step::Jog), "Moved 5.00 mm up, 4.00 mm down. The position increases clockwise.");
-    assert_eq!(found(Step::Test), "Positions reached: 3 of 3, at most 0.02 mm off target.");
+    assert_eq!(found(AxisStep::Scale), "The drive's scaling is 400/256: 400 steps per turn.");
+    assert_eq!(
+        found(AxisStep::Confirm),
+        "The drive's limits are -2044.00 mm … 2044.00 mm.",
+        "those that were looked at"
+    );
+    assert_eq!(found(AxisStep::Upper), "The drive's limits are -10.00 mm … 20.00 mm.");
+    assert_eq!(found(AxisStep::Jog), "Moved 5.00 mm up, 4.00 mm down. The position increases clockwise.");
+    assert_eq!(found(AxisStep::Test), "Positions reached: 3 of 3, at most 0.02 mm off target.");
 }

@@ -1,6 +1,6 @@
 //! The texts of the steps of an axis set-up: names, tasks, findings.
 
-use super::{Axis, Change, Outcome, Power, Reached, Restart, Seen, Step, TestTarget};
+use super::{Axis, AxisChange, AxisStep, Outcome, Power, Reached, Restart, Seen, TestTarget};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -9,35 +9,35 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::devices::hiperdrive::state::ruler::{Measure, Ruler};
 
-pub fn title(step: Step) -> Text {
+pub fn title(step: AxisStep) -> Text {
     TEXTS.text(match step {
-        Step::Request => "hd_axis.step_request",
-        Step::Scale => "hd_axis.step_scale",
-        Step::Confirm => "hd_axis.step_confirm",
-        Step::Jog => "hd_axis.step_jog",
-        Step::Reference => "hd_axis.step_reference",
-        Step::Lower => "hd_axis.step_lower",
-        Step::Upper => "hd_axis.step_upper",
-        Step::Test => "hd_axis.step_test",
-        Step::Save => "hd_axis.step_save",
-        Step::PowerCycle => "hd_axis.step_power",
+        AxisStep::Request => "hd_axis.step_request",
+        AxisStep::Scale => "hd_axis.step_scale",
+        AxisStep::Confirm => "hd_axis.step_confirm",
+        AxisStep::Jog => "hd_axis.step_jog",
+        AxisStep::Reference => "hd_axis.step_reference",
+        AxisStep::Lower => "hd_axis.step_lower",
+        AxisStep::Upper => "hd_axis.step_upper",
+        AxisStep::Test => "hd_axis.step_test",
+        AxisStep::Save => "hd_axis.step_save",
+        AxisStep::PowerCycle => "hd_axis.step_power",
     })
 }
 
 /// Returns the task of a step.
-pub fn todo(step: Step, seen: &Seen) -> Text {
+pub fn todo(step: AxisStep, seen: &Seen) -> Text {
     TEXTS.text(match step {
-        Step::Request => "hd_axis.do_request",
-        Step::Scale => "hd_axis.do_scale",
-        Step::Confirm => "hd_axis.do_confirm",
-        Step::Jog => "hd_axis.do_jog",
-        Step::Reference => "hd_axis.do_reference",
-        Step::Lower => "hd_axis.do_lower",
-        Step::Upper => "hd_axis.do_upper",
-        Step::Test => "hd_axis.do_test",
-        Step::Save => "hd_axis.do_save",
-        Step::PowerCycle if seen.is_virtual => "hd_axis.do_power_virtual",
-        Step::PowerCycle => "hd_axis.do_power",
+        AxisStep::Request => "hd_axis.do_request",
+        AxisStep::Scale => "hd_axis.do_scale",
+        AxisStep::Confirm => "hd_axis.do_confirm",
+        AxisStep::Jog => "hd_axis.do_jog",
+        AxisStep::Reference => "hd_axis.do_reference",
+        AxisStep::Lower => "hd_axis.do_lower",
+        AxisStep::Upper => "hd_axis.do_upper",
+        AxisStep::Test => "hd_axis.do_test",
+        AxisStep::Save => "hd_axis.do_save",
+        AxisStep::PowerCycle if seen.is_virtual => "hd_axis.do_power_virtual",
+        AxisStep::PowerCycle => "hd_axis.do_power",
     })
 }
 
@@ -53,29 +53,29 @@ pub fn reached(own: Reached) -> Text {
 }
 
 /// Returns the label of its button.
-pub fn button(step: Step) -> Text {
+pub fn button(step: AxisStep) -> Text {
     TEXTS.text(match step {
-        Step::Request => "hd_axis.request",
-        Step::Reference => "hd_axis.set",
-        Step::Save => "hd_axis.save",
-        Step::PowerCycle => "hd_axis.mark",
+        AxisStep::Request => "hd_axis.request",
+        AxisStep::Reference => "hd_axis.set",
+        AxisStep::Save => "hd_axis.save",
+        AxisStep::PowerCycle => "hd_axis.mark",
         _ => "hd_axis.write",
     })
 }
 
 /// Returns the findings, if any.
-pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
+pub fn found(axis: &Axis, step: AxisStep, seen: &Seen) -> Option<Text> {
     let ruler = seen.ruler();
     let mm = |steps: i32| millimetres(ruler, steps.into());
     match step {
-        Step::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
+        AxisStep::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
             (true, Some(true)) => Some(TEXTS.text("hd_axis.found_drive")),
             (true, Some(false)) => Some(TEXTS.text("hd_axis.found_no_drive")),
             // Nothing was heard of the drive: that says nothing of its cable.
             (true, None) => None,
             (false, _) => Some(TEXTS.text("hd_axis.found_unrequested")),
         },
-        Step::Scale => {
+        AxisStep::Scale => {
             let ruler = ruler?;
             let text = TEXTS.text("hd_axis.found_scale").with("numerator", ruler.scale.numerator());
             let text = text.with("denominator", ruler.scale.denominator());
@@ -83,13 +83,13 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
             let decimals = if per_turn.fract() == 0.0 { 0 } else { 3 };
             Some(text.with_number("steps", per_turn, decimals))
         }
-        Step::Confirm | Step::Upper => {
+        AxisStep::Confirm | AxisStep::Upper => {
             // A confirmed value stays, also after others were taught.
-            let confirmed = axis.confirmed.filter(|_| step == Step::Confirm).map(|own| own.seen);
+            let confirmed = axis.confirmed.filter(|_| step == AxisStep::Confirm).map(|own| own.seen);
             let (low, high) = confirmed.or(seen.limits)?;
             Some(TEXTS.text("hd_axis.found_limits").with_text("low", mm(low)).with_text("high", mm(high)))
         }
-        Step::Jog => {
+        AxisStep::Jog => {
             let travel = axis.travel();
             let way = TEXTS.text(match travel.clockwise_is_up {
                 Some(true) => "hd_axis.clockwise_up",
@@ -99,18 +99,18 @@ pub fn found(axis: &Axis, step: Step, seen: &Seen) -> Option<Text> {
             let moved = moved(ruler, travel.up, travel.down);
             Some(TEXTS.text("hd_axis.found_jog").with_text("moved", moved).with_text("way", way))
         }
-        Step::Reference => Some(TEXTS.text("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
-        Step::Lower => {
+        AxisStep::Reference => Some(TEXTS.text("hd_axis.found_reference").with_text("position", mm(axis.reference()?))),
+        AxisStep::Lower => {
             Some(TEXTS.text("hd_axis.found_lower").with_text("position", mm(axis.entries.lower(ruler).ok()?)))
         }
-        Step::Test => {
+        AxisStep::Test => {
             let good = TestTarget::ALL.into_iter().filter_map(|place| axis.outcome(place)).filter(Outcome::is_good);
             let worst = good.clone().map(|own| own.missed().abs()).max()?;
             let text = TEXTS.text("hd_axis.found_test").with("count", good.count());
             Some(text.with_text("missed", millimetres(ruler, worst)))
         }
-        Step::Save => axis.is_saved().then(|| TEXTS.text("hd_axis.found_saved")),
-        Step::PowerCycle => power(axis, ruler),
+        AxisStep::Save => axis.is_saved().then(|| TEXTS.text("hd_axis.found_saved")),
+        AxisStep::PowerCycle => power(axis, ruler),
     }
 }
 
@@ -143,14 +143,16 @@ fn power(axis: &Axis, ruler: Option<Ruler>) -> Option<Text> {
 }
 
 /// Returns why a step no longer holds.
-pub fn fallen(step: Step) -> Text {
+pub fn fallen(step: AxisStep) -> Text {
     let why = TEXTS.text(match step {
-        Step::Request => "hd_axis.fell_request",
-        Step::Scale => "hd_axis.fell_scale",
-        Step::Confirm => "hd_axis.fell_confirm",
-        Step::Reference => "hd_axis.fell_reference",
-        Step::Upper => "hd_axis.fell_limits",
-        Step::Jog | Step::Lower | Step::Test | Step::Save | Step::PowerCycle => "hd_axis.fell_undone",
+        AxisStep::Request => "hd_axis.fell_request",
+        AxisStep::Scale => "hd_axis.fell_scale",
+        AxisStep::Confirm => "hd_axis.fell_confirm",
+        AxisStep::Reference => "hd_axis.fell_reference",
+        AxisStep::Upper => "hd_axis.fell_limits",
+        AxisStep::Jog | AxisStep::Lower | AxisStep::Test | AxisStep::Save | AxisStep::PowerCycle => {
+            "hd_axis.fell_undone"
+        }
     });
     let text = TEXTS.text("hd_axis.fallen").with("number", step.index() + 1);
     text.with_text("step", title(step)).with_text("why", why)
@@ -209,7 +211,7 @@ pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
 
 /// The position is left as it was set, although parameters were written back; `None`: that is not so.
 pub fn place_left(axis: &Axis, seen: &Seen) -> Option<Text> {
-    let is_set = axis.changes().iter().any(|own| matches!(own, Change::Position(_)));
+    let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
@@ -231,22 +233,22 @@ pub fn place(place: TestTarget) -> Text {
 
 /// All that was changed, where something was: of a parameter that was written again what it has now.
 pub fn changes(axis: &Axis) -> Text {
-    let number = |own: &Change| match own {
-        Change::Parameter(number, _) => *number,
-        Change::Position(_) => REFERENCE,
+    let number = |own: &AxisChange| match own {
+        AxisChange::Parameter(number, _) => *number,
+        AxisChange::Position(_) => REFERENCE,
     };
     let all = axis.changes();
-    let is_last = |(at, own): &(usize, &Change)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
+    let is_last = |(at, own): &(usize, &AxisChange)| !all.iter().skip(at + 1).any(|later| number(later) == number(own));
     let last = all.iter().enumerate().filter(is_last);
     TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
 }
 
 /// As the number that was written: the scale may be another by now.
-fn change(own: &Change) -> Text {
+fn change(own: &AxisChange) -> Text {
     let text = TEXTS.text("hd_axis.changed");
     match own {
-        Change::Parameter(number, value) => text.with("number", number).with("value", value),
-        Change::Position(steps) => text.with("number", REFERENCE).with("value", steps),
+        AxisChange::Parameter(number, value) => text.with("number", number).with("value", value),
+        AxisChange::Position(steps) => text.with("number", REFERENCE).with("value", steps),
     }
 }
 

@@ -5,7 +5,7 @@ use super::status;
 use crate::app::Text;
 use crate::app::explain::{link, plain};
 use crate::buses::ethernet_ip::protocol::{EncapsulationStatus, GeneralStatus};
-use crate::devices::hiperdrive::procedures::{Asked, Damage, Error, Late, Refusal, WrongLength};
+use crate::devices::hiperdrive::procedures::{Damage, Error, Late, Refusal, RequestedItem, WrongLength};
 use crate::devices::hiperdrive::protocol::{OutOfRange, ParameterNumber, Range, Topology};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -109,17 +109,17 @@ pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }
 
-fn asked(asked: Asked) -> Text {
+fn asked(asked: RequestedItem) -> Text {
     match asked {
-        Asked::Session => TEXTS.text("hd_asked.session"),
-        Asked::Parameter(number) => named("hd_asked.parameter", number),
-        Asked::Set(number) => named("hd_asked.set", number),
-        Asked::Identity => TEXTS.text("hd_asked.identity"),
-        Asked::Network { attribute } => TEXTS.text("hd_asked.network").with("attribute", attribute),
-        Asked::SetNetwork { attribute } => TEXTS.text("hd_asked.set_network").with("attribute", attribute),
-        Asked::Mac => TEXTS.text("hd_asked.mac"),
-        Asked::Open => TEXTS.text("hd_asked.open"),
-        Asked::Close => TEXTS.text("hd_asked.close"),
+        RequestedItem::Session => TEXTS.text("hd_asked.session"),
+        RequestedItem::Parameter(number) => named("hd_asked.parameter", number),
+        RequestedItem::Set(number) => named("hd_asked.set", number),
+        RequestedItem::Identity => TEXTS.text("hd_asked.identity"),
+        RequestedItem::Network { attribute } => TEXTS.text("hd_asked.network").with("attribute", attribute),
+        RequestedItem::SetNetwork { attribute } => TEXTS.text("hd_asked.set_network").with("attribute", attribute),
+        RequestedItem::Mac => TEXTS.text("hd_asked.mac"),
+        RequestedItem::Open => TEXTS.text("hd_asked.open"),
+        RequestedItem::Close => TEXTS.text("hd_asked.close"),
     }
 }
 

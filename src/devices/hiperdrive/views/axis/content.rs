@@ -5,7 +5,7 @@ use egui::{RichText, Ui, vec2};
 use super::AxisPicture;
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::Direction;
-use crate::devices::hiperdrive::state::axis::{Action as Run, Button, Entries, Step, TestTarget, words};
+use crate::devices::hiperdrive::state::axis::{AxisAction as Run, AxisStep, Button, Entries, TestTarget, words};
 use crate::devices::hiperdrive::state::{Motor, TEXTS};
 use crate::devices::hiperdrive::views::jog::pad_ui;
 use crate::devices::hiperdrive::views::say;
@@ -34,19 +34,22 @@ pub(super) fn content_ui(
         pads(ui, theme, shown, actions);
     }
     match step {
-        Step::Scale => {
+        AxisStep::Scale => {
             number(ui, theme, "hd_axis.pitch", &mut entries.pitch);
             number(ui, theme, "hd_axis.resolution", &mut entries.resolution);
         }
-        Step::Confirm => limits(ui, theme, shown, actions),
-        Step::Reference => number(ui, theme, "hd_axis.reference", &mut entries.reference),
-        Step::Lower => number(ui, theme, "hd_axis.lower", &mut entries.lower),
-        Step::Upper => number(ui, theme, "hd_axis.upper", &mut entries.upper),
-        Step::Test => test(ui, theme, shown, actions),
-        Step::PowerCycle => power(ui, theme, shown, actions),
-        Step::Request | Step::Jog | Step::Save => {}
+        AxisStep::Confirm => limits(ui, theme, shown, actions),
+        AxisStep::Reference => number(ui, theme, "hd_axis.reference", &mut entries.reference),
+        AxisStep::Lower => number(ui, theme, "hd_axis.lower", &mut entries.lower),
+        AxisStep::Upper => number(ui, theme, "hd_axis.upper", &mut entries.upper),
+        AxisStep::Test => test(ui, theme, shown, actions),
+        AxisStep::PowerCycle => power(ui, theme, shown, actions),
+        AxisStep::Request | AxisStep::Jog | AxisStep::Save => {}
     }
-    if matches!(step, Step::Request | Step::Scale | Step::Reference | Step::Lower | Step::Upper | Step::Save) {
+    if matches!(
+        step,
+        AxisStep::Request | AxisStep::Scale | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Save
+    ) {
         ui.add_space(theme.space.inside);
         ui.horizontal_wrapped(|ui| buttons(ui, theme, shown, actions));
     }
@@ -55,17 +58,17 @@ pub(super) fn content_ui(
 /// Draws the buttons of the step, in one line as far as there is room.
 fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
-    if matches!(step, Step::Lower | Step::Upper) {
+    if matches!(step, AxisStep::Lower | AxisStep::Upper) {
         let allowed = shown.axis.may_take_place(shown.seen);
         if allowed_button(ui, theme, &allowed, icons::TARGET, &say(theme, "hd_axis.take_place")).clicked() {
             shown.push(actions, Run::TakePlace);
         }
     }
-    if step != Step::Lower {
+    if step != AxisStep::Lower {
         let word = theme.words(&words::button(step));
         shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
     }
-    if step == Step::Request {
+    if step == AxisStep::Request {
         super::recall(ui, theme, shown, actions);
     }
     super::skip(ui, theme, shown, actions);
@@ -78,9 +81,9 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, e
         availability_ui(ui, theme, shown);
     }
     match step {
-        Step::Scale => scale(ui, theme, shown, entries),
-        Step::Reference => reference(ui, theme, shown, entries),
-        Step::Test => {
+        AxisStep::Scale => scale(ui, theme, shown, entries),
+        AxisStep::Reference => reference(ui, theme, shown, entries),
+        AxisStep::Test => {
             for own in TestTarget::ALL {
                 let Some(outcome) = shown.axis.outcome(own) else { continue };
                 let ink = if outcome.is_good() { theme.palette.good } else { theme.palette.bad };
@@ -241,7 +244,7 @@ fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
 /// The supply: of a virtual device it is switched here, of a real one by hand.
 fn power(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        let word = theme.words(&words::button(Step::PowerCycle));
+        let word = theme.words(&words::button(AxisStep::PowerCycle));
         shown.button(ui, theme, Button::Do, (icons::PENCIL_SIMPLE, &word), actions);
         let word = say(theme, "hd_axis.give");
         shown.button(ui, theme, Button::Give, (icons::PLUGS, &word), actions);

@@ -1,7 +1,7 @@
 //! The user's actions in the commutation assistant.
 
 use super::outcome::may_read;
-use super::{Action, Slot};
+use super::{CommutationAction, Slot};
 use crate::app::Severity;
 use crate::app::services::Services;
 use crate::app::session::{SessionEvents, WithMemory};
@@ -9,16 +9,20 @@ use crate::devices::hiperface::jobs::{Change, HiperfaceJob};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 
 impl Encoder {
-    pub(in crate::devices::hiperface::state) fn act_commutation(&mut self, action: Action, services: &mut Services) {
+    pub(in crate::devices::hiperface::state) fn act_commutation(
+        &mut self,
+        action: CommutationAction,
+        services: &mut Services,
+    ) {
         match action {
-            Action::Edit(form) => {
+            CommutationAction::Edit(form) => {
                 self.commutation.form = *form;
                 self.commutation.problem = None;
             }
-            Action::Read(slot) => self.read_for(slot, services),
-            Action::Use(slot) => self.commutation.use_typed(slot),
-            Action::Clear => self.commutation.forget_readings(),
-            Action::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
+            CommutationAction::Read(slot) => self.read_for(slot, services),
+            CommutationAction::Use(slot) => self.commutation.use_typed(slot),
+            CommutationAction::Clear => self.commutation.forget_readings(),
+            CommutationAction::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
                 Ok((field, address, bytes)) => {
                     self.put(field, address, &bytes, services);
                     // Putting it there once more keeps the place, whatever is empty then.
@@ -33,7 +37,7 @@ impl Encoder {
                 }
                 Err(why) => self.commutation.problem = Some(why),
             },
-            Action::Set => match self.commutation.setting(self.geometry()) {
+            CommutationAction::Set => match self.commutation.setting(self.geometry()) {
                 Ok(setting) => {
                     let (wanted, exact) = (setting.value, setting.exact);
                     let change = Change::SetPosition { wanted, exact, synchronise: false, kit: false };

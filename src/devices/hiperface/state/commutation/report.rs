@@ -1,6 +1,6 @@
 //! The run as it is written down: what was prepared, what was read, what came of it. A line each.
 
-use super::{Commutation, Kind, Reading, Slot, Vector};
+use super::{Commutation, Kind, RestReading, Slot, Vector};
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
@@ -53,7 +53,7 @@ impl Commutation {
 }
 
 /// Returns how a position was obtained, in words.
-pub fn kind_words(reading: &Reading) -> Text {
+pub fn kind_words(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
             TEXTS.text("commutation.kind_fine").with_number("residual", residual_periods * 32.0, 2)

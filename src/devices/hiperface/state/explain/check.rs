@@ -6,22 +6,22 @@ use crate::app::Text;
 use crate::app::check::CheckLine;
 use crate::app::explain::plain;
 use crate::devices::hiperface::procedures::LineQuality;
-use crate::devices::hiperface::procedures::check::{Finding, HiperfaceStepResult, Step};
+use crate::devices::hiperface::procedures::check::{CheckFinding, CheckStep, HiperfaceStepResult};
 use crate::devices::hiperface::state::TEXTS;
 
 pub fn check(lines: &[HiperfaceStepResult]) -> Vec<CheckLine> {
     lines.iter().map(|line| CheckLine::of(line, step, finding)).collect()
 }
 
-fn step(step: Step) -> Text {
+fn step(step: CheckStep) -> Text {
     TEXTS.text(match step {
-        Step::Restart => "check.restart",
-        Step::Status => "check.status",
-        Step::Identity => "check.identity",
-        Step::Position => "check.position",
-        Step::Limits => "check.limits",
-        Step::DataFields => "check.data_fields",
-        Step::Line => "check.line",
+        CheckStep::Restart => "check.restart",
+        CheckStep::Status => "check.status",
+        CheckStep::Identity => "check.identity",
+        CheckStep::Position => "check.position",
+        CheckStep::Limits => "check.limits",
+        CheckStep::DataFields => "check.data_fields",
+        CheckStep::Line => "check.line",
     })
 }
 
@@ -37,34 +37,34 @@ pub fn line_quality(quality: &LineQuality) -> Text {
         .with("late", late)
 }
 
-fn finding(finding: &Finding) -> Text {
+fn finding(finding: &CheckFinding) -> Text {
     match finding {
-        Finding::Code(code) => status_with_number(*code),
-        Finding::Position(found) => position(*found),
-        Finding::RawPosition(raw) => raw_position(*raw),
-        Finding::Name(name) => plain(name),
-        Finding::SerialNumber(number) => plain(number),
-        Finding::Limit { channel, value, limit } => {
+        CheckFinding::Code(code) => status_with_number(*code),
+        CheckFinding::Position(found) => position(*found),
+        CheckFinding::RawPosition(raw) => raw_position(*raw),
+        CheckFinding::Name(name) => plain(name),
+        CheckFinding::SerialNumber(number) => plain(number),
+        CheckFinding::Limit { channel, value, limit } => {
             let channel = format!("{channel:02X}h");
             TEXTS.text("check.limit").with("channel", channel).with("value", value).with("limit", limit)
         }
-        Finding::Field { number, status } => {
+        CheckFinding::Field { number, status } => {
             TEXTS.text("check.field").with("number", number).with_text("status", field_status(*status))
         }
-        Finding::FieldLocked { number, status } => TEXTS
+        CheckFinding::FieldLocked { number, status } => TEXTS
             .text("check.field_locked")
             .with("number", number)
             .with_text("status", field_status(*status))
             .with("code", status.code()),
-        Finding::FieldRefused { number, codes } => TEXTS
+        CheckFinding::FieldRefused { number, codes } => TEXTS
             .text("check.field_refused")
             .with("number", number)
             .with_list("codes", codes.iter().copied().map(status_with_number)),
-        Finding::FieldUnreadable { number, why } => {
+        CheckFinding::FieldUnreadable { number, why } => {
             TEXTS.text("check.field_unreadable").with("number", number).with_text("why", encoder(why))
         }
-        Finding::Unreadable(why) => encoder(why),
-        Finding::Line(quality) => line_quality(quality),
+        CheckFinding::Unreadable(why) => encoder(why),
+        CheckFinding::Line(quality) => line_quality(quality),
     }
 }
 
@@ -79,19 +79,23 @@ mod tests {
         let status = DataFieldStatus::from_byte(0xAA);
         let cases = [
             (
-                Finding::FieldLocked { number: 1, status },
+                CheckFinding::FieldLocked { number: 1, status },
                 "1: 48 bytes, write protected, code 2, code required, the access code 2 is not known",
                 "Datenfeld 1: 48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel nötig, Zugriffsschlüssel 2 ist \
                  nicht bekannt",
             ),
             (
-                Finding::FieldRefused { number: 3, codes: vec![StatusCode::WRONG_CODE, StatusCode::TEMPERATURE] },
+                CheckFinding::FieldRefused { number: 3, codes: vec![StatusCode::WRONG_CODE, StatusCode::TEMPERATURE] },
                 "3: 0Fh wrong access code, 1Eh critical encoder temperature",
                 "Datenfeld 3: 0Fh falscher Zugriffsschlüssel, 1Eh kritische Gebertemperatur",
             ),
-            (Finding::Limit { channel: 0x48, value: 42, limit: 115 }, "48h: 42 ≤ 115", "Kanal 48h: 42, Grenzwert 115"),
-            (Finding::RawPosition(7), "7", "7 Schritte"),
-            (Finding::Name("SKM36".to_owned()), "SKM36", "SKM36"),
+            (
+                CheckFinding::Limit { channel: 0x48, value: 42, limit: 115 },
+                "48h: 42 ≤ 115",
+                "Kanal 48h: 42, Grenzwert 115",
+            ),
+            (CheckFinding::RawPosition(7), "7", "7 Schritte"),
+            (CheckFinding::Name("SKM36".to_owned()), "SKM36", "SKM36"),
         ];
         for (found, terminal, german) in cases {
             assert_eq!(finding(&found).terminal(), terminal);

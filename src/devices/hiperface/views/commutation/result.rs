@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::{ask, number};
 use crate::analysis::quality::Verdict;
 use crate::app::{Action, DeviceCommand, PendingEdits};
-use crate::devices::hiperface::state::commutation::{Action as Assistant, Form, Storage, Stored, stored};
+use crate::devices::hiperface::state::commutation::{CommutationAction as Assistant, Form, Storage, Stored, stored};
 use crate::devices::hiperface::state::{Encoder, TEXTS};
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{

@@ -1,20 +1,20 @@
 //! Requests to a gateway, its refusals and damaged replies in words.
 
 use crate::app::Text;
-use crate::devices::interbus::procedures::{Asked, Damage, Exception};
+use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::state::TEXTS;
 
 /// Returns the text of a request to a gateway, as a part of a sentence.
-pub(super) fn asked(asked: Asked) -> Text {
+pub(super) fn asked(asked: RequestedItem) -> Text {
     let id = match asked {
-        Asked::Input { .. } => "ib_asked.input",
-        Asked::Output { .. } => "ib_asked.output",
-        Asked::Write { .. } => "ib_asked.write",
+        RequestedItem::Input { .. } => "ib_asked.input",
+        RequestedItem::Output { .. } => "ib_asked.output",
+        RequestedItem::Write { .. } => "ib_asked.write",
     };
     let text = TEXTS.text(id).with("register", asked.register());
     match asked {
-        Asked::Write { word, .. } => text.with("word", super::word(word)),
-        Asked::Input { .. } | Asked::Output { .. } => text,
+        RequestedItem::Write { word, .. } => text.with("word", super::word(word)),
+        RequestedItem::Input { .. } | RequestedItem::Output { .. } => text,
     }
 }
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use super::*;
 use crate::app::Language::{English, German};
 use crate::devices::interbus::jobs::ChangeKind;
-use crate::devices::interbus::procedures::write::{Interrupted, Left, Written};
-use crate::devices::interbus::procedures::{Asked, Damage, Exception};
+use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
+use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::profile::{Edge, Item, Op, OtherType, PlanError, ProgramChange};
 use crate::devices::interbus::protocol::{
     CamNumber, Code, Command, Flags, Mode, OutOfRange, Parameter, ProgramNumber, Refused, StartupMode, Value,
@@ -40,7 +40,7 @@ fn says(text: &Text, facts: &[&str]) {
 
 #[test]
 fn every_error_of_an_encoder_says_what_to_do() {
-    let asked = Asked::Input { register: 16 };
+    let asked = RequestedItem::Input { register: 16 };
     let standing = |found, is| LeftState { out: 0x2080_0003, parameterising: true, found, is };
     let set = Command::Set(Parameter::Steps, value(8193));
     let time_out = |awaited| Error::TimeOut { awaited, sent: 0x0200_2000, input: 0x12, milliseconds: 2000 };
@@ -91,7 +91,7 @@ fn every_error_of_an_encoder_says_what_to_do() {
 /// Modbus application protocol 1.1b3, chapter 7.
 #[test]
 fn every_exception_of_a_gateway_is_told_with_its_code() {
-    let asked = Asked::Write { register: 2048, word: 0x4000_0000 };
+    let asked = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
     for code in [1, 2, 3, 4, 5, 6, 8, 0xA, 0xB, 0x7F] {
         let exception = Exception::new(code);
         let text = encoder(&Error::Exception { asked, exception });
@@ -162,12 +162,12 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
         (ChangeKind::Preset, "old one or the preset"),
         (ChangeKind::Default, "brings back the old ones"),
     ] {
-        let lines = told(2, Left::AsFound, kind);
+        let lines = told(2, EndState::AsFound, kind);
         assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");
         assert!(lines[0].contains("1 of 3") && lines[1].contains("runs again") && lines[1].contains("shift"));
     }
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
-    let lines = told(2, Left::Unknown(standing), ChangeKind::Restore);
+    let lines = told(2, EndState::Unknown(standing), ChangeKind::Restore);
     assert!(lines[1].contains("lead-back"), "{lines:?}");
 }
 
@@ -181,7 +181,7 @@ fn what_completes_a_write_comes_after_leading_back() {
             let interrupted = Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, left };
             write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
-        let (found, unknown) = (last(Left::AsFound), last(Left::Unknown(standing)));
+        let (found, unknown) = (last(EndState::AsFound), last(EndState::Unknown(standing)));
         assert_eq!(unknown.terminal(), format!("First return the encoder to operation. {}", found.terminal()));
         assert!(unknown.words(German).starts_with("Zuerst den Geber in den Betrieb zurückführen. "), "{unknown:?}");
         assert_eq!(write::weight(&unknown), write::weight(&found));
@@ -231,7 +231,7 @@ fn a_wire_that_is_gone_is_a_loss_and_silence_is_none() {
     for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {
         assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
     }
-    let silent = JobError::Device(Error::NoReply { asked: Asked::Input { register: 0 }, tries: 3 });
+    let silent = JobError::Device(Error::NoReply { asked: RequestedItem::Input { register: 0 }, tries: 3 });
     assert!(loss(&silent).is_none() && is_silence(&silent));
     assert!(!is_silence(&JobError::Device(Error::NeverSilent)));
 }

@@ -9,7 +9,7 @@ use crate::app::explain::{self, plain};
 use crate::app::review::{ChangeWords, OpWords};
 use crate::app::{Severity, Text};
 use crate::devices::interbus::jobs::{Change, ChangeKind, Prepared, WEAR_ASK, WEAR_LIMIT, Wear};
-use crate::devices::interbus::procedures::write::{Interrupted, Left, Written};
+use crate::devices::interbus::procedures::write::{EndState, Interrupted, Written};
 use crate::devices::interbus::profile::{
     CamChange, Edge, Item, Op, OtherType, ParameterChange, PlanError, ProgramChange,
 };
@@ -150,7 +150,7 @@ pub fn written(written: &Written) -> Text {
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let Interrupted { done, unfinished, cause, left } = interrupted;
     let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();
-    let mut texts = vec![if cause.is_cancelled() && *left == Left::AsFound {
+    let mut texts = vec![if cause.is_cancelled() && *left == EndState::AsFound {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)
     } else {
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
@@ -158,8 +158,8 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     }];
     let untouched = done.write_cycles == 0 && done.written == 0;
     let state = match left {
-        Left::AsFound => TEXTS.text("ib_left.as_found"),
-        Left::Unknown(_) => TEXTS.text("ib_left.unknown"),
+        EndState::AsFound => TEXTS.text("ib_left.as_found"),
+        EndState::Unknown(_) => TEXTS.text("ib_left.unknown"),
     };
     texts.push(if untouched || unclear.is_empty() {
         state
@@ -176,8 +176,8 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     };
     let what_next = what_next.with("backup", backup.display());
     texts.push(match left {
-        Left::AsFound => what_next,
-        Left::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
+        EndState::AsFound => what_next,
+        EndState::Unknown(_) => Text::new("write.after_lead_back").with_text("next", what_next),
     });
     texts
 }

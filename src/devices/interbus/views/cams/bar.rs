@@ -6,7 +6,7 @@ use super::CamsUiState as Page;
 use crate::app::{Action, Language, Text};
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::words;
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, TEXTS, forms};
+use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, entry, icon_menu, name, paragraph, problem, text_entry};
 use crate::ui::{Theme, icons};

@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use crate::app::Action;
 use crate::devices::interbus::protocol::{CamNumber, StartupMode};
 use crate::devices::interbus::state::cams::{Chart, VisibleRange as Stretch};
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, Preview, TEXTS};
+use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, Preview, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{CamChart, CamEvent, cam_lanes, cam_ring};
 use crate::ui::controls::{card_with, icon_button, name, paragraph};

@@ -5,7 +5,7 @@ use egui::{Event, RichText, Ui};
 use crate::app::Action;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::devices::interbus::state::cams::{table_words, words};
-use crate::devices::interbus::state::{Action as Interbus, Encoder, Import, TEXTS};
+use crate::devices::interbus::state::{Encoder, Import, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{button, card, paragraph, primary};
 use crate::ui::{Theme, icons};

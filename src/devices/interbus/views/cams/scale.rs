@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::{Action, Text};
 use crate::devices::interbus::profile::{Scale, Unit};
-use crate::devices::interbus::state::{Action as Interbus, Encoder, TEXTS, forms};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, forms};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, choice, entry, paragraph, problem, settled_entry};

@@ -11,7 +11,7 @@ use crate::app::{Action, Text};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 use crate::devices::interbus::state::cams::{Chart, Lane, words};
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, forms};
+use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, forms};
 use crate::ui::controls::{card, name, paragraph, problem, settled_entry};
 use crate::ui::{Theme, icons};
 

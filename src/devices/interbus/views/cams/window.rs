@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::devices::interbus::protocol::{StartupMode, WindowShift};
-use crate::devices::interbus::state::{Action as Interbus, Edit, Encoder, TEXTS};
+use crate::devices::interbus::state::{Edit, Encoder, InterbusAction as Interbus, TEXTS};
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::{WordLayout, word_layout};
 use crate::ui::Theme;

@@ -1,7 +1,7 @@
 //! Golden frames of the reference, section 8, and its traps, section 6, by the families' settings.
 
 use super::*;
-use crate::devices::ssi::protocol::{Direction, Finding, Flags, Location, Meaning, Range, ungray};
+use crate::devices::ssi::protocol::{Direction, Flags, FrameFinding, Location, Meaning, Range, ungray};
 
 fn resolve(text: &str) -> Result<Resolved, String> {
     let (key, settings) = Settings::parse(text).map_err(|error| error.to_string())?;
@@ -141,7 +141,7 @@ fn the_error_pattern_of_the_kh53() {
         assert!(!layout.is_valid(fault), "{code}");
         assert_eq!(
             layout.findings(fault),
-            [Finding::Pattern { name: "overspeed or gap".to_owned(), meaning: Meaning::Invalid }]
+            [FrameFinding::Pattern { name: "overspeed or gap".to_owned(), meaning: Meaning::Invalid }]
         );
         let suspicious = layout.decode(0x0F_FFFE);
         assert!(layout.is_valid(suspicious), "{code}");
@@ -157,21 +157,21 @@ fn a_safety_fault_and_a_stuck_line_are_told_apart() {
     assert_eq!(safe.clocks(), 33);
     let fault = safe.decode(0x1_FFFF_FFFF);
     assert!(!safe.is_valid(fault));
-    assert!(matches!(&safe.findings(fault)[0], Finding::Pattern { name, .. } if name == "safety fault"));
+    assert!(matches!(&safe.findings(fault)[0], FrameFinding::Pattern { name, .. } if name == "safety fault"));
     assert_eq!(resolve("afm60s,st=13").unwrap().layout.clocks(), 28);
 
     let plain = resolve("afm60").unwrap().layout;
     let high = plain.decode(0x1_FFFF_FFFF);
-    assert_eq!(plain.findings(high)[0], Finding::StuckHigh { sure: true });
+    assert_eq!(plain.findings(high)[0], FrameFinding::StuckHigh { sure: true });
     assert!(!plain.is_valid(high));
     // 8191 of an ARS60 is all ones too: a suspicion.
     let short = resolve("ars60,st=13").unwrap().layout;
-    assert_eq!(short.findings(short.decode(0x1FFF)), [Finding::StuckHigh { sure: false }]);
+    assert_eq!(short.findings(short.decode(0x1FFF)), [FrameFinding::StuckHigh { sure: false }]);
     assert!(short.is_valid(short.decode(0x1FFF)));
-    assert_eq!(short.findings(short.decode(0)), [Finding::StuckLow { sure: false }]);
+    assert_eq!(short.findings(short.decode(0)), [FrameFinding::StuckLow { sure: false }]);
     // No position of 3600 in gray excess is coded as 0.
     let excess = resolve("atm60,steps=3600,code=gray-excess").unwrap().layout;
-    assert_eq!(excess.findings(excess.decode(0)), [Finding::StuckLow { sure: true }, Finding::Code]);
+    assert_eq!(excess.findings(excess.decode(0)), [FrameFinding::StuckLow { sure: true }, FrameFinding::Code]);
 }
 
 /// Section 6, trap 5: the frame of an AFS60 shrinks with its resolution, that of an AHS36 does not.
@@ -187,7 +187,7 @@ fn frames_that_shrink_and_frames_that_do_not() {
 fn wrong_padding_is_told() {
     let layout = resolve("ahs36,st=12").unwrap().layout;
     let reading = layout.decode(0b101010111100010);
-    assert_eq!(layout.findings(reading), [Finding::Padding]);
+    assert_eq!(layout.findings(reading), [FrameFinding::Padding]);
     assert!(layout.is_valid(reading));
 }
 

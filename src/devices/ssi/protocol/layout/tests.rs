@@ -68,9 +68,9 @@ proptest! {
         let flags = flags.fold(Flags::NONE, |all, index| all.with(Flags::error(index)));
         let frame = layout.encode(position, flags).unwrap();
         let reading = layout.decode(frame);
-        let seen = Reading { flags: Flags(reading.flags.0 & !(Flags::ONES.0 | Flags::ZEROS.0)), ..reading };
+        let seen = FrameReading { flags: Flags(reading.flags.0 & !(Flags::ONES.0 | Flags::ZEROS.0)), ..reading };
         let kept = if layout.loses_lowest_bit() { position & !1 } else { position };
-        prop_assert_eq!(seen, Reading { position: kept, flags });
+        prop_assert_eq!(seen, FrameReading { position: kept, flags });
     }
 
     /// A parity bit finds every single flipped bit, a repetition every one in either word.
@@ -178,7 +178,7 @@ fn gray_with_and_without_the_error_bit() {
     assert_eq!(plain.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5631));
     assert_eq!(whole.encode(0xAB_CDEF, Flags::error(0)), Some(0x1FC_5630));
     let mistaken = whole.decode(0x1FC_5631);
-    assert_eq!(mistaken, Reading { position: 0xAB_CDEF, flags: Flags::NONE }, "the error bit upside down");
+    assert_eq!(mistaken, FrameReading { position: 0xAB_CDEF, flags: Flags::NONE }, "the error bit upside down");
     assert_eq!(ungray(0x1FC_5631), 0x157_9BDE);
 }
 

@@ -1,7 +1,7 @@
 //! Words of an AFS60: 18 bits of position, then ERRDIG, ERRSI and ERRSYNC (reference section 8).
 
 use super::*;
-use crate::devices::ssi::protocol::{Families, Finding, Settings};
+use crate::devices::ssi::protocol::{Families, FrameFinding, Settings};
 
 const GOOD: u64 = 0x15_5E68;
 
@@ -25,8 +25,8 @@ fn run(first: u64, words: &[u64]) -> Words {
 }
 
 fn names(record: &Record) -> Vec<(String, u64)> {
-    let name = |finding: &Finding| match finding {
-        Finding::Error { name, .. } => name.clone(),
+    let name = |finding: &FrameFinding| match finding {
+        FrameFinding::Error { name, .. } => name.clone(),
         other => format!("{other:?}"),
     };
     record.tally().noted().iter().map(|noted| (name(&noted.finding), noted.count)).collect()

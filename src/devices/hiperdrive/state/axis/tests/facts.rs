@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 
 /// Back to the step that does not hold any more: by a press, and not before.
 #[track_caller]
-fn back_to(axis: &mut Axis, seen: &Seen, step: Step) {
+fn back_to(axis: &mut Axis, seen: &Seen, step: AxisStep) {
     let shown = axis.step();
     axis.look(seen);
     assert_eq!((axis.step(), axis.fallen()), (shown, Some(step)), "the page is left by a press alone");
@@ -23,16 +23,16 @@ fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
     assert_eq!(axis.may_move(&seen), Ok(()));
     // Somebody else has changed the scale.
     seen.scale = Some(PositionScale::FACTORY);
-    back_to(&mut axis, &seen, Step::Scale);
+    back_to(&mut axis, &seen, AxisStep::Scale);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_scale");
     press(&mut axis, &mut seen, Button::Do);
-    next(&mut axis, &seen, Step::Confirm);
+    next(&mut axis, &seen, AxisStep::Confirm);
     assert!(axis.may_go_on(&seen).is_err(), "what was confirmed before was for another scale");
     // Locked, although it was confirmed once: the lock counts.
     press(&mut axis, &mut seen, Button::Confirm);
-    next(&mut axis, &seen, Step::Jog);
+    next(&mut axis, &seen, AxisStep::Jog);
     seen.locks = vec![Lock::LimitsUnconfirmed];
-    back_to(&mut axis, &seen, Step::Confirm);
+    back_to(&mut axis, &seen, AxisStep::Confirm);
 }
 
 /// Issue 21.6 (i): an earlier fact falls, and the page stays until somebody goes back.
@@ -41,14 +41,14 @@ fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
     let (mut axis, mut seen) = until_test();
     // Everything is gone.
     seen = Seen { controlled: true, pitch: seen.pitch, ..fresh() };
-    back_to(&mut axis, &seen, Step::Request);
-    assert!(Step::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));
+    back_to(&mut axis, &seen, AxisStep::Request);
+    assert!(AxisStep::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));
     // Nothing is concluded from a drive that does not answer.
     let (mut axis, mut seen) = until_test();
     seen.connected = false;
     seen.scale = None;
     axis.look(&seen);
-    assert_eq!((axis.step(), axis.fallen()), (Step::Test, None));
+    assert_eq!((axis.step(), axis.fallen()), (AxisStep::Test, None));
 }
 
 /// Issue 21.6 (c): whoever changes pitch, reference or a limit makes everything behind it undone; taught limits as well.
@@ -60,16 +60,16 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
         assert!(axis.outcome(TestTarget::Middle).is_some());
         (axis, seen)
     };
-    let done = |axis: &Axis| Step::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
+    let done = |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
     // Changed by somebody else, on another page, by another master: the drive has it, and that counts.
-    type Case<'c> = (&'c str, fn(&mut Seen), Step);
+    type Case<'c> = (&'c str, fn(&mut Seen), AxisStep);
     let cases: [Case<'_>; 5] = [
-        ("a limit", |seen| seen.limits = Some((-1000, 2001)), Step::Confirm),
-        ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), Step::Reference),
+        ("a limit", |seen| seen.limits = Some((-1000, 2001)), AxisStep::Confirm),
+        ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), AxisStep::Reference),
         // By another master at another place: `standstill`.
-        ("the reference from this window, to the same number", |seen| seen.times_set += 1, Step::Reference),
-        ("the pitch", |seen| seen.pitch = Some(Length { nanometres: 5_000_000 }), Step::Scale),
-        ("the request", |seen| seen.requested = Some(false), Step::Request),
+        ("the reference from this window, to the same number", |seen| seen.times_set += 1, AxisStep::Reference),
+        ("the pitch", |seen| seen.pitch = Some(Length { nanometres: 5_000_000 }), AxisStep::Scale),
+        ("the request", |seen| seen.requested = Some(false), AxisStep::Request),
     ];
     for (label, change, falls) in cases {
         let (mut axis, mut seen) = tested();
@@ -83,10 +83,10 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     // The same by the run itself: back to the reference, 13.44 mm beside the one before. 1500 steps become 1472.
     let (mut axis, mut seen) = tested();
     (0..3).for_each(|_| axis.back(&seen));
-    assert_eq!((axis.step(), done(&axis)), (Step::Reference, 6));
+    assert_eq!((axis.step(), done(&axis)), (AxisStep::Reference, 6));
     axis.edit(Entries { reference: "15".to_owned(), ..axis.entries().clone() });
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::SetPosition(1472));
-    next(&mut axis, &seen, Step::Lower);
+    next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(done(&axis), 5);
     assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
@@ -94,15 +94,15 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     let (mut axis, mut seen) = tested();
     (0..2).for_each(|_| axis.back(&seen));
     axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
-    next(&mut axis, &seen, Step::Upper);
+    next(&mut axis, &seen, AxisStep::Upper);
     assert!(axis.outcome(TestTarget::Middle).is_none() && axis.may_go_on(&seen).is_err());
     assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -900), (160, 2000)]));
-    next(&mut axis, &seen, Step::Test);
+    next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.fallen(), None, "the review of their plan confirms them");
     // Who only looks back and goes on loses nothing.
     let (mut axis, seen) = tested();
     (0..4).for_each(|_| axis.back(&seen));
-    for step in [Step::Reference, Step::Lower, Step::Upper, Step::Test] {
+    for step in [AxisStep::Reference, AxisStep::Lower, AxisStep::Upper, AxisStep::Test] {
         next(&mut axis, &seen, step);
     }
     assert!(axis.outcome(TestTarget::Middle).is_some());
@@ -140,7 +140,8 @@ fn only_motion_under_a_held_pad_is_a_jog() {
 /// Issue 21.6 (e): a connection that was lost and found again is no proof that the supply was off.
 #[test]
 fn a_restart_is_read_or_said() {
-    let found = |axis: &Axis, seen: &Seen| words::found(axis, Step::PowerCycle, seen).unwrap().words(Language::English);
+    let found =
+        |axis: &Axis, seen: &Seen| words::found(axis, AxisStep::PowerCycle, seen).unwrap().words(Language::English);
     let again = |axis: &mut Axis, seen: &Seen| {
         axis.lose();
         axis.surveyed(seen, false);
@@ -149,7 +150,7 @@ fn a_restart_is_read_or_said() {
     let (mut axis, mut seen) = until_power();
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
-    assert!(!axis.survived() && axis.reached(Step::PowerCycle) == Reached::Failed);
+    assert!(!axis.survived() && axis.reached(AxisStep::PowerCycle) == Reached::Failed);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     press(&mut axis, &mut seen, Button::Restarted);
     assert!(
@@ -234,7 +235,7 @@ fn millimetres_come_with_a_spindle() {
     let (mut axis, mut seen) = (run(), fresh());
     let position = |seen: &Seen| words::millimetres(seen.ruler(), 400).words(Language::English);
     press(&mut axis, &mut seen, Button::Do);
-    next(&mut axis, &seen, Step::Scale);
+    next(&mut axis, &seen, AxisStep::Scale);
     // A drive with 400 steps a turn, of whatever spindle: nothing is proposed that would fit it by accident.
     seen.scale = PositionScale::new(400, 256).ok();
     assert_eq!(axis.entries().pitch, "");

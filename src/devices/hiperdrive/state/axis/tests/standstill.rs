@@ -34,7 +34,7 @@ fn a_position_that_jumps_at_a_standstill_is_another_reference() {
         axis.look(&seen);
         (axis.fallen(), words::unexplained(&axis, &seen).is_some())
     };
-    let jump = (Some(Step::Reference), false);
+    let jump = (Some(AxisStep::Reference), false);
     for (label, ms, steps, expected) in [
         // 0.12 s · 210° + 5° are 30.2°, which are 33.6 steps.
         ("as far as it turns at once", 20, 34, (None, false)),
@@ -82,7 +82,7 @@ fn a_position_that_is_changed_from_here_is_no_jump() {
     press(&mut axis, &mut seen, Button::Do);
     read(&mut seen, 10_020, 128, STANDS);
     axis.look(&seen);
-    next(&mut axis, &seen, Step::Lower);
+    next(&mut axis, &seen, AxisStep::Lower);
     read(&mut seen, 10_040, 128, STANDS);
     axis.look(&seen);
     assert_eq!((axis.fallen(), axis.reference()), (None, Some(128)));
@@ -117,7 +117,7 @@ fn a_position_that_changed_unseen_is_told_and_not_guessed() {
     // At the reference, and from there on.
     (0..3).for_each(|_| axis.back(&seen));
     assert!(told(&axis, &seen).is_some());
-    next(&mut axis, &seen, Step::Lower);
+    next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(told(&axis, &seen), None);
     axis.lose();
     read(&mut seen, 0, 2000, STANDS);
