@@ -93,7 +93,7 @@ impl MaskedBytes {
         self.0.extend(more.0);
     }
 
-    /// Of the same length, and equal wherever this one is not masked.
+    /// Returns whether the bytes have the same length and are equal wherever this one is not masked.
     pub fn matches(&self, bytes: &[u8]) -> bool {
         self.0.len() == bytes.len() && self.0.iter().zip(bytes).all(|(own, byte)| own.is_none_or(|own| own == *byte))
     }

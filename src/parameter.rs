@@ -55,7 +55,7 @@ pub trait Parameters: Default {
     /// A value that its key does not take.
     fn set(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
 
-    /// Those that a person can type, in the order in which they are declared.
+    /// Returns the entries that a user can type, in the order of declaration.
     fn entries() -> Vec<Entry>;
 
     /// Reads those that there are; the others are left alone. Of a key given twice the last counts.

@@ -64,7 +64,7 @@ impl Motor {
         self.offset(fine_periods).map(|angle| ElectricalAngle(angle.0.wrapping_sub(offset.0)))
     }
 
-    /// By how much two neighbouring values of [`position_to_set`] differ, in degrees of the shaft.
+    /// Returns the difference between two neighbouring values of [`position_to_set`], in degrees of the shaft.
     pub fn mechanical_step_deg(&self) -> f64 {
         360.0 / f64::from(self.periods)
     }

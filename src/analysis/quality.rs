@@ -51,7 +51,7 @@ impl Family {
     /// Every family.
     pub const ALL: [Family; 3] = [Family::Hiperface, Family::AfsAfm60, Family::Ttk70];
 
-    /// As the manufacturer writes it.
+    /// Returns the manufacturer's spelling.
     pub const fn name(self) -> &'static str {
         match self {
             Family::Hiperface => "HIPERFACE",

@@ -122,7 +122,7 @@ impl Analysis {
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
     }
 
-    /// There are samples enough in a period for the angle to be followed, and with it the frequency.
+    /// Returns whether a period has enough samples to follow the angle, and with it the frequency.
     pub fn is_followed(&self) -> bool {
         self.step_deg <= LARGEST_STEP_DEG
     }

@@ -45,7 +45,7 @@ pub struct Synchronised {
 pub struct Unsynchronisable;
 
 impl Synchroniser {
-    /// Without offset, for so many periods in the whole range.
+    /// Creates one without offset, with this many periods in the whole range.
     pub fn new(periods: u64) -> Self {
         Synchroniser { periods: periods.max(1), offset_steps: 0.0, half_step: false }
     }
@@ -101,8 +101,9 @@ impl Synchronised {
     }
 }
 
-/// By how many steps of 1/32 period the absolute position is ahead on average: the mean over at least one turn of the
-/// differences, as angles, so that a difference of 31 steps is one of −1. `None` without samples, or where they cancel.
+/// Returns the number of steps of 1/32 period by which the absolute position is ahead on average: the mean of the
+/// differences over at least one turn, taken as angles, so that a difference of 31 steps is one of −1. `None` without
+/// samples, or where they cancel.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {

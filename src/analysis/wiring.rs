@@ -30,7 +30,7 @@ impl Wire {
     /// Every wire.
     pub const ALL: [Wire; 4] = [Wire::Sin, Wire::Refsin, Wire::Cos, Wire::Refcos];
 
-    /// As the manual spells it.
+    /// Returns the manual's spelling.
     pub const fn name(self) -> &'static str {
         match self {
             Wire::Sin => "SIN",
@@ -47,7 +47,7 @@ impl Wires {
         self.sin_v.len()
     }
 
-    /// There is no sample.
+    /// Returns whether there are no samples.
     pub fn is_empty(&self) -> bool {
         self.sin_v.is_empty()
     }

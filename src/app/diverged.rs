@@ -99,7 +99,7 @@ impl Diverged {
         Diverged { saving, theirs: document, text, rows, problem }
     }
 
-    /// Whose it is.
+    /// Returns the session that the file belongs to.
     pub fn session(&self) -> SessionId {
         self.saving.session
     }
@@ -130,7 +130,7 @@ impl Diverged {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
 
-    /// Of each entry it is known which version is taken.
+    /// Returns whether a version is chosen for each entry.
     pub fn can_merge(&self) -> bool {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }

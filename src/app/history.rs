@@ -17,12 +17,12 @@ impl<T> History<T> {
     /// Steps that can be undone.
     const STEPS: usize = 200;
 
-    /// There is a step to undo.
+    /// Returns whether there is a step to undo.
     pub(crate) fn can_undo(&self) -> bool {
         !self.undo.is_empty()
     }
 
-    /// There is a step to do again.
+    /// Returns whether there is a step to redo.
     pub(crate) fn can_redo(&self) -> bool {
         !self.redo.is_empty()
     }

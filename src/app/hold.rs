@@ -178,7 +178,7 @@ impl HoldState {
         }
     }
 
-    /// In how many seconds a picture is needed at the latest, so that a key that went up counts as up.
+    /// Returns the seconds until the next frame is needed, so that a released key counts as released.
     pub const fn next_picture(&self) -> Option<f64> {
         self.next_picture
     }
@@ -192,7 +192,7 @@ impl HoldState {
         self.holder == Some(Holder::Pointer)
     }
 
-    /// It has the keyboard, and no key has been seen up yet: the first press will not count.
+    /// Returns whether it has the keyboard and no release of a key has been seen yet: the first press will not count.
     pub fn waits_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

@@ -118,7 +118,7 @@ impl Log {
         self.standing.take_if(|notice| is_it(notice));
     }
 
-    /// It has been read.
+    /// Removes the notice: the user has read it.
     pub fn dismiss(&mut self) {
         self.standing = None;
     }

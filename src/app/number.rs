@@ -124,12 +124,12 @@ fn filled(what: &Text, text: &str) -> Result<(), Text> {
     if text.trim().is_empty() { Err(Text::new("entry.missing").with_text("what", what.clone())) } else { Ok(()) }
 }
 
-/// As many decimals as a limit needs, three at most.
+/// Returns the number of decimals that a limit needs, at most three.
 pub(crate) fn decimals(value: f64) -> usize {
     decimals_of(value, 3)
 }
 
-/// As many decimals as a number needs, up to those.
+/// Returns the number of decimals that a number needs, at most `most`.
 pub(crate) fn decimals_of(value: f64, most: usize) -> usize {
     (0..most).find(|count| (value * 10_f64.powi(*count as i32)).fract() == 0.0).unwrap_or(most)
 }

@@ -5,13 +5,13 @@ pub trait PendingEdits {
     /// Returns the number of edits.
     fn count(&self) -> usize;
 
-    /// There is an edit.
+    /// Returns whether there is an edit.
     fn is_dirty(&self) -> bool;
 
-    /// There is a step to undo.
+    /// Returns whether there is a step to undo.
     fn can_undo(&self) -> bool;
 
-    /// There is a step to do again.
+    /// Returns whether there is a step to redo.
     fn can_redo(&self) -> bool;
 
     /// Undoes the last step. False where nothing has changed.

@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// As long as drives are in hand the settings are read again and again: another window may have marked limits as
+    /// Reads the settings again periodically while drives are in control: another window may have marked limits as
     /// unconfirmed.
     pub(super) fn look_at_settings(&mut self) {
         let now = self.services.now();

@@ -84,17 +84,17 @@ impl<K: Reviewed> Review<K> {
         matches!(self.state, ReviewState::Planning)
     }
 
-    /// It is being carried out.
+    /// Returns whether the plan is being carried out.
     pub fn is_writing(&self) -> bool {
         matches!(self.state, ReviewState::Writing(_))
     }
 
-    /// It has not begun to be carried out, and has not failed.
+    /// Returns whether the plan has neither begun nor failed.
     pub(in crate::app) fn is_plan(&self) -> bool {
         matches!(self.state, ReviewState::Planning | ReviewState::Ready(_))
     }
 
-    /// It ended early, after so many operations where they were being carried out.
+    /// Ends the review early, after `done` operations if they had begun.
     pub(in crate::app) fn fail(&mut self, texts: Vec<Text>, begun: bool, done: usize) {
         let cut_off = self.writing().filter(|_| begun).cloned().map(|prepared| (Box::new(prepared), done));
         self.state = ReviewState::Failed { texts, begun, cut_off };

@@ -57,7 +57,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Those of a first start.
+    /// Returns the settings of a first start.
     pub fn of(kinds: Kinds) -> Self {
         Settings { tab: kinds.first_tab(), ..Settings::default() }
     }

@@ -198,12 +198,12 @@ impl SettingsStore {
         true
     }
 
-    /// They could not be read, which counts as not having looked: locks may stand in them.
+    /// Handles settings that could not be read: this counts as not having looked, since they may contain locks.
     pub(crate) fn could_not_look(&mut self) {
         self.unseen = self.looking.take();
     }
 
-    /// They were read. While a write is on its way, which tells later what it has found, they come back.
+    /// Handles settings that were read. While a write is pending, whose result tells what it found, they are returned.
     pub(crate) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.looked = self.looking.take();
         if self.busy.is_some() {
@@ -215,7 +215,7 @@ impl SettingsStore {
         None
     }
 
-    /// They were not read for so long.
+    /// Returns whether the settings have not been read for this long.
     pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
         // A clock of the wall may be set back.
         let age = self.looked.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());

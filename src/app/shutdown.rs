@@ -153,7 +153,7 @@ impl Services {
         self.leaving.iter().any(|leaving| leaving.who.write.is_some())
     }
 
-    /// Those that still hold a wire, with the time they get.
+    /// Returns those that still hold a wire, with the time they get.
     pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn Left>, Duration)> {
         let own = self.leaving.iter().filter(|leaving| same_wire(&leaving.who.url, url));
         own.map(|leaving| (leaving.ending.clone(), self.patience_with(leaving.who.write.is_some()))).collect()

@@ -45,7 +45,7 @@ pub struct SineCosineOrigin {
 
 /// A device whose sine and cosine can be read at rest.
 pub trait SineCosineSource {
-    /// It can be read now.
+    /// Returns whether it can be read now.
     fn is_ready(&self) -> bool;
 
     fn read_action(&self) -> Action;

@@ -23,7 +23,7 @@ impl StopPresses {
         means
     }
 
-    /// Something was stopped by a press so shortly before this time that another press means the same.
+    /// Returns whether a press stopped something so shortly before that another press means the same.
     pub fn has_just_stopped(&self, pressed: f64) -> bool {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
@@ -33,7 +33,7 @@ impl StopPresses {
         self.pressed = Some(now);
     }
 
-    /// When what counts now was pressed. A click by the keyboard has no press of its own.
+    /// Returns the time of the press that counts now. A click by the keyboard has no press of its own.
     pub fn pressed_at(&self, by_pointer: bool, now: f64) -> f64 {
         self.pressed.filter(|_| by_pointer).unwrap_or(now)
     }

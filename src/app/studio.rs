@@ -264,12 +264,12 @@ impl Studio {
         self.shown.set(tab, id);
     }
 
-    /// Something runs or is read all the time, in any session: there is something to stop.
+    /// Returns whether any session has something to stop: a job or polling.
     pub fn can_stop(&self) -> bool {
         self.devices.iter().any(|device| device.is_active()) || self.searches() || self.can_stop_tools()
     }
 
-    /// Something runs that comes to an end by itself, or measures; being read all the time is none of that.
+    /// Returns whether something runs that ends by itself, or measures; polling does not count.
     pub fn works(&self) -> bool {
         let device = |device: &AnyDevice| device.is_opening() || device.is_busy();
         self.devices.iter().map(Box::as_ref).any(device) || self.searches() || self.can_stop_tools()

@@ -25,7 +25,7 @@ pub struct Mailbox {
 }
 
 impl Tasks {
-    /// Nothing to do yet.
+    /// Creates an empty list of tasks.
     pub(crate) fn new(wake: Wake) -> Self {
         // Unbounded: each thread sends once, and there are as many as a person's clicks.
         let (sender, receiver) = unbounded();
@@ -41,7 +41,7 @@ impl Tasks {
         }
     }
 
-    /// For a thread that is started elsewhere.
+    /// Returns a mailbox for a thread that is started elsewhere.
     pub fn mailbox(&self) -> Mailbox {
         Mailbox { sender: self.sender.clone(), wake: self.wake.clone() }
     }

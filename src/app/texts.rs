@@ -78,49 +78,49 @@ impl Text {
         COMMON.text(id)
     }
 
-    /// With words, a number or a name for `{name}`.
+    /// Fills `{name}` with words, a number or a name.
     #[must_use]
     pub fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.arguments.push((name, Argument::Words(value.to_string())));
         self
     }
 
-    /// With another text for `{name}`.
+    /// Fills `{name}` with another text.
     #[must_use]
     pub fn with_text(mut self, name: &'static str, text: Text) -> Self {
         self.arguments.push((name, Argument::Text(text)));
         self
     }
 
-    /// With a name for `{name}` that stands in no table: as it is in English and in German.
+    /// Fills `{name}` with a name that is in no catalogue, in English and German.
     #[must_use]
     pub fn with_name(mut self, name: &'static str, english: &str, german: &str) -> Self {
         self.arguments.push((name, Argument::Name(english.to_owned(), german.to_owned())));
         self
     }
 
-    /// With a number of so many decimals for `{name}`: 1.5 in English, 1,5 in German.
+    /// Fills `{name}` with a number of this many decimals: 1.5 in English, 1,5 in German.
     #[must_use]
     pub fn with_number(mut self, name: &'static str, value: f64, decimals: usize) -> Self {
         self.arguments.push((name, Argument::Number(format!("{value:.decimals$}"))));
         self
     }
 
-    /// With a number for `{name}` that is in digits already, as English writes it.
+    /// Fills `{name}` with a number that is already written in digits, as in English.
     #[must_use]
     pub(crate) fn with_digits(mut self, name: &'static str, digits: impl ToString) -> Self {
         self.arguments.push((name, Argument::Number(digits.to_string())));
         self
     }
 
-    /// With other texts for `{name}`, one after the other with commas.
+    /// Fills `{name}` with other texts, separated by commas.
     #[must_use]
     pub fn with_list(mut self, name: &'static str, texts: impl IntoIterator<Item = Text>) -> Self {
         self.arguments.push((name, Argument::List(texts.into_iter().collect())));
         self
     }
 
-    /// It is about this file.
+    /// Returns whether it is about this file.
     pub(super) fn is_about(&self, path: &Path) -> bool {
         let name = path.display().to_string();
         let is_it = |(argument, value): &(&str, Argument)| {

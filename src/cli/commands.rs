@@ -61,7 +61,7 @@ impl CommandId {
         CommandId::Simulate,
     ];
 
-    /// As it is written.
+    /// Returns the word on the command line.
     pub(super) const fn name(self) -> &'static str {
         match self {
             CommandId::Find => "find",
@@ -182,7 +182,7 @@ pub trait OwnCommand: Sync {
 
 /// A protocol that several kinds of device may speak, whose captured bytes `decode` explains.
 pub trait ProtocolDecoder: Sync {
-    /// As it is written on the command line.
+    /// Returns the word on the command line.
     fn name(&self) -> &'static str;
 
     /// One sentence on the protocol, for the help.

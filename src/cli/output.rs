@@ -67,7 +67,7 @@ impl Output {
         }
     }
 
-    /// As [`show`](Self::show), after a device was written: that has to be known whatever becomes of the result.
+    /// Shows a result like [`show`](Self::show), after a write: the write has to be reported even if the output fails.
     pub(super) fn show_written(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {

@@ -49,7 +49,7 @@ pub struct PlanStep {
 }
 
 impl PlanStep {
-    /// For a script.
+    /// Returns the step as JSON.
     pub fn json(&self) -> Json {
         json!({"item": self.item, "old": self.old, "new": self.new, "write_cycles": self.write_cycles})
     }

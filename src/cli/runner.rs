@@ -238,7 +238,7 @@ impl<D: Runs> JobFailure<D> {
     }
 }
 
-/// At most four lines: of more sentences all but the first and the last share one.
+/// Returns at most four lines: of more sentences all but the first and the last share one.
 fn lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);

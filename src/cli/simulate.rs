@@ -43,7 +43,7 @@ pub trait Simulated: ByteDevice {
     /// Sets the address of a device with datagrams.
     fn listens(&self, _at: SocketAddrV4) {}
 
-    /// It has closed the connection.
+    /// Returns whether it has closed the connection.
     fn has_ended(&self) -> bool {
         false
     }
@@ -98,7 +98,7 @@ enum Heard {
 }
 
 impl Device {
-    /// For another client.
+    /// Returns the device for another client.
     fn another(&self, peer: SocketAddr) -> Option<Device> {
         let address = match peer {
             SocketAddr::V4(peer) => *peer.ip(),

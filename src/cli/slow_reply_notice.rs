@@ -38,7 +38,7 @@ impl SlowReplyNotice {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
 
-    /// Something to say, where it is time to.
+    /// Returns the notice if it is time for one.
     pub(super) fn words(&mut self) -> Option<String> {
         let now = Instant::now();
         let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(Pace::words);

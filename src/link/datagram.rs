@@ -10,7 +10,7 @@ pub trait Datagrams: Send {
     /// The port of ours to which the target has to send.
     fn port(&self) -> u16;
 
-    /// From now on packets go to this port of the target.
+    /// Sends further packets to this port of the target.
     fn aim(&mut self, port: u16);
 
     /// Packets of the target also go to all who listen there, and are taken from there as well. In this process there is only

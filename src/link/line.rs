@@ -68,7 +68,7 @@ impl<'a> SerialLine<'a> {
         self.ctx.clock.now()
     }
 
-    /// From now on a wish to end is heard, or is not; gives back whether it was not.
+    /// Sets whether a request to end is ignored; returns the previous setting.
     pub(crate) fn shield(&mut self, shielded: bool) -> bool {
         std::mem::replace(&mut self.shielded, shielded)
     }
@@ -110,7 +110,7 @@ impl<'a> SerialLine<'a> {
         Ok(heard)
     }
 
-    /// Before each exchange: the user's wish.
+    /// Checks for the user's request to end before an exchange.
     ///
     /// # Errors
     /// [`LineError::Cancelled`].
@@ -162,7 +162,7 @@ impl<'a> SerialLine<'a> {
         self.ctx.wire.receive(until, into)
     }
 
-    /// From now on keeps what comes too late or behind a reply, until it is taken.
+    /// Keeps bytes that come too late or after a reply, until they are taken.
     pub(crate) fn keep_passed(&mut self) {
         self.passed = Some(Vec::new());
     }
@@ -228,8 +228,8 @@ impl<'a> SerialLine<'a> {
         self.let_late_ones_pass(state, quiet)
     }
 
-    /// Something came late: every request that is without a reply may still get one. The first of them tells how late
-    /// the wire is at most, and for so long after the last of them nothing is sent.
+    /// Lets late bytes pass: every request without a reply may still get one. The first of them shows the maximum delay
+    /// of the wire, and for that long after the last of them nothing is sent.
     ///
     /// # Errors
     /// See [`LineError`].

@@ -75,7 +75,7 @@ pub struct SimPort {
 const FIRST_PORT: u16 = 50_000;
 
 impl SimPort {
-    /// To that device.
+    /// Creates a link to the device.
     pub fn new(device: Arc<Mutex<dyn DatagramDevice>>, clock: Arc<dyn Clock>) -> Self {
         SimPort { device, clock, next: FIRST_PORT }
     }

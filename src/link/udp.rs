@@ -25,7 +25,7 @@ pub struct UdpPort {
 }
 
 impl UdpPort {
-    /// To a target, as `host:port` of its TCP connection.
+    /// Creates a link to a target, given as `host:port` of its TCP connection.
     pub fn new(target: &str, clock: Arc<dyn Clock>) -> Self {
         UdpPort { target: target.to_owned(), clock }
     }
@@ -183,10 +183,10 @@ pub struct UdpShout {
 }
 
 impl UdpShout {
-    /// To all in every network.
+    /// Creates a link that broadcasts in every network.
     ///
     /// # Errors
-    /// When the system has no socket left.
+    /// The system has no socket left.
     pub fn to_all(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let mut networks = vec![Ipv4Addr::BROADCAST];
         networks.extend(networks_of_ours());
@@ -194,10 +194,10 @@ impl UdpShout {
         Self::to(networks.into_iter().map(|address| SocketAddrV4::new(address, port)).collect(), clock)
     }
 
-    /// To these addresses.
+    /// Creates a link to these addresses.
     ///
     /// # Errors
-    /// When the system has no socket left.
+    /// The system has no socket left.
     pub fn to(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let open = || {
             let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
@@ -219,7 +219,8 @@ fn networks_of_ours() -> Vec<Ipv4Addr> {
     std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
 }
 
-/// Of the table of routes as Linux has it: interface, destination, gateway, flags, …, mask (the eighth).
+/// Returns the broadcast addresses in the routing table of Linux: interface, destination, gateway, flags, …, mask (the
+/// eighth column).
 fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
     let address = |text: &str| u32::from_str_radix(text, 16).ok().map(|raw| u32::from_be_bytes(raw.to_le_bytes()));
     let mut found = Vec::new();

@@ -266,7 +266,7 @@ impl Query {
         &self.0
     }
 
-    /// Those parameters that are not in `names`.
+    /// Returns the parameters that are not in `names`.
     pub fn without(&self, names: &[&str]) -> Vec<(String, String)> {
         self.0.iter().filter(|(name, _)| !names.contains(&name.as_str())).cloned().collect()
     }

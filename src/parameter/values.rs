@@ -26,7 +26,7 @@ pub trait Values {
         ""
     }
 
-    /// They may have a decimal point.
+    /// Returns whether values may have a decimal point.
     fn is_decimal(&self) -> bool {
         false
     }

@@ -52,10 +52,10 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Writes its entries into the document.
     fn emit(&self, writer: &mut Writer);
 
-    /// It once more.
+    /// Returns a copy.
     fn boxed(&self) -> Box<dyn ProfileBody>;
 
-    /// It says the same as another one.
+    /// Returns whether it equals another body.
     fn equals(&self, other: &dyn ProfileBody) -> bool;
 
     /// Compares it with another one; `None` where that is of another kind of device.
@@ -132,7 +132,7 @@ impl Body {
         self.0.compared(other.0.as_ref()).ok_or_else(|| other.is_not(self.kind()))
     }
 
-    /// It is of another kind of device than the one asked for.
+    /// Returns the error that this is another kind of device than `wanted`.
     pub fn is_not(&self, wanted: &'static str) -> ProfileError {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }

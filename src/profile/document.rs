@@ -86,7 +86,8 @@ impl Document {
         Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })
     }
 
-    /// It is of a newer schema: it is looked at, compared, and neither saved nor written into a device.
+    /// Returns whether it has a newer schema: it can be viewed and compared, but neither saved nor written into a
+    /// device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }

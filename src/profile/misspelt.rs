@@ -43,7 +43,7 @@ impl Reading {
         self.newer.get().is_some()
     }
 
-    /// Something at this place is beyond the schema.
+    /// Notes that the entry at this path is beyond the schema.
     pub(super) fn is_beyond(&self, path: String) {
         self.beyond.borrow_mut().push(path);
     }

@@ -31,7 +31,7 @@ impl<Base: Hash, Op: Hash> Plan<Base, Op> {
 }
 
 impl<Base, Op> Plan<Base, Op> {
-    /// There is nothing to do.
+    /// Returns whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
         self.ops.is_empty()
     }

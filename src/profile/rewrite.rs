@@ -25,10 +25,10 @@ impl Document {
         changes(&self.emit(), &other.emit()).unwrap_or_default()
     }
 
-    /// It with these changes.
+    /// Returns the document with these changes.
     ///
     /// # Errors
-    /// What comes of them is no profile; `None`: one of them has no place in it.
+    /// The result is not a profile; `None`: a change has no place in it.
     pub fn changed(&self, changes: &[Change], formats: Formats) -> Result<Document, Option<ProfileError>> {
         Document::parse(&applied(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
     }

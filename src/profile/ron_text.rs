@@ -186,7 +186,7 @@ impl Entries {
         Ok(own)
     }
 
-    /// Something at this place is beyond the schema.
+    /// Notes that the entry at this path is beyond the schema.
     pub fn is_beyond(&self, path: String) {
         self.reading.is_beyond(path);
     }

@@ -33,12 +33,12 @@ impl FaultList {
         value.parse()
     }
 
-    /// They have no unit.
+    /// Returns an empty unit.
     pub fn unit(&self) -> &'static str {
         ""
     }
 
-    /// They are no number.
+    /// Returns false: faults are not numbers.
     pub fn is_decimal(&self) -> bool {
         false
     }

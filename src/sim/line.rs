@@ -30,7 +30,7 @@ impl<T> Queue<T> {
         self.0.len()
     }
 
-    /// When the next one counts.
+    /// Returns when the next event counts.
     pub(crate) fn due(&self) -> Option<Moment> {
         self.0.front().map(|(at, _)| *at)
     }

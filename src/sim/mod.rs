@@ -30,7 +30,7 @@ pub trait ByteDevice: Send {
     /// Bytes that have completely arrived at the host by `now` and were not fetched yet.
     fn poll(&mut self, now: Moment) -> Vec<u8>;
 
-    /// When [`poll`](Self::poll) should be called next; `None`: nothing will happen by itself.
+    /// Returns when [`poll`](Self::poll) should be called next; `None` if nothing will happen by itself.
     fn poll_at(&self) -> Option<Moment>;
 
     /// Sets the format of the host's UART. If it differs from the device's setting, bytes arrive garbled in both
@@ -50,6 +50,7 @@ pub trait DatagramDevice: Send {
     /// Packets that have left by `now` and were not fetched yet, with where they go.
     fn poll_datagrams(&mut self, now: Moment) -> Vec<(SocketAddrV4, Vec<u8>)>;
 
-    /// When [`poll_datagrams`](Self::poll_datagrams) should be called next; `None`: nothing will happen by itself.
+    /// Returns when [`poll_datagrams`](Self::poll_datagrams) should be called next; `None` if nothing will happen by
+    /// itself.
     fn poll_datagrams_at(&self) -> Option<Moment>;
 }

@@ -262,7 +262,7 @@ pub(crate) fn options<T: PartialEq + Copy>(
     *value != before
 }
 
-/// Something is being done. It turns slowly enough to cost nothing.
+/// Draws a spinner that turns slowly enough to cost nothing.
 pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     const STEPS: f64 = 8.0;
     let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());

@@ -10,7 +10,7 @@ pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
     with(ctx, |presses| presses.means_motion(moves, pressed, now))
 }
 
-/// Something was stopped by a press so shortly before this time that another press means the same.
+/// Returns whether a press stopped something so shortly before that another press means the same.
 pub(super) fn has_just_stopped(ctx: &Context, pressed: f64) -> bool {
     with(ctx, |presses| presses.has_just_stopped(pressed))
 }
@@ -30,7 +30,7 @@ pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     goes
 }
 
-/// When what counts in this picture, on a button that stops, was pressed.
+/// Returns when the press that counts in this frame, on a button that stops, began.
 pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
     let (now, released) = ui.input(|input| (input.time, input.pointer.any_released()));
     with(ui.ctx(), |presses| presses.pressed_at(goes_down || released, now))

@@ -240,7 +240,7 @@ impl Window {
         }
     }
 
-    /// Something stands over the window and has the keyboard.
+    /// Returns whether a dialog covers the window and has the keyboard.
     fn is_covered(&self) -> bool {
         let dialog = self.views.file.is_some() || self.views.about;
         self.studio.connect.is_some() || self.asks() || dialog
@@ -307,7 +307,7 @@ impl Window {
     }
 }
 
-/// While a drive moves, the header has a red edge.
+/// Draws a red edge on the header while a drive moves.
 fn moving_edge(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if studio.moves() {
         let screen = ui.ctx().content_rect();
@@ -316,7 +316,7 @@ fn moving_edge(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// While something is written, a bar moves along the top edge.
+/// Draws a moving bar along the top edge during a write.
 fn writing_bar(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     if !studio.devices().iter().any(|device| device.is_writing()) {
         return;

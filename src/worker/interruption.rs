@@ -15,7 +15,7 @@ pub trait EndedEarly {
         None
     }
 
-    /// Something was written before it ended.
+    /// Returns whether something was written before it ended.
     fn has_begun(&self) -> bool {
         self.done().is_some()
     }

@@ -30,14 +30,14 @@ struct PollRequests {
 }
 
 impl Live {
-    /// Nothing is wished; the thread listens for changes.
+    /// Creates an empty list; the thread receives changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
         let wishes = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
         (Live { wishes, sampling: Cancel::default(), changed }, changes)
     }
 
-    /// From now on a stop is meant for this job.
+    /// Directs a stop to this job from now on.
     pub(super) fn next_job(&self, cancel: Cancel) {
         self.lock().job = cancel;
     }
@@ -124,7 +124,7 @@ struct Entry<W> {
 }
 
 impl<W: Clone + PartialEq> Watches<W> {
-    /// Nothing is watched; the thread hears of changes through `live`.
+    /// Creates an empty watch; the thread learns of changes through `live`.
     pub(super) fn new(live: Live) -> Self {
         Watches { list: Arc::new(Mutex::new(List { entries: Vec::new(), number: 0 })), live }
     }

@@ -33,7 +33,7 @@ impl<W> Default for PollScheduler<W> {
 }
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
-    /// From now on these are watched; what was watched before goes on at its pace.
+    /// Sets the values to watch; those already watched keep their pace.
     pub(super) fn watch(&mut self, wished: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
         for (what, interval) in wished {
@@ -60,7 +60,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         next.filter(|(due, _)| *due < sample).or(Some((sample, Due::Sample)))
     }
 
-    /// It was asked for, and the reply came at `now`.
+    /// Notes that the value was requested and the reply came at `now`.
     pub(super) fn taken(&mut self, due: &Due<W>, now: Instant) {
         self.sample_was_last = *due == Due::Sample;
         match due {
@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(pace.due(None, start + ms(530)), None);
     }
 
-    /// Everything takes 25 ms: what is asked for, and the milliseconds at which it begins, up to `end`.
+    /// Returns the requests and the milliseconds at which they begin, up to `end`, when each takes 25 ms.
     fn course(polling: u64, watches: &[(char, u64)], end: u64) -> String {
         let start = Instant::now();
         let mut agenda = PollScheduler::default();

@@ -146,7 +146,7 @@ fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) ->
     Columns { reference_angle: angle, absolute, ..columns }
 }
 
-/// Without a line that is cut off at the end of the head, of which so many bytes were read.
+/// Returns the head without a last line that was cut off; `read` is the number of bytes read.
 fn whole_lines(head: &[u8], read: usize) -> &[u8] {
     match head.iter().rposition(|byte| *byte == b'\n') {
         Some(end) if read + 3 >= HEAD => head.get(..=end).unwrap_or(head),

@@ -32,8 +32,8 @@ pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
 }
 
 impl Decoder {
-    /// For a table that begins like this. Without a byte order mark, UTF-16 is known by the empty halves of its first two
-    /// characters.
+    /// Detects the encoding from the beginning of a table. Without a byte order mark, UTF-16 is recognised by the zero
+    /// halves of its first two characters.
     pub(super) fn of(head: &[u8]) -> Self {
         let (encoding, mark) = match head {
             [0xEF, 0xBB, 0xBF, ..] => (Encoding::Bytes, 3),

@@ -89,7 +89,7 @@ impl TimeUnit {
         }
     }
 
-    /// As a header writes it.
+    /// Parses the spelling in a header.
     pub(super) fn parse(text: &str) -> Option<Self> {
         match text {
             "s" | "sec" | "second" | "seconds" => Some(TimeUnit::Seconds),
@@ -112,7 +112,7 @@ impl VoltUnit {
         }
     }
 
-    /// As a header writes it.
+    /// Parses the spelling in a header.
     pub(super) fn parse(text: &str) -> Option<Self> {
         match text {
             "v" | "volt" | "volts" => Some(VoltUnit::Volts),

@@ -68,7 +68,7 @@ impl<'a> Part<'a> {
         Part { values: Values::Whole(values), flags: &[] }
     }
 
-    /// With the flags of each value.
+    /// Adds the flags of each value.
     #[must_use]
     pub fn flagged(self, flags: &'a [Flags]) -> Self {
         Part { flags, ..self }
@@ -193,7 +193,8 @@ impl History {
         self.times.first()..self.times.end()
     }
 
-    /// When the oldest sample was taken that is still there after so many more; `None` when none of the present ones is.
+    /// Returns the time of the oldest sample that remains after `more` further samples; `None` if none of the present
+    /// ones does.
     pub fn oldest_after(&self, more: usize) -> Option<Time> {
         let blocks = self.times.end().saturating_add(more as u64).div_ceil(BLOCK as u64);
         let first = blocks.saturating_sub(self.keep as u64) * BLOCK as u64;
@@ -206,7 +207,7 @@ impl History {
         from..self.times.search(to).max(from)
     }
 
-    /// When the sample `index` was taken; `None` when it is not there.
+    /// Returns the time of sample `index`; `None` if it is not stored.
     pub fn time(&self, index: u64) -> Option<Time> {
         self.times.get(index)
     }

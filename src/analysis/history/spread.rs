@@ -75,7 +75,7 @@ pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
     (of_eight(*values, lesser), of_eight(*values, greater))
 }
 
-/// In pairs, so that none has to wait for the one before.
+/// Adds in pairs, so that no addition waits for the previous one.
 fn of_eight<T: Number>([a, b, c, d, e, f, g, h]: [T; 8], choose: impl Fn(T, T) -> T) -> T {
     choose(choose(choose(a, e), choose(b, f)), choose(choose(c, g), choose(d, h)))
 }

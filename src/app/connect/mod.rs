@@ -76,7 +76,7 @@ pub struct Connect {
 }
 
 impl Connect {
-    /// For a kind of device; `last` gives the link that was used last for one.
+    /// Creates the dialog for a kind of device; `last` returns the link last used for a tab.
     pub(super) fn new(kinds: Kinds, device: Tab, last: impl Fn(Tab) -> Option<LinkUrl>) -> Self {
         let forms = kinds.devices().iter().map(|kind| (kind.tab(), kind.form(last(kind.tab())))).collect();
         Connect { device, kinds, forms, typed: None, ports: None, problem: None }

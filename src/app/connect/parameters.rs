@@ -10,7 +10,7 @@ use crate::parameter::Entry;
 /// A parameter of a link and its value.
 pub(crate) type Pair = (String, String);
 
-/// Those of a link that `take` finds no entry for: it fills one in and says whether it did.
+/// Returns the parameters of a link that have no entry; `take` fills an entry in and returns whether there was one.
 pub(crate) fn without_entry(query: &Query, mut take: impl FnMut(&str, &str) -> bool) -> Vec<Pair> {
     query.pairs().iter().filter(|(name, value)| !take(name, value)).cloned().collect()
 }
@@ -72,7 +72,7 @@ impl Parameters {
         self.entry(name, &entry.replace(',', "."));
     }
 
-    /// Those without an entry that belong to the link. What has an entry by now is what that says.
+    /// Returns the parameters without an entry that belong to the link. An entry overrides an older parameter.
     pub(crate) fn rest(&mut self, rest: &[Pair], belongs: impl Fn(&str) -> bool) {
         for (name, value) in rest.iter().filter(|(name, _)| belongs(name)) {
             if self.0.iter().all(|(own, _)| own != name) {

@@ -131,7 +131,7 @@ impl AnyDevice {
         }
     }
 
-    /// There are minutes of a recording that no table has.
+    /// Returns whether minutes of a recording are not exported.
     pub(in crate::app) fn has_recorded_much(&self) -> bool {
         self.recorders().into_iter().any(|recorder| recorder.unsaved() >= MUCH)
     }

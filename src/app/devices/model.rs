@@ -115,7 +115,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         false
     }
 
-    /// There is something to stop.
+    /// Returns whether there is something to stop.
     fn is_active(&self) -> bool {
         self.session().is_active()
     }
@@ -245,10 +245,10 @@ pub trait MotionControl {
     /// Ends what lives only as long as it is held: a jog, and a run without an end.
     fn let_go(&mut self);
 
-    /// Something moves, or is about to.
+    /// Returns whether something moves or is about to.
     fn is_moving(&self) -> bool;
 
-    /// Something moves, or is about to, that was asked for in this window.
+    /// Returns whether something moves, or is about to, at the request of this window.
     fn moves_by_hand(&self) -> bool;
 
     /// A motion that was asked for in this window has not ended.

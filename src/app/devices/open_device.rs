@@ -35,17 +35,17 @@ pub trait OpenDevice: Any {
     fn is_virtual(&self) -> bool;
     /// Its line is open.
     fn is_connected(&self) -> bool;
-    /// Something runs on its line.
+    /// Returns whether a job runs on its line.
     fn is_busy(&self) -> bool;
     /// Its memory is being changed.
     fn is_writing(&self) -> bool;
-    /// It is read all the time.
+    /// Returns whether the device is polled.
     fn is_polling(&self) -> bool;
-    /// There is something to stop.
+    /// Returns whether there is something to stop.
     fn is_active(&self) -> bool;
     /// Connected and nothing runs: a job may begin.
     fn is_ready(&self) -> bool;
-    /// It can be read again: also a device that did not answer, and a profile.
+    /// Returns whether it can be read again; also true for a device that did not answer, and for a profile.
     fn is_readable(&self) -> bool;
     /// A profile of it can be saved now.
     fn is_savable(&self) -> bool;
@@ -53,13 +53,13 @@ pub trait OpenDevice: Any {
     fn streams(&self) -> bool;
     /// Returns the job that runs.
     fn running(&self) -> Option<Progressing>;
-    /// There are edits that are not written.
+    /// Returns whether there are edits that are not written.
     fn is_dirty(&self) -> bool;
     /// Returns the number of edits that are not written.
     fn edits(&self) -> usize;
-    /// There is an edit to take back.
+    /// Returns whether there is an edit to undo.
     fn can_undo(&self) -> bool;
-    /// There is an edit to do again.
+    /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
     /// Its edits come back after it was closed.
     fn keeps_edits(&self) -> bool;

@@ -30,7 +30,7 @@ impl Recorder {
         Some(self.lines.remove(at))
     }
 
-    /// Nothing is added to a line any more. It stands behind those that go on.
+    /// Ends a line: no more samples are added, and it moves behind the lines that continue.
     pub(in crate::app) fn end_line(&mut self, id: LineId, name: Text, heading: String) {
         if let Some(line) = self.take(id) {
             self.lines.push(Series { ended: true, remark: None, name, heading, ..line });

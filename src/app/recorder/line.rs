@@ -128,7 +128,7 @@ impl Series {
         sample.value.to_f64() * self.factor()
     }
 
-    /// By how much `later` is more than `earlier`, in the shown unit: counts are subtracted before they are rounded.
+    /// Returns `later` minus `earlier` in the unit shown: counts are subtracted before they are rounded.
     pub fn difference(&self, earlier: &Sample, later: &Sample) -> f64 {
         let difference = match (earlier.value, later.value) {
             (Value::Whole(earlier), Value::Whole(later)) => (i128::from(later) - i128::from(earlier)) as f64,

@@ -124,7 +124,7 @@ pub struct Recorder {
 }
 
 impl Recorder {
-    /// Nothing is recorded yet; this many nanoseconds are shown while it follows.
+    /// Creates an empty recorder that shows this many nanoseconds while it follows.
     pub fn new(span: i64) -> Self {
         Recorder { view: TimeWindow::Follow { span: span.max(1) }, ..Recorder::default() }
     }
@@ -135,7 +135,7 @@ impl Recorder {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Nothing is added any more: what is looked for is there or not.
+    /// Ends the recording, so that a trigger which has not fired is reported as missed.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
@@ -179,7 +179,7 @@ impl Recorder {
         }
     }
 
-    /// Something there is to know about a line now, or nothing any more.
+    /// Sets or clears the remark of a line.
     pub(in crate::app) fn remark(&mut self, id: LineId, remark: Option<Text>) {
         self.with_line(id, |line| line.remark = remark);
     }
@@ -271,7 +271,7 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| &group.history)
     }
 
-    /// Whose samples those of a line are.
+    /// Returns the origin of a line's samples.
     pub fn stamp(&self, line: &Series) -> Option<Stamp> {
         self.groups.get(&line.group).map(|group| group.stamp)
     }
@@ -281,7 +281,7 @@ impl Recorder {
         self.one_axis
     }
 
-    /// There is nothing to show.
+    /// Returns whether there is nothing to show.
     pub fn is_empty(&self) -> bool {
         self.groups.values().all(|group| group.history.all().is_empty())
     }

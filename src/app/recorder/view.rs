@@ -36,7 +36,7 @@ impl Recorder {
         self.view
     }
 
-    /// It goes on with the newest samples.
+    /// Returns whether it follows the newest samples.
     pub fn follows(&self) -> bool {
         matches!(self.view, TimeWindow::Follow { .. })
     }
@@ -92,7 +92,7 @@ impl Recorder {
         };
     }
 
-    /// While it follows, the newest sample stays where it is.
+    /// Zooms about a time. While it follows, the newest sample stays in place.
     pub(super) fn zoom(&mut self, about: Time, factor: f64) {
         if !factor.is_finite() || factor <= 0.0 {
             return;

@@ -50,7 +50,7 @@ pub trait Drafted: HasSession {
     /// A profile of a connected device was written.
     fn written_beside(&mut self, _document: Document) {}
 
-    /// Whose draft it is; `None` for a device that does not say who it is.
+    /// Returns the key of the draft; `None` for a device that does not identify itself.
     fn draft_key(&self) -> Option<DraftKey> {
         match &self.session().source {
             Source::File { key, .. } => Some(DraftKey::of_file(Self::Device::KIND, key)),

@@ -62,7 +62,7 @@ pub enum DraftDone {
 
 /// Persistent edits: a list.
 pub trait DraftEdits: Serialize + DeserializeOwned + Clone + PartialEq + Default + Send + 'static {
-    /// There is nothing to keep.
+    /// Returns whether there is nothing to keep.
     fn is_nothing(&self) -> bool;
 }
 
@@ -102,7 +102,7 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 }
 
 impl<E: DraftEdits> Drafting<E> {
-    /// Of a session; nothing has been looked for.
+    /// Creates the drafting of a session, before any draft was looked for.
     pub(in crate::app) fn new(session: SessionId) -> Self {
         Drafting { session, kept: E::default(), busy: false, due: true, looked: false, claim: None, told: false }
     }
@@ -211,7 +211,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Something has happened that may change edits.
+    /// Marks that edits may have changed.
     pub(in crate::app) fn may_have_changed(&mut self) {
         self.due = true;
     }

@@ -134,7 +134,7 @@ impl<D: Kind> DerefMut for Session<D> {
 }
 
 impl<D: Kind> Session<D> {
-    /// At a link that is being opened.
+    /// Creates a session for a link that is being opened.
     pub fn at_link(id: SessionId, url: LinkUrl) -> Self {
         Session::new(id, Source::Link(url), Phase::Opening)
     }
@@ -143,7 +143,7 @@ impl<D: Kind> Session<D> {
         Session::new(id, file.source(document), Phase::Offline)
     }
 
-    /// With what is in no file yet.
+    /// Creates a session whose content is in no file yet.
     pub(crate) fn of_nothing(id: SessionId, suggested: PathBuf) -> Self {
         Session::new(id, Source::New { suggested }, Phase::Offline)
     }
@@ -163,7 +163,7 @@ impl<D: Kind> Session<D> {
             || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
     }
 
-    /// Something runs on its line.
+    /// Returns whether a job runs on its line.
     pub fn is_busy(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.running().is_some())
     }
@@ -173,12 +173,12 @@ impl<D: Kind> Session<D> {
         self.line.as_ref().and_then(LiveSession::running).is_some_and(|running| running.writes)
     }
 
-    /// It is read all the time.
+    /// Returns whether the device is polled.
     pub fn is_polling(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.polling().is_some())
     }
 
-    /// There is something to stop.
+    /// Returns whether there is something to stop.
     pub fn is_active(&self) -> bool {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
@@ -188,7 +188,7 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
 
-    /// It can be read again: also a device that did not answer, and a profile.
+    /// Returns whether it can be read again; also true for a device that did not answer, and for a profile.
     pub fn is_readable(&self) -> bool {
         self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
     }

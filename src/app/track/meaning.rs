@@ -27,7 +27,7 @@ impl Meaning {
         Meaning { range, scales, is_linear: false, step: None }
     }
 
-    /// Of a shaft with so many steps in a revolution, at least a part of one.
+    /// Creates the meaning for a shaft with this many steps in a revolution, which may be a fraction.
     pub fn of_turns(range: Option<i64>, steps_per_turn: f64) -> Self {
         let turns = 1.0 / steps_per_turn.max(f64::MIN_POSITIVE);
         let scales = [
@@ -50,7 +50,7 @@ impl Meaning {
         Meaning { range, scales, is_linear: false, step: Some(turns) }
     }
 
-    /// Of a linear encoder with steps of so many millimetres.
+    /// Creates the meaning for a linear encoder with steps of this many millimetres.
     pub fn of_millimetres(millimetres: f64) -> Self {
         let scales = [
             vec![Scale::new("unit.millimetres", millimetres, 4), Scale::new("unit.steps", 1.0, 0)],

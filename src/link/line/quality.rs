@@ -26,7 +26,7 @@ impl LineQuality {
     /// Answer times that are kept.
     const ANSWERS: usize = 1000;
 
-    /// Something had to be asked again, or came too late.
+    /// Returns whether a request had to be repeated, or a reply came too late.
     pub fn is_troubled(&self) -> bool {
         self.troubles() != [0; 4]
     }

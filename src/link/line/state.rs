@@ -72,7 +72,7 @@ impl LineState {
         self.quality.replies += 1;
     }
 
-    /// When that reply began.
+    /// Notes when the reply began.
     pub(crate) fn answer_began(&mut self, at: Moment) {
         self.quality.answered_after(at.since(self.last_sent));
     }
@@ -82,7 +82,7 @@ impl LineState {
         self.troubled_since = None;
     }
 
-    /// From now on replies may come that much later, and half as much again.
+    /// Allows further replies to come that much later, plus half as much again.
     pub(super) fn allow_for(&mut self, lateness: Duration) {
         let margin = (self.margin + lateness).saturating_mul(3) / 2;
         self.margin = margin.min(LONGEST_MARGIN).max(self.margin);

@@ -144,7 +144,7 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
     }
 }
 
-/// Behind an opening bracket: what follows the comment on the same line.
+/// Returns the text after an opening bracket and the comment on its line.
 fn after_comment(text: &str) -> &str {
     match comment_behind(text, 0) {
         Some((place, _)) => text.get(place.end..).unwrap_or_default(),

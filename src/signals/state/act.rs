@@ -113,7 +113,7 @@ impl Tool for Signals {
 }
 
 impl Signals {
-    /// With the links to adapters that were used, the latest first.
+    /// Creates the state with the links of adapters used before, the latest first.
     pub(crate) fn at(links: &[String]) -> Self {
         Signals { source: Source::at(links.first()), ..Signals::default() }
     }
@@ -133,7 +133,7 @@ impl Signals {
         }
     }
 
-    /// By whose limits is judged.
+    /// Returns the family whose limits apply.
     pub fn family(&self) -> Family {
         self.family
     }

@@ -113,7 +113,7 @@ impl Default for Source {
 }
 
 impl Source {
-    /// With the link to an adapter that was used last.
+    /// Creates the state with the link of the adapter used last.
     pub(super) fn at(link: Option<&String>) -> Self {
         let usual = Source::default();
         Source { link: link.cloned().unwrap_or(usual.link), ..Source::default() }
@@ -169,7 +169,7 @@ impl Source {
         self.window_ms
     }
 
-    /// It runs.
+    /// Returns whether it is running.
     pub fn is_running(&self) -> bool {
         self.live.is_some()
     }
@@ -293,7 +293,7 @@ impl Source {
 }
 
 impl Live {
-    /// Whose samples these are; `None` while an adapter has not told.
+    /// Returns the origin of the samples; `None` until an adapter has identified itself.
     fn origin(&self) -> Option<Origin> {
         match &self.feed {
             Feed::Virtual(_) => Some(Origin::Virtual),

@@ -52,7 +52,7 @@ impl Recent {
         }
     }
 
-    /// When the last sample was taken.
+    /// Returns the time of the last sample.
     pub(super) fn newest(&self) -> Option<Time> {
         self.newest
     }
@@ -82,7 +82,7 @@ impl Recent {
 }
 
 impl Window {
-    /// As a capture whose times begin at zero; copies the samples.
+    /// Copies the samples into a capture whose times begin at zero.
     pub(super) fn capture(&self) -> Capture {
         let column = |of: fn(&Channels) -> &[f64]| -> Vec<f64> {
             self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()

@@ -117,8 +117,8 @@ pub fn nonlinearity_quantities(told: &Nonlinearities) -> Vec<Quantity> {
     ]
 }
 
-/// By how much the absolute position of a capture is ahead; `None` without one. Samples that were left out of the
-/// ellipse do not count.
+/// Returns the lead of a capture's absolute position; `None` without one. Samples that were left out of the ellipse do
+/// not count.
 pub(super) fn absolute_offset(
     capture: &Capture,
     analysis: Option<&Analysis>,

@@ -45,7 +45,7 @@ const WIRES: [(&str, &str); 4] =
     [("scope.sin", "SIN"), ("scope.refsin", "REFSIN"), ("scope.cos", "COS"), ("scope.refcos", "REFCOS")];
 
 impl Scope {
-    /// Nothing yet; for samples that come, with the four wires or without.
+    /// Creates an empty scope for live samples, with or without the four wires.
     pub(super) fn live(with_wires: bool) -> Self {
         Scope::new(with_wires, KEPT, Recorder::new(SPAN))
     }

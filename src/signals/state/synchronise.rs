@@ -274,8 +274,8 @@ impl Synchronise {
         self.readings.len()
     }
 
-    /// By how much the absolute position is ahead in the readings, in 1/32 period, as it has to be entered: the half step
-    /// comes on top, where it is ticked.
+    /// Returns the lead of the absolute position in the readings, in 1/32 period, as it has to be entered; a selected
+    /// half step is added.
     pub fn measured(&self) -> Option<f64> {
         if self.readings.len() < LEAST_READINGS {
             return None;

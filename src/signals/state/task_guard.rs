@@ -11,7 +11,7 @@ struct Promise {
 }
 
 impl Promise {
-    /// It has come back.
+    /// Marks the task as returned.
     fn kept(mut self) {
         self.failed = None;
     }

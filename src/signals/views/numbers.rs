@@ -90,7 +90,7 @@ pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) 
     unit_behind(theme.number(rounded(value, decimals), decimals), unit)
 }
 
-/// As it is shown: what is shown as zero has no sign.
+/// Rounds to the decimals shown; a value shown as zero has no sign.
 fn rounded(value: f64, decimals: usize) -> f64 {
     let scale = 10_f64.powi(decimals as i32);
     if (value * scale).abs() < 0.5 { 0.0 } else { value }

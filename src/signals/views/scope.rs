@@ -91,7 +91,7 @@ fn spectrum(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measure
     view.volts = wanted;
 }
 
-/// In the unit that is shown.
+/// Converts into the unit shown.
 fn shown(volts: bool, peak_v: f64) -> f64 {
     if volts { peak_v } else { dbv(peak_v) }
 }

@@ -132,7 +132,7 @@ fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiSta
     });
 }
 
-/// Whose samples these are.
+/// Draws the origin of the samples.
 fn title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     let palette = theme.palette;
     if live(signals).is_some() {
@@ -257,7 +257,7 @@ fn compared(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Act
     });
 }
 
-/// Everything that samples can come from.
+/// Draws the menu of sources of samples.
 fn source_menu(ui: &mut Ui, theme: &Theme, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let word = say(theme, "signals.source");
     let menu = ui.menu_button(format!("{word}  {}", icons::CARET_DOWN), |ui| {

@@ -56,8 +56,8 @@ impl Source {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
 
-    /// From the sample `at` on other settings count; the shaft goes on from where it is. A change before the latest one
-    /// takes its place.
+    /// Changes the settings from sample `at` on; the shaft continues from its position. A change before the latest one
+    /// replaces it.
     pub fn change(&mut self, at: u64, checked: Checked) {
         let at = self.segments.back().map_or(at, |last| at.max(last.from));
         let Some(before) = self.segments.back() else { return };
@@ -75,7 +75,7 @@ impl Source {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// When a sample is taken; `None` where the changes before it are forgotten.
+    /// Returns the time of a sample; `None` if the changes before it are forgotten.
     pub fn time(&self, index: u64) -> Option<Time> {
         let segment = self.segment(index)?;
         Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))

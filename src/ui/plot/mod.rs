@@ -35,17 +35,17 @@ pub struct PlotUiState {
 }
 
 impl PlotUiState {
-    /// Of a plot in a panel at the side, which can take the place of the page.
+    /// Creates the state of a plot in a side panel, which can take the place of the page.
     pub(in crate::ui) fn in_panel() -> Self {
         PlotUiState { large: Some(false), ..PlotUiState::default() }
     }
 
-    /// It takes the place of the page.
+    /// Returns whether the plot takes the place of the page.
     pub(in crate::ui) fn is_large(&self) -> bool {
         self.large == Some(true)
     }
 
-    /// Back into its panel. False: it was there.
+    /// Moves the plot back into its panel; false if it was there.
     pub(in crate::ui) fn make_small(&mut self) -> bool {
         let was = self.is_large();
         self.large = self.large.map(|_| false);

@@ -94,7 +94,7 @@ impl Gauge {
         self.value.is_some_and(|value| self.allowed.contains(&value))
     }
 
-    /// It is allowed and as good as can be.
+    /// Returns whether the step is allowed and in the best state.
     pub fn is_best(&self) -> bool {
         self.fits() && self.value.zip(self.best.as_ref()).is_none_or(|(value, best)| best.contains(&value))
     }

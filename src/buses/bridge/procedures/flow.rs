@@ -129,7 +129,7 @@ impl Flow {
         self.streamed
     }
 
-    /// When the last sample was taken that has come.
+    /// Returns the time of the last sample received.
     pub(crate) const fn last(&self) -> Option<Time> {
         self.last
     }
@@ -209,7 +209,8 @@ impl Flow {
         Ok(Some(Portion { first, time, period_ns: self.period_ns, lost, data }))
     }
 
-    /// When the first sample was taken. The last cannot be later than it came, nor the first before the stream began.
+    /// Returns the time of the first sample. The last one cannot be later than its arrival, nor the first before the
+    /// stream began.
     fn time(&mut self, data: &Data, count: usize, now: Moment) -> Time {
         let t0_us = match data {
             Data::Ssi(data) => data.t0_us,

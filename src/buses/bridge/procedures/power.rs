@@ -33,7 +33,7 @@ pub(super) struct Power {
 }
 
 impl Power {
-    /// It has to be switched off at the end of the session.
+    /// Returns whether the supply has to be switched off at the end of the session.
     pub(super) fn goes_off(self) -> bool {
         let found = self.found == Some(true);
         match self.after {

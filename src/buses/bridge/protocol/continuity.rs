@@ -21,7 +21,7 @@ pub enum Gap {
 }
 
 impl Continuity {
-    /// At the start of a stream, whose first sample is number 0.
+    /// Creates the check for the start of a stream, whose first sample is number 0.
     pub const fn at_start() -> Self {
         Continuity { next: 0 }
     }

@@ -94,12 +94,12 @@ impl<'a> Fields<'a> {
         Ok(text.to_owned())
     }
 
-    /// Everything that is left.
+    /// Returns all remaining bytes.
     pub(super) fn tail(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 
-    /// Nothing may be left.
+    /// Returns the value if no bytes remain.
     pub(super) fn end<T>(self, value: T) -> Result<T, BodyError> {
         if self.rest.is_empty() { Ok(value) } else { Err(self.length()) }
     }

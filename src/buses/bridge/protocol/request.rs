@@ -182,7 +182,7 @@ impl Operation {
         self as u8
     }
 
-    /// By the number in a request.
+    /// Returns the request with this number.
     pub fn from_byte(byte: u8) -> Option<Self> {
         Self::ALL.into_iter().find(|operation| operation.byte() == byte)
     }

@@ -389,7 +389,7 @@ impl Adapter {
     }
 }
 
-/// Of the adapter's clock.
+/// Returns the time of the adapter's clock in microseconds.
 fn microseconds(at: Moment) -> u64 {
     u64::try_from(at.since_start().as_micros()).unwrap_or(u64::MAX)
 }

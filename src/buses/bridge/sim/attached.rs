@@ -33,7 +33,7 @@ pub trait BissDevice: Any + Send {
     /// Gives the supply back to a device that has lost it.
     fn connect(&mut self, now: Moment);
 
-    /// It has power, though it may still be starting.
+    /// Returns whether it has power; it may still be starting.
     fn has_power(&self) -> bool;
 
     /// Its registers can be asked at `now`.

@@ -25,7 +25,7 @@ pub(super) struct Bus {
 }
 
 impl Bus {
-    /// Nothing hangs on it yet.
+    /// Creates a bus without devices.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &config::Shaft) -> Self {
         Bus {
             biss: None,

@@ -26,7 +26,7 @@ impl Shaft {
     /// It begins again behind so many revolutions.
     const TURNS: f64 = 65_536.0;
 
-    /// At its zero, turning at a speed.
+    /// Creates a shaft at its zero that turns at a speed.
     pub(super) fn turning(rpm: f64) -> Self {
         Shaft { motor: Motor::at(rpm), rpm, since: Moment::START, revolutions: 0.0 }
     }

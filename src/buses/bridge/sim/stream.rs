@@ -33,7 +33,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// With so many bytes before the samples and in each.
+    /// Creates a stream with this many bytes before the samples and in each sample.
     fn new(start: Moment, period: Duration, head: usize, size: usize) -> Self {
         let fit = (MAX_BODY - head) / size.max(1);
         let in_time = FLUSH.as_nanos() / period.as_nanos().max(1);
@@ -47,7 +47,7 @@ impl Pace {
         self.start + Duration::from_nanos(u64::try_from(nanoseconds).unwrap_or(u64::MAX))
     }
 
-    /// When the last sample of the next packet is taken.
+    /// Returns the time of the last sample of the next packet.
     fn due(&self) -> Moment {
         self.moment(self.first + self.capacity - 1)
     }

@@ -70,7 +70,8 @@ impl NetworkParameters {
     /// The most bytes that a connection may have.
     pub const MOST: u16 = SIZE;
 
-    /// Of a fixed size, with one owner; `None` beyond 511 bytes. The size counts the sequence count and the run/idle header.
+    /// Creates the parameters of a connection of fixed size with one owner; `None` beyond 511 bytes. The size includes
+    /// the sequence count and the run/idle header.
     pub const fn new(kind: NetworkType, priority: NetworkPriority, size: u16) -> Option<Self> {
         let kind = match kind {
             NetworkType::Null => 0,
@@ -87,17 +88,17 @@ impl NetworkParameters {
         if size <= SIZE { Some(NetworkParameters(kind << 13 | priority << 10 | size)) } else { None }
     }
 
-    /// As they came.
+    /// Parses the word.
     pub const fn of_word(word: u16) -> Self {
         NetworkParameters(word)
     }
 
-    /// As they are sent.
+    /// Returns the word to send.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// To whom it goes.
+    /// Returns the type of the connection: point-to-point, multicast or null.
     pub const fn kind(self) -> NetworkType {
         match self.0 >> 13 & 3 {
             0 => NetworkType::Null,
@@ -137,12 +138,12 @@ impl Transport {
     /// Class 1, at an interval, as a client: what cyclic data have.
     pub const CYCLIC: Transport = Transport(0x01);
 
-    /// As it came.
+    /// Parses the byte.
     pub const fn of_byte(byte: u8) -> Self {
         Transport(byte)
     }
 
-    /// As it is sent.
+    /// Returns the byte to send.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -152,7 +153,7 @@ impl Transport {
         self.0 & 0x0F
     }
 
-    /// When data are sent.
+    /// Returns when data are sent.
     pub const fn trigger(self) -> Trigger {
         match self.0 >> 4 & 7 {
             0 => Trigger::Cyclic,
@@ -177,7 +178,7 @@ impl ConnectionTimeout {
         if number <= ConnectionTimeout::MOST { Some(ConnectionTimeout(number)) } else { None }
     }
 
-    /// As it is sent.
+    /// Returns the number to send.
     pub const fn number(self) -> u8 {
         self.0
     }
@@ -187,7 +188,7 @@ impl ConnectionTimeout {
         4 << self.0
     }
 
-    /// Until a connection with this interval has ended.
+    /// Returns the time-out of a connection with this interval.
     pub const fn after(self, interval: Duration) -> Duration {
         interval.saturating_mul(self.intervals())
     }

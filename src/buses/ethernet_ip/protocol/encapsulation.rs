@@ -92,7 +92,7 @@ impl Command {
         self.0
     }
 
-    /// As ODVA calls it; `None` for what is not known.
+    /// Returns the name by ODVA; `None` for an unknown code.
     pub fn name(self) -> Option<&'static str> {
         NAMES.iter().find(|(command, _)| *command == self).map(|(_, name)| *name)
     }

@@ -68,17 +68,17 @@ impl<'a> Fields<'a> {
         Ok(bytes)
     }
 
-    /// Everything that is left.
+    /// Returns all remaining bytes.
     pub(super) fn tail(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 
-    /// Nothing is left.
+    /// Returns whether no bytes remain.
     pub(super) const fn is_empty(&self) -> bool {
         self.rest.is_empty()
     }
 
-    /// Nothing may be left.
+    /// Returns the value if no bytes remain.
     pub(super) fn end<T>(self, value: T) -> Result<T, PacketError> {
         match self.rest.len() {
             0 => Ok(value),

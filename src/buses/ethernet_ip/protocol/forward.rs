@@ -110,7 +110,7 @@ impl RequestTimeout {
 }
 
 impl ForwardOpen {
-    /// Without data for so long, the target ends the connection.
+    /// Returns how long the target waits for data before it ends the connection.
     pub fn to_target_timeout(&self) -> Duration {
         self.connection_timeout.after(Duration::from_micros(self.to_target_interval_us.into()))
     }

@@ -37,12 +37,12 @@ impl RunIdle {
     /// Bit 0 is clear: the program at the other end does not run, and its data do not count.
     pub const IDLE: RunIdle = RunIdle(0);
 
-    /// As it came.
+    /// Parses the word.
     pub const fn of_word(word: u32) -> Self {
         RunIdle(word)
     }
 
-    /// As it is sent.
+    /// Returns the word to send.
     pub const fn word(self) -> u32 {
         self.0
     }

@@ -91,8 +91,8 @@ impl Service {
         self.0
     }
 
-    /// As ODVA calls it. From 4Bh on a number means something else for every class: only of the connection manager's
-    /// numbers is something known.
+    /// Returns the name by ODVA. From 4Bh on a number has a different meaning in each class; only those of the
+    /// connection manager are known.
     pub fn name(self, class: Option<u16>) -> Option<&'static str> {
         let connections = class.is_none_or(|class| class == Request::CONNECTION_MANAGER).then_some(&CONNECTION_NAMES);
         let names = NAMES.iter().chain(connections.into_iter().flatten());
@@ -119,12 +119,12 @@ impl Request {
         Request { service: Service::GET_ALL, path: Path::instance(class, instance), data: Vec::new() }
     }
 
-    /// Something of the connection manager.
+    /// Creates a request to the connection manager.
     pub(super) fn of_connections(service: Service, data: Vec<u8>) -> Self {
         Request { service, path: Path::instance(Request::CONNECTION_MANAGER, 1), data }
     }
 
-    /// Whose service it is.
+    /// Returns the class that provides the service.
     pub fn class(&self) -> Option<u16> {
         self.path.number(LogicalKind::Class)
     }

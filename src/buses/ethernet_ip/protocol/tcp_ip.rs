@@ -80,17 +80,17 @@ impl ConfigurationControl {
     /// The attribute.
     pub const ATTRIBUTE: u16 = 3;
 
-    /// As it came: four bytes.
+    /// Parses the four bytes.
     ///
     /// # Errors
-    /// [`PacketError`] where there are fewer or more.
+    /// [`PacketError`] if there are fewer or more.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the configuration control", data);
         let word = fields.u32()?;
         fields.end(ConfigurationControl(word))
     }
 
-    /// As it is sent.
+    /// Returns the bytes to send.
     pub const fn emit(self) -> [u8; 4] {
         self.0.to_le_bytes()
     }

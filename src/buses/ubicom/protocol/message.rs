@@ -115,7 +115,7 @@ impl Command {
         }
     }
 
-    /// By its byte.
+    /// Returns the value of this byte.
     pub const fn from_byte(byte: u8) -> Option<Self> {
         match byte {
             0x01 => Some(Command::Read),
@@ -208,7 +208,7 @@ pub const fn order_told_by(answer: u8) -> Option<ByteOrder> {
 }
 
 impl Written {
-    /// By its byte.
+    /// Returns the value of this byte.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
             0x90 => Written::Acknowledged,

@@ -13,13 +13,13 @@ impl PositionWord {
         if word >> 40 == 0 { Some(PositionWord(word)) } else { None }
     }
 
-    /// From the line, the lowest byte first.
+    /// Parses bytes from the line, lowest first.
     pub const fn parse(bytes: [u8; Self::BYTES]) -> Self {
         let [b0, b1, b2, b3, b4] = bytes;
         PositionWord(u64::from_le_bytes([b0, b1, b2, b3, b4, 0, 0, 0]))
     }
 
-    /// For the line, the lowest byte first.
+    /// Returns bytes for the line, lowest first.
     pub const fn emit(self) -> [u8; Self::BYTES] {
         let [b0, b1, b2, b3, b4, ..] = self.0.to_le_bytes();
         [b0, b1, b2, b3, b4]

@@ -23,7 +23,7 @@ enum Head {
 }
 
 impl Receiver {
-    /// For frames of the encoder with this address.
+    /// Creates a receiver for frames of the encoder with this address.
     pub const fn new(node: u8) -> Self {
         Receiver { node, bytes: Vec::new(), skipped: 0 }
     }

@@ -16,10 +16,10 @@ use crate::worker::{OpenError, Session};
 
 /// A parameter for links whose scheme does not show whether there is an adapter.
 const BRIDGE: &str = "bridge";
-/// Everything about a link to a BiSS encoder that can be told without opening it.
+/// Checks a link to a BiSS encoder without opening it.
 ///
 /// # Errors
-/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }

@@ -58,7 +58,7 @@ pub enum FrameSource {
 }
 
 impl FrameSource {
-    /// It tells how many bits of a position are turns.
+    /// Returns whether it states how many bits of a position are turns.
     pub const fn is_told(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
@@ -89,7 +89,7 @@ pub struct DataSheetBank {
 }
 
 impl Identity {
-    /// As it stands in a profile.
+    /// Returns the identity as a profile contains it.
     pub fn profile(&self) -> ProfileIdentity {
         ProfileIdentity {
             serial_number: self.serial_number.clone(),
@@ -130,7 +130,7 @@ pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identit
     identify_with(master, types, &mut Registers::default())
 }
 
-/// As [`identify`]; all that was read is kept.
+/// Identifies like [`identify`] and keeps all that was read.
 pub(super) fn identify_with(
     master: &mut Master<'_>,
     types: &Descriptions,

@@ -97,7 +97,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// From now on a wish to end is heard, or is not; gives back whether it was not.
+    /// Sets whether a request to end is ignored; returns the previous setting.
     pub(super) fn shield(&mut self, shielded: bool) -> bool {
         self.line.shield(shielded)
     }
@@ -262,7 +262,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
+    /// Asks like [`ask`](Self::ask); on a line that has damaged something before, the reply has to come twice.
     fn read_confirmed(
         &mut self,
         asked: RequestedItem,

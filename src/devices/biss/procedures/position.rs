@@ -81,7 +81,7 @@ impl PositionReading {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Nothing says that it is wrong.
+    /// Returns whether nothing marks the position as wrong.
     pub fn is_valid(&self) -> bool {
         self.error != Some(true)
     }

@@ -153,7 +153,7 @@ impl Write for EncoderWrite<'_, '_> {
     }
 }
 
-/// Back to operation, as far as there is a line to say so.
+/// Returns the encoder to operation, as long as the line works.
 fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), Error> {
     match cause {
         Some(Failure::Device(error)) if is_gone(error) => Err(error.clone()),

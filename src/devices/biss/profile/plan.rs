@@ -103,12 +103,12 @@ impl PresetParts {
         }
     }
 
-    /// It sets the place within the revolution.
+    /// Returns whether it sets the position within the revolution.
     pub const fn sets_singleturn(self) -> bool {
         matches!(self, PresetParts::Both | PresetParts::Singleturn)
     }
 
-    /// It sets the revolutions.
+    /// Returns whether it sets the number of revolutions.
     pub const fn sets_multiturn(self) -> bool {
         matches!(self, PresetParts::Both | PresetParts::Multiturn)
     }

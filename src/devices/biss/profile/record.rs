@@ -230,7 +230,7 @@ impl From<Bank> for ListedBank {
 }
 
 impl DataImage {
-    /// Of an area with these banks, ascending; those that hold nothing are left out where all of the area is there.
+    /// Creates the image of an area with these banks, ascending; if the area is complete, empty banks are left out.
     pub fn of(area: &Area, banks: Vec<Bank>) -> Self {
         let is_whole = area.banks().eq(banks.iter().map(|bank| bank.number));
         let count = |byte| banks.iter().filter(|bank| bank.only_byte() == Some(byte)).count();

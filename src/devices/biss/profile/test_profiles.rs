@@ -38,7 +38,7 @@ pub(super) fn profile(serial_number: &str) -> BissProfile {
     }
 }
 
-/// With other bytes in a bank that is listed then.
+/// Changes bytes in a bank, which is listed from then on.
 pub(super) fn with_bytes(profile: &mut BissProfile, number: u8, bytes: &[(usize, u8)]) {
     let mut bank = profile.bank(number).unwrap_or_else(|| Bank::filled(number, 0));
     for (at, byte) in bytes {

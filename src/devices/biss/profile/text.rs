@@ -184,7 +184,7 @@ fn read_firmware(text: &str) -> Option<Firmware> {
     }
 }
 
-/// As many bytes as there have to be.
+/// Reads exactly `N` bytes.
 fn read_exactly<const N: usize>(entries: &mut Entries, name: &str) -> Result<[u8; N], ProfileError> {
     let path = entries.path_of(name);
     let bytes = entries.bytes(name)?.ok_or_else(|| ProfileError::Missing { path: path.clone() })?;

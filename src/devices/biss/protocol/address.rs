@@ -40,7 +40,7 @@ impl RegisterAddress {
         RegisterAddress(0x40 + 0x40 * bank as u16)
     }
 
-    /// By its global address; `None` beyond bank FFh.
+    /// Returns the address with this global number; `None` beyond bank FFh.
     pub const fn from_global(global: u16) -> Option<Self> {
         if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
     }

@@ -250,7 +250,7 @@ impl Descriptions {
         self.0.iter().find(|description| description.check(identity).is_ok())
     }
 
-    /// By its name.
+    /// Returns the description with this name.
     pub fn named(&self, name: &str) -> Option<&Description> {
         self.0.iter().find(|description| description.name == name)
     }

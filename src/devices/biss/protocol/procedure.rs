@@ -42,7 +42,7 @@ macro_rules! codes {
         }
 
         impl $name {
-            /// By the register's value.
+            /// Returns the state for the register's value.
             pub const fn from_byte(byte: u8) -> Self {
                 match byte {
                     $($code => $name::$variant,)*
@@ -236,13 +236,13 @@ impl PresetValue {
         }
     }
 
-    /// From the registers, in the order of their addresses.
+    /// Parses the registers in the order of their addresses.
     pub const fn parse(bytes: [u8; 6]) -> Self {
         let [s0, s1, s2, m0, m1, m2] = bytes;
         PresetValue { singleturn: u32::from_le_bytes([s0, s1, s2, 0]), multiturn: u32::from_le_bytes([m0, m1, m2, 0]) }
     }
 
-    /// For the registers, in the order of their addresses.
+    /// Returns the registers in the order of their addresses.
     pub const fn emit(self) -> [u8; 6] {
         let [s0, s1, s2, _] = self.singleturn.to_le_bytes();
         let [m0, m1, m2, _] = self.multiturn.to_le_bytes();
@@ -299,13 +299,13 @@ impl PulseVoltage {
 }
 
 impl WiegandResult {
-    /// From the registers, in the order of their addresses.
+    /// Parses the registers in the order of their addresses.
     pub fn parse(bytes: [u8; 4]) -> Self {
         let [average_cw, lowest_cw, average_ccw, lowest_ccw] = bytes.map(PulseVoltage);
         WiegandResult { average_cw, lowest_cw, average_ccw, lowest_ccw }
     }
 
-    /// As the registers have it.
+    /// Returns the registers in the order of their addresses.
     pub fn emit(&self) -> [u8; 4] {
         [self.average_cw, self.lowest_cw, self.average_ccw, self.lowest_ccw].map(PulseVoltage::byte)
     }

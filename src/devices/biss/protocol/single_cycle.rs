@@ -108,12 +108,12 @@ impl Layout {
         self.singleturn_bits
     }
 
-    /// There is an error bit.
+    /// Returns whether there is an error bit.
     pub const fn has_error_bit(&self) -> bool {
         self.error_bit
     }
 
-    /// There is a warning bit.
+    /// Returns whether there is a warning bit.
     pub const fn has_warning_bit(&self) -> bool {
         self.warning_bit
     }

@@ -171,7 +171,7 @@ pub enum Filter {
 }
 
 impl Filter {
-    /// By its code.
+    /// Returns the status for this code.
     pub const fn from_byte(byte: u8) -> Self {
         match byte {
             0x03 => Filter::Balanced,

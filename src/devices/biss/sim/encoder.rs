@@ -173,7 +173,7 @@ impl Encoder {
         }
     }
 
-    /// It has power, though it may still be starting.
+    /// Returns whether it has power; it may still be starting.
     pub fn has_power(&self) -> bool {
         self.power != Power::Off
     }

@@ -132,7 +132,7 @@ pub(super) struct PresetEntry {
 }
 
 impl PresetEntry {
-    /// With the value that is stored.
+    /// Creates an entry with the stored value.
     pub(super) fn new(stored: PresetValue) -> Self {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }

@@ -19,7 +19,7 @@ impl Flash {
     /// Bytes of either area: 32 banks.
     pub(super) const AREA: usize = 32 * 64;
 
-    /// As delivered, after so many write cycles.
+    /// Creates a memory as delivered, after this many write cycles.
     pub(super) fn delivered(cycles: u32) -> Self {
         Flash {
             motor_data: vec![0; Self::AREA],

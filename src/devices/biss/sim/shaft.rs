@@ -55,7 +55,7 @@ impl Shaft {
         whole << FINE | parts
     }
 
-    /// From `at` on the shaft's place has this singleturn or this multiturn, or both; what is `None` stays.
+    /// Sets singleturn, multiturn or both at the shaft's position from `at` on; `None` leaves a part as it is.
     pub(super) fn preset(&mut self, at: Moment, singleturn: Option<u32>, multiturn: Option<u32>) {
         let now = self.reading(at);
         let wanted = PositionData {

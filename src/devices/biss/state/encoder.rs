@@ -133,7 +133,7 @@ impl Encoder {
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// There are edits that are not written.
+    /// Returns whether there are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.memory.is_dirty()
     }

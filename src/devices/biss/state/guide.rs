@@ -72,7 +72,7 @@ impl Guide {
         Guide { ops, news: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
     }
 
-    /// It goes on.
+    /// Returns whether the procedure is running.
     pub fn is_running(&self) -> bool {
         self.end.is_none()
     }

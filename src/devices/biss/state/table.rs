@@ -114,7 +114,7 @@ impl Group {
 }
 
 impl RegisterEntry<'_> {
-    /// It has another value than an encoder as delivered, as far as the description tells that.
+    /// Returns whether the value differs from an encoder as delivered, as far as the description says.
     pub fn is_not_as_delivered(&self) -> bool {
         let default = &self.row.register.default;
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)

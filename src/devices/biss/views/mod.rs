@@ -47,7 +47,7 @@ impl TabPage for Page {
 }
 
 impl Page {
-    /// It scrolls by itself; its buttons stay where they are.
+    /// Returns whether the page scrolls by itself, with its buttons in place.
     fn is_fixed(self) -> bool {
         matches!(self, Page::Registers | Page::Data)
     }

@@ -160,7 +160,7 @@ fn mounting_ui(
     });
 }
 
-/// Something that may be done, and what it takes.
+/// Draws an optional part with its inputs.
 fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {
@@ -191,7 +191,7 @@ fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
     Ok(MountingRun { calibrate: *own.calibrate, wiegand, preset, data: None })
 }
 
-/// Whose data is written: that of a profile which is open.
+/// Draws the choice of the open profile whose data is written.
 fn data_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, data: &mut Option<SessionId>) {
     let profiles: Vec<&AnyDevice> = studio
         .devices()

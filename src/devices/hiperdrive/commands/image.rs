@@ -119,7 +119,7 @@ fn in_words(drive: &Actual) -> String {
     )
 }
 
-/// As turns, if nothing is scaled.
+/// Formats a position as turns, for a drive without scaling.
 fn in_turns(position: i32) -> String {
     let (turn, steps) = turns(position);
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
@@ -220,7 +220,7 @@ fn row(pkw: Pkw) -> Option<&'static ParameterRow> {
     ParameterNumber::new(pkw.number()).and_then(ParameterNumber::row)
 }
 
-/// With its sign, where its kind has one.
+/// Returns the value with its sign if the kind of parameter has one.
 fn number(row: &ParameterRow, raw: u32) -> i64 {
     match row.kind {
         Kind::I8 | Kind::I16 => i64::from((raw as u16).cast_signed()),
@@ -229,7 +229,7 @@ fn number(row: &ParameterRow, raw: u32) -> i64 {
     }
 }
 
-/// For a script.
+/// Returns the direction as JSON.
 pub(super) fn direction_json(direction: &str) -> Json {
     json!(direction.to_lowercase())
 }

@@ -172,7 +172,7 @@ fn over(runner: &Runner, drive: DriveNumber, act: u64) -> Option<Ended> {
     }
 }
 
-/// It stands, then it is off: where.
+/// Stops the drive, switches it off, and returns its view.
 fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
     let motion = &runner.kept;
     let find = || motion.view().drives.into_iter().find(|own| own.number == drive);

@@ -63,7 +63,7 @@ impl TurnPosition {
         TurnPosition { turns: parts.div_euclid(turn), steps: exact / step_parts, degrees: 360.0 * exact / turn_parts }
     }
 
-    /// As JSON: whole where they are.
+    /// Returns the steps as JSON, whole numbers where possible.
     fn steps_json(self) -> serde_json::Value {
         // At most 2^24.
         if self.steps.fract() == 0.0 { json!(self.steps as i64) } else { json!(self.steps) }

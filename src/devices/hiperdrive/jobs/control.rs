@@ -77,7 +77,7 @@ impl Control {
         }
     }
 
-    /// Nothing is known of what a drive may do any more.
+    /// Forgets everything about what a drive may do.
     pub(super) fn forget(&mut self, drive: DriveNumber) {
         self.motion.with_limits(drive, DriveLimits::forget);
     }

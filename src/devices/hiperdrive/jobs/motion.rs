@@ -81,7 +81,7 @@ pub struct DriveView {
 }
 
 impl Motion {
-    /// Nothing is wanted, and nothing is permitted.
+    /// Creates it without a request and without a permit.
     pub fn new(clock: Arc<dyn Clock>) -> Self {
         let intent = Intent::rest(DriveNumber::FIRST, 0, clock.now());
         let cell = Cell {

@@ -41,8 +41,8 @@ fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
 }
 
 impl Hiperdrive {
-    /// While drives may be moved: looks at what rules them where that is due. Where it cannot be read, nothing moves until it
-    /// can, which is told once.
+    /// Reads the parameters that limit the motion, if that is due while drives may be moved. If they cannot be read,
+    /// nothing moves until they can, which is reported once.
     pub(super) fn look_at_rules(&mut self, desk: &mut SessionContext) {
         let Some(identity) = self.control.held() else { return };
         if self.control.looks.rests.is_some_and(|until| desk.clock.now() < until) {

@@ -59,7 +59,7 @@ impl SessionWatch {
         }
     }
 
-    /// Nothing has come until now.
+    /// Notes that nothing has arrived until now.
     pub(super) const fn look(&mut self, now: Moment) {
         self.looked = now;
     }

@@ -94,7 +94,7 @@ pub const HEARD: Duration = Duration::from_millis(250);
 const SHORT: Duration = Duration::from_millis(500);
 
 impl DeadMan {
-    /// At the opening of a connection. No act up to `spent` begins.
+    /// Creates the state at the opening of a connection. No act up to `spent` begins.
     pub const fn new(drive: DriveNumber, spent: u64) -> Self {
         DeadMan {
             drive,
@@ -142,7 +142,7 @@ impl DeadMan {
         self.heard.map(|(_, actual)| actual).unwrap_or_default()
     }
 
-    /// When it said that; `None` before it has said anything.
+    /// Returns the time of the drive's last status; `None` before the first.
     pub fn heard_at(&self) -> Option<Moment> {
         self.heard.map(|(at, _)| at)
     }
@@ -175,12 +175,12 @@ impl DeadMan {
         }
     }
 
-    /// Nothing helped: the connection is to be closed, so that the drives' watchdog stops them.
+    /// Returns whether nothing helped: the connection is to be closed, so that the drives' watchdog stops them.
     pub const fn gives_up(&self) -> bool {
         matches!(self.stage, Stage::Stop { rung: Rung::Close, .. })
     }
 
-    /// Nothing is under way, and the drive has not to be stopped.
+    /// Returns whether nothing is under way and the drive need not be stopped.
     pub const fn is_idle(&self) -> bool {
         matches!(self.stage, Stage::Rest { moves: None })
     }

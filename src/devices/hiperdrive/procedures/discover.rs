@@ -19,7 +19,7 @@ pub struct Found {
 }
 
 impl Found {
-    /// It is of the maker of HIPERDRIVE.
+    /// Returns whether the device is by the manufacturer of HIPERDRIVE.
     pub const fn is_hiperdrive(&self) -> bool {
         self.identity.identity.vendor == VENDOR
     }

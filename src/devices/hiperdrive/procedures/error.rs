@@ -309,7 +309,7 @@ impl Error {
         matches!(self, Error::Cancelled)
     }
 
-    /// It is not said at the moment, or by this device: other parameters may be.
+    /// Returns whether the value is unavailable at the moment, or on this device; other parameters may be available.
     pub const fn is_unsaid(&self) -> bool {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }

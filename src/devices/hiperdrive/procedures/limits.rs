@@ -67,7 +67,7 @@ impl DriveLimits {
         self.rules
     }
 
-    /// When each group of parameters was read; `None` where all of them are to be read at once.
+    /// Returns when each group of parameters was read; `None` if all are to be read at once.
     pub fn times(&self) -> Option<[Moment; GROUPS]> {
         self.read.filter(|_| self.doubted.is_none())
     }
@@ -79,7 +79,7 @@ impl DriveLimits {
         self.doubted = self.doubted.max(Some(now));
     }
 
-    /// Nothing is known of the parameters any more. Limits that have to be confirmed stay so.
+    /// Forgets the parameters. Limits that have to be confirmed remain unconfirmed.
     pub fn forget(&mut self) {
         // The scale stays, to see whether the next one is another.
         let rules = Rules { scale: self.rules.scale, ..Rules::default() };

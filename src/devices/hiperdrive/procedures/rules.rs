@@ -20,7 +20,7 @@ pub struct Rules {
 }
 
 impl Rules {
-    /// By the values of parameters, asked for by their numbers of drive 1.
+    /// Reads the rules from parameters; `read` takes their numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
         Rules {
             requested: read(152),

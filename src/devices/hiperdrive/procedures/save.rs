@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::protocol::{PARAMETERS, ParameterNumber};
 use crate::profile::Unknown;
 
 impl Identity {
-    /// As it stands in a profile.
+    /// Returns the identity as a profile contains it.
     pub fn profile(&self) -> ProfileIdentity {
         let drive = |drive: &DriveIdentity| ProfileDrive {
             variant: Some(drive.variant),

@@ -53,7 +53,7 @@ impl Image {
         numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
     }
 
-    /// With what another one says instead.
+    /// Returns the image with the values of `other` where it has any.
     pub fn with(&self, other: &Image) -> Image {
         let mut image = self.clone();
         image.values.extend(&other.values);

@@ -29,10 +29,10 @@ pub enum ItemError {
 }
 
 impl Item {
-    /// By a number and, apart from it, the drive that is meant; a number that names another drive itself keeps it.
+    /// Returns the item for a number and, separately, a drive; a number that already names another drive keeps it.
     ///
     /// # Errors
-    /// [`ItemError`] where there is no such parameter, or a drive does not have it.
+    /// [`ItemError`] if there is no such parameter, or a drive does not have it.
     pub fn of(number: u16, drive: Option<u8>) -> Result<Self, ItemError> {
         let own = ParameterNumber::new(number).ok_or(ItemError::NoParameter(number))?;
         let own = match drive {

@@ -90,7 +90,7 @@ impl Service {
         }
     }
 
-    /// Of a number of parameter 47; `None` for what asks for nothing.
+    /// Returns the service for a value of parameter 47; `None` if the value requests nothing.
     pub const fn of_code(code: i64) -> Option<Self> {
         match code {
             1 => Some(Service::Save),

@@ -66,7 +66,7 @@ pub type MountingMark = crate::profile::MountingMark<Item>;
 pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
 impl HiperdriveProfile {
-    /// Of a device that was read, with what belongs to the mounting marked.
+    /// Creates the profile of a device that was read, with the values of the mounting marked.
     pub fn of(identity: ProfileIdentity, image: Image) -> Self {
         let mut profile =
             HiperdriveProfile { identity, image, mounting: Vec::new(), unknown: UnknownEntries::default() };
@@ -106,7 +106,7 @@ impl HiperdriveProfile {
 }
 
 impl ProfileIdentity {
-    /// Nothing is known of the device itself.
+    /// Returns whether nothing is known of the device itself.
     pub fn is_of_no_device(&self) -> bool {
         *self == ProfileIdentity { drives: self.drives.clone(), ..ProfileIdentity::default() }
     }

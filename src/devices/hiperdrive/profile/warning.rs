@@ -48,7 +48,7 @@ pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     warnings
 }
 
-/// With another scale, limits of a drive that lie elsewhere by more than a step.
+/// Returns the warning if another scale moves the limits of a drive by more than a step.
 fn moved(now: &Image, then: &Image, drive: DriveNumber) -> Option<Warning> {
     let (before, after) = (now.scale(drive)?, then.scale(drive)?);
     if before == after {

@@ -84,7 +84,7 @@ const TICK_S: f64 = 1e-3;
 const ACCELERATION: f64 = 350.0 / 60.0 * TURN;
 
 impl Axis {
-    /// At rest there.
+    /// Creates an axis at rest at this position.
     pub(super) const fn at(place: f64) -> Self {
         Axis { place, speed: 0.0 }
     }
@@ -101,7 +101,7 @@ impl Axis {
         self.speed == 0.0
     }
 
-    /// It stands at once.
+    /// Stops at once.
     pub(super) const fn halt(&mut self) {
         self.speed = 0.0;
     }

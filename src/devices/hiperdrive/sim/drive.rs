@@ -124,7 +124,7 @@ impl Drive {
         self.axis = Axis::at(self.axis.place() + steps);
     }
 
-    /// Something goes wrong: it is kept, and while the drive is operational it is a fault that ends the motion.
+    /// Injects an error: it is stored, and while the drive is operational it is a fault that ends the motion.
     pub fn fail(&mut self, now: Moment, code: ErrorCode) {
         self.advance(now);
         self.fails(code);
@@ -187,12 +187,12 @@ impl Drive {
         .fold(StatusWord::FOUND, |status, (bit, set)| status.with(bit, set))
     }
 
-    /// Nothing moves, and nothing is about to.
+    /// Returns whether nothing moves or is about to.
     pub(super) fn stands(&self) -> bool {
         self.axis.stands() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
 
-    /// In steps as scaled.
+    /// Returns the position in scaled steps.
     pub(super) fn position(&self) -> i32 {
         // A cast of a float saturates.
         ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
@@ -257,7 +257,7 @@ impl Drive {
         }
     }
 
-    /// Nothing but its temperature changes by itself.
+    /// Returns whether nothing but its temperature changes by itself.
     fn is_settled(&self) -> bool {
         let begins = self.control.begins(self.control, self.status()).is_some();
         self.motion == Motion::Rest && self.axis.stands() && !begins && self.next(self.control) == self.state
@@ -271,7 +271,7 @@ impl Drive {
         }
     }
 
-    /// It is requested, and S3 does not point to a drive.
+    /// Returns whether it is requested, and S3 does not point to a drive.
     fn may_move(&self) -> bool {
         self.allowed && self.memory.get(152) == Some(1)
     }
@@ -313,7 +313,7 @@ impl Drive {
         wanted.with(self.load.defect, self.axis.place())
     }
 
-    /// Of speed and torque.
+    /// Returns the percentages of speed and torque.
     const fn percents(&self) -> (u8, u8) {
         match self.motion {
             Motion::Job { jog: Some(Jog { speed, torque }), .. } => (speed, torque),

@@ -17,7 +17,7 @@ pub(super) struct Memory {
 const COMPLETE_TIME_MS: i64 = 5;
 
 impl Memory {
-    /// From the factory, what `holds` chooses of the table.
+    /// Creates the memory with factory settings, for the parameters that `holds` selects.
     pub(super) fn new(topology: Topology, family: Family, holds: fn(&ParameterRow) -> bool) -> Self {
         let value = |row: &ParameterRow| {
             let found = (row.number == 192).then_some(COMPLETE_TIME_MS);
@@ -32,14 +32,14 @@ impl Memory {
         self.now.get(&number).copied()
     }
 
-    /// Nothing of one that is not held here.
+    /// Sets a value; does nothing for a parameter that is not in this memory.
     pub(super) fn set(&mut self, number: u16, value: i64) {
         if let Some(held) = self.now.get_mut(&number) {
             *held = value;
         }
     }
 
-    /// It has this value, and keeps it.
+    /// Sets and saves a value.
     pub(super) fn preset(&mut self, number: u16, value: i64) {
         self.set(number, value);
         self.keep();
@@ -56,8 +56,8 @@ impl Memory {
         self.kept.extend(saved.into_iter().take(half));
     }
 
-    /// Without supply, or reset: as saved last; what is never saved from the factory. The position that was set stays (manual,
-    /// 198: a reset has no effect on it).
+    /// Restores the saved values after a power failure or a reset; values that are never saved are as from the factory.
+    /// The position that was set stays (manual, 198: a reset has no effect on it).
     pub(super) fn restart(&mut self) {
         let reference = self.get(REFERENCE);
         self.now = self.kept.clone();

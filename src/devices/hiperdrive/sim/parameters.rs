@@ -23,7 +23,7 @@ pub enum Refused {
 }
 
 impl Refused {
-    /// As CIP says it.
+    /// Returns the status of CIP.
     pub const fn status(self) -> GeneralStatus {
         match self {
             Refused::Unknown => GeneralStatus::NO_ATTRIBUTE,
@@ -33,7 +33,7 @@ impl Refused {
         }
     }
 
-    /// As a parameter word says it.
+    /// Returns the error of a parameter word.
     pub const fn error(self) -> PkwError {
         match self {
             Refused::Unknown => PkwError::NO_PARAMETER,

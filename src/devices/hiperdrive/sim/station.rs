@@ -146,23 +146,23 @@ impl Station {
         self.store.count
     }
 
-    /// It has lost its supply: nothing answers until [`power_cycle`](Self::power_cycle).
+    /// Returns whether it has lost its supply: nothing answers until [`power_cycle`](Self::power_cycle).
     pub fn is_dead(&mut self, now: Moment) -> bool {
         self.advance(now);
         self.store.dead
     }
 
-    /// In this save, counted from the first there was, the supply is lost; `None`: in none.
+    /// Sets the save, counted from the first, in which the supply is lost; `None`: never.
     pub const fn die_in_store(&mut self, number: Option<u32>) {
         self.store.dies_in = number;
     }
 
-    /// From now on this goes wrong; `None`: nothing does, and a line that was lost is mended.
+    /// Injects a failure from now on; `None` removes it and repairs a lost line.
     pub const fn hinder(&mut self, what: Option<(ParameterNumber, Hindrance)>) {
         self.hindered = Hindered::by(what);
     }
 
-    /// Nothing it says gets through.
+    /// Returns whether none of its replies get through.
     pub(super) const fn is_cut_off(&self) -> bool {
         self.hindered.is_cut_off()
     }
@@ -258,7 +258,7 @@ impl Station {
         }
     }
 
-    /// When what was written last is answered, where that is not at once; asked for once.
+    /// Returns when the last write is answered if that is delayed, once.
     pub const fn answers_at(&mut self) -> Option<Moment> {
         self.answers_at.take()
     }

@@ -168,7 +168,7 @@ impl AxisStep {
         AxisStep::PowerCycle,
     ];
 
-    /// It needs the cyclic connection.
+    /// Returns whether the step needs the cyclic connection.
     pub const fn moves(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
@@ -178,7 +178,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
 
-    /// It may be left out.
+    /// Returns whether the step may be skipped.
     pub const fn may_be_skipped(self) -> bool {
         matches!(self, AxisStep::Reference | AxisStep::PowerCycle)
     }
@@ -195,7 +195,7 @@ impl AxisStep {
 }
 
 impl Axis {
-    /// At its beginning, with what is known of the spindle.
+    /// Creates the guide at its first step, with what is known of the spindle.
     pub fn new(drive: DriveNumber, ruler: Option<Ruler>) -> Self {
         Axis {
             drive,
@@ -221,7 +221,7 @@ impl Axis {
         }
     }
 
-    /// Whose it is.
+    /// Returns the drive that it sets up.
     pub const fn drive(&self) -> DriveNumber {
         self.drive
     }
@@ -266,7 +266,7 @@ impl Axis {
         self.saved
     }
 
-    /// Something is being written for it.
+    /// Returns whether a write for it is running.
     pub const fn is_writing(&self) -> bool {
         self.asked.is_some()
     }

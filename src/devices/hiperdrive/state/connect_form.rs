@@ -61,7 +61,7 @@ const BIG_ENDIAN: (&str, &str) = ("order", "big");
 const PORT: &str = "44818";
 
 impl VirtualHub {
-    /// As the link says it.
+    /// Returns the word in a link.
     const fn word(self) -> Option<&'static str> {
         match self {
             VirtualHub::Adapter => None,
@@ -124,7 +124,7 @@ impl HiperdriveForm {
         LinkParameters::entries().into_iter().partition(|own| own.key == "rpi")
     }
 
-    /// Those of the virtual device. An adapter has one drive.
+    /// Returns the entries of the virtual device. An adapter has one drive.
     pub fn of_the_virtual(&self) -> Vec<Entry> {
         let has = |own: &Entry| own.key != "drives" || self.hub != VirtualHub::Adapter;
         Config::entries().into_iter().filter(has).collect()

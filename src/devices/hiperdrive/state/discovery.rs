@@ -58,7 +58,7 @@ impl Discovery {
         self.found.is_none()
     }
 
-    /// Those that have answered.
+    /// Returns the devices that have answered.
     pub fn devices(&self) -> &[FoundDevice] {
         match &self.found {
             Some(Ok(found)) => found,
@@ -144,7 +144,7 @@ impl Finder for DiscoveryFinder {
         }
     }
 
-    /// Those of HIPERDRIVE come first.
+    /// Takes the answers, those of HIPERDRIVE first.
     fn done(finder: Option<&mut Self>, done: Answers, _services: &mut Services) {
         let Answers { number, found } = done;
         let discovery = finder.and_then(|finder| finder.discovery.as_mut());

@@ -57,7 +57,7 @@ impl Lamp {
     /// All of them, as they are drawn.
     pub const ALL: [Lamp; 4] = [Lamp::Drives, Lamp::Bus(BusLamp::Module), Lamp::Bus(BusLamp::Network), Lamp::Port];
 
-    /// As it is printed beside it.
+    /// Returns the label printed beside the LED.
     pub const fn name(self) -> &'static str {
         match self {
             Lamp::Drives => "RS485",

@@ -407,12 +407,12 @@ impl Moves {
         self.jobs.get(&drive).copied().unwrap_or(Effort::MOVE)
     }
 
-    /// With which effort a drive is being jogged; `None` while it is not.
+    /// Returns the effort of a running jog; `None` if there is none.
     pub fn jogs_with(&self, drive: DriveNumber) -> Option<Effort> {
         self.sent_effort(drive).filter(|_| self.is_jog(drive))
     }
 
-    /// With which effort a move, a step or a run is under way; `None` while none is.
+    /// Returns the effort of a running move, step or run; `None` if there is none.
     pub fn moves_with(&self, drive: DriveNumber) -> Option<Effort> {
         self.sent_effort(drive).filter(|_| !self.is_jog(drive))
     }

@@ -53,7 +53,7 @@ pub struct Position {
 }
 
 impl Form {
-    /// As the device has it.
+    /// Creates the form from the device's settings.
     pub fn of(settings: &NetworkSettings) -> Self {
         let own = &settings.interface;
         let text = |address: Ipv4Addr| if address.is_unspecified() { String::new() } else { address.to_string() };

@@ -175,7 +175,7 @@ impl Unit {
         ruler.measures().filter(wanted).filter_map(place).collect()
     }
 
-    /// From one place to another, with their unit.
+    /// Returns the text for a range between two positions, with their unit.
     pub fn places(&self, drive: DriveNumber, (low, high): (i32, i32)) -> Text {
         let ((low, ..), (high, decimals, unit)) = (self.measured(drive, low), self.measured(drive, high));
         let text = TEXTS.text("hd_entry.range").with_number("low", low, decimals);

@@ -171,7 +171,7 @@ impl Unit {
         report(axis, &self.seen(axis.drive()), &device, language)
     }
 
-    /// Everything that lasts goes through a plan and its review.
+    /// Carries out a button's request. Everything persistent goes through a plan and its review.
     fn carry_out(&mut self, drive: DriveNumber, button: Button, ask: Ask, seen: &Seen, services: &mut Services) {
         match &ask {
             Ask::Try(values) | Ask::Restore(values) => {

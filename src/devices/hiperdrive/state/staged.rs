@@ -73,7 +73,7 @@ pub fn is_editable(row: &ParameterRow) -> bool {
 }
 
 impl Staged {
-    /// Of a profile, which can be made to say what it does not say yet.
+    /// Creates the edits of a profile, which can also gain values that it does not have.
     pub fn of_profile(image: Image) -> Self {
         Staged { ground: Ground::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
@@ -124,7 +124,7 @@ impl Staged {
         *self = Staged { ground: self.ground, ..Staged::default() };
     }
 
-    /// As the device or the profile says; `None`: nothing was read.
+    /// Returns the values of the device or the profile; `None` if nothing was read.
     pub fn base(&self) -> Option<&Image> {
         self.base.as_ref()
     }

@@ -205,7 +205,7 @@ impl Unit {
         self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
 
-    /// When a drive said that, on the clock of its session; `None` where only everything was read at once.
+    /// Returns when a drive reported that, on the clock of its session; `None` if it was only part of a full reading.
     pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
         match self.moves.drive(drive) {
             Some(own) => own.heard_at,
@@ -230,7 +230,7 @@ impl Unit {
         self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
     }
 
-    /// In which state a drive is, as it says again and again; `None` for one that is not asked just now.
+    /// Returns the polled state of a drive; `None` for one that is not polled now.
     pub fn state_now(&self, drive: DriveNumber) -> Option<State> {
         let is_polled = self.session.is_polling() && !self.moves.is_open() && drive == self.watched;
         // Data from before the end of polling are outdated.
@@ -291,7 +291,7 @@ impl Unit {
         self.staged.marks(|drive| self.actual(drive).map(|own| i64::from(own.position)))
     }
 
-    /// There are edits that are not written.
+    /// Returns whether there are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }

@@ -38,7 +38,7 @@ impl Unsaved {
         self.sets = writes.values.keys().filter_map(reference).collect();
     }
 
-    /// It was carried out.
+    /// Notes that a plan was carried out.
     pub(super) fn done(&mut self, plan: &HiperdrivePlan) {
         self.ended(true);
         let saves = |op: &Op| matches!(op, Op::Service(Service::Save | Service::FactoryAll));
@@ -47,14 +47,14 @@ impl Unsaved {
         }
     }
 
-    /// It ended; `begun`: some of it was written, or may have been.
+    /// Notes that a plan ended early; `begun`: some of it was written, or may have been.
     pub(super) fn ended(&mut self, begun: bool) {
         for drive in std::mem::take(&mut self.sets) {
             *self.set.entry(drive).or_default() += u32::from(begun);
         }
     }
 
-    /// Everything was read: what is as it was saved is no difference any more.
+    /// Compares with a full reading: values equal to the saved ones are no longer a difference.
     pub(super) fn read(&mut self, now: &BTreeMap<ParameterNumber, Value>) {
         let is_as_saved = |number: u16, before: i64| {
             ParameterNumber::new(number).is_some_and(|number| now.get(&number) == Some(&Value::Number(before)))

@@ -48,7 +48,7 @@ impl WithMemory for Unit {
         HiperdriveJob::Prepare(change)
     }
 
-    /// Nothing moves meanwhile. No limit is known from which a device would count as worn.
+    /// Returns the job that writes. Nothing moves meanwhile. No wear limit of such a device is known.
     fn commit(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin(&agreed.prepared.plan);

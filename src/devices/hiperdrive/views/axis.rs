@@ -31,7 +31,7 @@ pub(super) struct AxisUiState {
 }
 
 impl AxisUiState {
-    /// For how long a step has been drawn; zero: it is new.
+    /// Returns how long a step has been drawn; zero if it is new.
     fn age(&mut self, step: AxisStep, now: f64) -> Duration {
         let since = self.since.filter(|(own, _)| *own == step).map_or(now, |(_, since)| since);
         self.since = Some((step, since));
@@ -252,7 +252,7 @@ fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     });
 }
 
-/// Back and cancel, and on. Before it is settled the step can only be cancelled, which stops what moves.
+/// Draws the buttons Back, Cancel and Next. Before a step is settled it can only be cancelled, which stops the motion.
 fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
@@ -276,7 +276,7 @@ fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     });
 }
 
-/// To the next step without this one, beside what the step does itself.
+/// Draws the button that skips a step.
 fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let step = shown.axis.step();
     if step.may_be_skipped() {

@@ -165,14 +165,14 @@ fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
     actions.push(Action::device(id, Hiperdrive::Drive(motor)));
 }
 
-/// To a position, and at a speed: with the same effort.
+/// Draws the moves to a position and at a speed, with the same effort.
 fn moves(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     let allowed = card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position(ui, theme, unit, view, actions));
     ui.add_space(theme.space.groups);
     card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, &allowed, actions));
 }
 
-/// To a position; whether the drive may be moved with the effort that is typed.
+/// Draws the move to a position; returns whether the drive may be moved with the entered effort.
 fn to_position(
     ui: &mut Ui,
     theme: &Theme,
@@ -234,7 +234,7 @@ pub(super) fn why_not(ui: &mut Ui, theme: &Theme, allowed: &Result<(), Text>) {
     }
 }
 
-/// At a speed, to the end of the range or, for experts, without one.
+/// Draws the run at a speed, to the end of the range or, for experts, without an end.
 fn at_speed(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let mut expert = unit.moves.is_expert(unit.drive());

@@ -10,16 +10,16 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes, simulated};
 use crate::worker::{OpenError, Session};
 
-/// Everything about a link to a HIPERFACE encoder that can be told without opening it.
+/// Checks a link to a HIPERFACE encoder without opening it.
 ///
 /// # Errors
-/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Behind this link is a line on which a drive may be a second master. It reads the encoder at power-up and then runs on
-/// sine and cosine, so that a silent line proves nothing.
+/// Returns whether a drive may be a second master on the line behind this link. It reads the encoder at power-up and
+/// then uses sine and cosine, so a silent line proves nothing.
 pub fn may_have_other_master(url: &LinkUrl) -> bool {
     matches!(url.scheme, Scheme::Serial | Scheme::Tcp)
 }

@@ -102,10 +102,10 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// As [`ask`](Self::ask); where the line has damaged something before, the answer has to come twice.
+    /// Asks like [`ask`](Self::ask); on a line that has damaged something before, the reply has to come twice.
     ///
     /// # Errors
-    /// As [`ask`](Self::ask).
+    /// See [`ask`](Self::ask).
     pub(super) fn ask_confirmed(&mut self, request: &Request) -> Result<Reply, Error> {
         let mut reply = self.ask(request)?;
         for _ in 0..TRIES {
@@ -218,9 +218,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// As [`settle`](Self::settle), for what changes the encoder. Codes that a reply announces are left to the next
-    /// exchange, which announces them again: no wish to end comes between a change and its being counted, and after 55h
-    /// and 67h the encoder is no longer to be found where it was asked.
+    /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes that a reply announces are
+    /// left to the next exchange, which announces them again: no request to end comes between a change and its being
+    /// counted, and after 55h and 67h the encoder no longer answers as it was asked.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: Answered) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.recovered();

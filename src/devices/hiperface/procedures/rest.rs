@@ -32,7 +32,7 @@ impl Signals {
     /// The reference of both, 2.5 V.
     const MEAN: f64 = 511.5;
 
-    /// From mean counts of ten bits for 5 V.
+    /// Converts mean counts of ten bits for 5 V.
     fn from_counts(sine: f64, cosine: f64) -> Self {
         let volts = |counts: f64| (counts - Self::MEAN) * Self::VOLTS_PER_COUNT;
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }

@@ -131,14 +131,14 @@ impl Op {
         }
     }
 
-    /// It leaves a field writable that was not: where another operation protects it again, that has to follow, whatever
-    /// happens in between.
+    /// Returns whether it leaves a field writable that was not: if another operation protects it again, that one has to
+    /// follow whatever happens in between.
     pub fn unlocks(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
     }
 
-    /// It protects this field.
+    /// Returns whether it protects this field.
     pub fn locks(&self, number: u8) -> bool {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }

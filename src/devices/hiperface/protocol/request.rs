@@ -320,7 +320,7 @@ impl SecretFrame {
         &self.bytes
     }
 
-    /// It carries an access code.
+    /// Returns whether it carries an access code.
     pub fn is_secret(&self) -> bool {
         !self.secret.is_empty()
     }

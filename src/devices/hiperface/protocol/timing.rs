@@ -34,8 +34,8 @@ impl Timing {
         Some(Self::new(settings.format()?, settings.long_timeout()))
     }
 
-    /// From the first bit of the request to the latest last bit of the longest reply: transfer, time-out, processing,
-    /// transfer. Without reply: transfer and time-out.
+    /// Returns the time from the first bit of the request to the latest last bit of the longest reply: transfer,
+    /// time-out, processing, transfer. Without reply: transfer and time-out.
     pub fn worst_case(&self, request: &Request) -> Duration {
         let sent = request.emit(0).bytes().len();
         let reply = request.reply_length(&[]).map_or(0, |length| length.max);

@@ -68,7 +68,7 @@ impl Config {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
 
-    /// Without bearing of its own: as the type given has it, where it is a known one, else the model.
+    /// Returns whether the encoder has no bearing of its own: by the given type if it is known, else by the model.
     pub(super) fn is_kit(&self, types: &EncoderTypes) -> bool {
         self.encoder_type.and_then(|code| types.find(code)).map_or(self.model.kit, |row| row.kit)
     }

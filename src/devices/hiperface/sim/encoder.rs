@@ -253,7 +253,7 @@ impl Encoder {
         self.electronics.restart();
     }
 
-    /// When [`act`](Self::act) is to be called next.
+    /// Returns when [`act`](Self::act) is to be called next.
     pub(super) fn acts_at(&self) -> Option<Moment> {
         match &self.activity {
             Activity::Listening(reception) => reception.as_ref().map(|reception| reception.ends),

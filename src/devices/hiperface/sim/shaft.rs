@@ -55,7 +55,7 @@ impl Shaft {
         u32::try_from(word).unwrap_or(u32::MAX)
     }
 
-    /// From `at` on the shaft's present place has this position.
+    /// Sets the position of the shaft's present place from `at` on.
     pub(super) fn set_position(&mut self, at: Moment, position: u32) {
         let range = self.range();
         self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;

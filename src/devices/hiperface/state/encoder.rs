@@ -100,7 +100,7 @@ impl Encoder {
         self.session.log_answer(facts, services);
     }
 
-    /// There are edits that are not written.
+    /// Returns whether there are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }

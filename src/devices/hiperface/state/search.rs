@@ -42,7 +42,7 @@ impl Search {
         self.line.as_ref()?.running()?.progress.as_ref()
     }
 
-    /// It goes on.
+    /// Returns whether the search is running.
     pub fn is_running(&self) -> bool {
         self.end.is_none()
     }

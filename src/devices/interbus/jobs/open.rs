@@ -12,10 +12,10 @@ use crate::store::Store;
 use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, read_recording, simulated};
 use crate::worker::{OpenError, Session};
 
-/// Everything about a link to an INTERBUS encoder that can be told without opening it.
+/// Checks a link to an INTERBUS encoder without opening it.
 ///
 /// # Errors
-/// What cannot be: [`OpenError::Url`] or [`OpenError::Sim`].
+/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }

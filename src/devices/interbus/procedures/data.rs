@@ -33,6 +33,6 @@ pub trait ProcessData {
     /// [`Error::Cancelled`].
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
-    /// From now on a wish to end is heard, or is not; gives back whether it was not.
+    /// Sets whether a request to end is ignored; returns the previous setting.
     fn shield(&mut self, shielded: bool) -> bool;
 }

@@ -76,7 +76,7 @@ impl Exception {
         self.0
     }
 
-    /// As the protocol names it.
+    /// Returns the name in the protocol.
     pub const fn name(self) -> &'static str {
         match self.0 {
             0x01 => "illegal function",

@@ -20,10 +20,10 @@ pub trait Journal {
     /// Returns the recorded excursion of an encoder that was not led back; `None` if there is none.
     fn excursion(&self, serial_number: &str) -> Option<Excursion>;
 
-    /// It is about to be sent into the last of these modes.
+    /// Notes that the encoder is about to be sent into the last of these modes.
     fn leaves(&mut self, serial_number: &str, excursion: &Excursion);
 
-    /// It does again what it did before.
+    /// Notes that the encoder is back in its previous mode.
     fn is_back(&mut self, serial_number: &str);
 
     /// Records that this many cam programs are about to be selected, each of which may be stored when it is left.

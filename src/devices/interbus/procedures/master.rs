@@ -137,7 +137,7 @@ impl<'a> Master<'a> {
         Ok(WordReading { at: self.data.now(), word, mode, gear, shift })
     }
 
-    /// In which state the encoder may be.
+    /// Returns the possible states of the encoder.
     pub(super) fn standing(&self) -> LeftState {
         let out = self.out.map_or(0, Command::emit);
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }

@@ -259,8 +259,8 @@ fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// As near as a shaft that stands is to itself: its position may be one step up or down, or a third of a degree with fine
-/// steps.
+/// Returns whether two positions of a shaft at rest are equal: they may differ by one step, or by a third of a degree
+/// with fine steps.
 fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     let most = gear.map_or(1, |gear| (gear.steps() / gear.turns() / 1000).max(1));
     apart(position, other, gear) <= most

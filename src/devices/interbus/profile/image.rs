@@ -49,7 +49,7 @@ impl Direction {
         }
     }
 
-    /// Of the parameter's number; `None` where it is neither 3 nor 4.
+    /// Returns the direction for the parameter's value; `None` if it is neither 3 nor 4.
     pub const fn of_code(code: u32) -> Option<Self> {
         match code {
             3 => Some(Direction::Clockwise),
@@ -58,7 +58,7 @@ impl Direction {
         }
     }
 
-    /// As the command line and profiles spell it.
+    /// Returns the word on the command line and in profiles.
     pub const fn word(self) -> &'static str {
         match self {
             Direction::Clockwise => "cw",
@@ -113,7 +113,7 @@ impl Parameters {
 }
 
 impl Image {
-    /// With nothing but parameters.
+    /// Creates an image of the parameters only.
     pub const fn of(parameters: Parameters) -> Self {
         Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
     }

@@ -85,8 +85,8 @@ impl Item {
         Item::OperatingTime,
     ];
 
-    /// Everything that can be written, in the order in which it is compared: parameters, the shift, then program by program
-    /// its mask and its cams.
+    /// Returns all writable items in the order of comparison: parameters, the shift, then the mask and the cams of each
+    /// program.
     pub fn writable() -> impl Iterator<Item = Item> {
         let plain = Item::PLAIN.into_iter().filter(|item| item.is_writable());
         plain.chain(ProgramNumber::all().flat_map(Item::of_program))
@@ -134,7 +134,7 @@ impl Item {
         }
     }
 
-    /// Of its number; empty where it has none.
+    /// Returns the unit of its number; empty if it has none.
     pub const fn unit(self) -> &'static str {
         match self {
             Item::Steps | Item::Preset | Item::ZeroShift | Item::Cam(..) => "steps",

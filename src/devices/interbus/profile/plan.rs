@@ -124,7 +124,7 @@ impl Op {
 }
 
 impl ProgramChange {
-    /// Nothing changes.
+    /// Returns whether nothing changes.
     pub fn is_empty(&self) -> bool {
         self.cams.is_empty() && self.mask.is_none() && self.shift.is_none()
     }

@@ -71,7 +71,7 @@ pub struct UnknownEntries {
 }
 
 impl InterbusProfile {
-    /// Of an encoder that was read, with its values of the mounting marked.
+    /// Creates the profile of an encoder that was read, with the values of the mounting marked.
     pub fn of(identity: ProfileIdentity, image: Image, recorded: Recorded) -> Self {
         let mut profile = InterbusProfile {
             identity,

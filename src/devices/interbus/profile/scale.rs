@@ -66,7 +66,7 @@ impl Unit {
     /// All of them.
     pub const ALL: [Unit; 3] = [Unit::Steps, Unit::Degrees, Unit::Millimetres];
 
-    /// As it stands behind a number; nothing for steps.
+    /// Returns the symbol after a number; empty for steps.
     pub const fn symbol(self) -> &'static str {
         match self {
             Unit::Steps => "",
@@ -93,10 +93,10 @@ impl Scale {
         Scale::new(Unit::Millimetres, steps_in_one, zero)
     }
 
-    /// Of a unit. The steps are those of a turn, of a millimetre, and of no meaning for steps.
+    /// Creates the scale of a unit. `steps` is the number of steps in a turn or a millimetre, and unused for steps.
     ///
     /// # Errors
-    /// [`ScaleError`] where they have a meaning and are no number above 0.
+    /// [`ScaleError`] if it is used and not above 0.
     pub fn new(unit: Unit, steps: f64, zero: u32) -> Result<Self, ScaleError> {
         let steps = match unit {
             Unit::Steps => 1.0,

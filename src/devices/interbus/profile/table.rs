@@ -252,7 +252,7 @@ impl TableRow {
 }
 
 impl TableEdge {
-    /// It is not where it was asked for.
+    /// Returns whether the edge is not where it was requested.
     pub fn is_off(self) -> bool {
         self.off.abs() > 1e-9 * self.asked.abs().max(1.0)
     }

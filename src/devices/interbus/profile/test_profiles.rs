@@ -25,7 +25,7 @@ pub(super) fn item(text: &str) -> Item {
     text.parse().unwrap()
 }
 
-/// With items changed.
+/// Returns the image with items changed.
 pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
     let mut image = image.clone();
     for (name, value) in items {

@@ -81,7 +81,7 @@ impl ProgramNumber {
 }
 
 impl Cam {
-    /// It goes over the end of the measuring range.
+    /// Returns whether the cam passes the end of the measuring range.
     pub fn wraps(self) -> bool {
         self.start > self.stop
     }

@@ -21,7 +21,7 @@ impl Mode {
     /// All of them, in the manual's order.
     pub const ALL: [Mode; 5] = [Mode::Position, Mode::Parameterisation, Mode::ReadOut, Mode::Velocity, Mode::Cam];
 
-    /// As it is spelled.
+    /// Returns its spelling.
     pub const fn name(self) -> &'static str {
         match self {
             Mode::Position => "position",

@@ -132,7 +132,7 @@ const fn signed(value: Value) -> i32 {
 }
 
 impl StartupMode {
-    /// Of its number.
+    /// Returns the meaning of this number.
     pub fn parse(value: Value) -> Self {
         let program = |number: u32| u8::try_from(number).ok().and_then(ProgramNumber::new);
         match value.get() {

@@ -52,7 +52,7 @@ impl Code {
         Code((word >> Value::BITS & 0xF) as u8)
     }
 
-    /// In its place in a word.
+    /// Returns the value at its position in a word.
     pub const fn in_word(self) -> u32 {
         (self.0 as u32) << Value::BITS
     }

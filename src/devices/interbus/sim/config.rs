@@ -78,7 +78,7 @@ impl Config {
         Ok(config)
     }
 
-    /// In tenths of a degree.
+    /// Returns the temperature in tenths of a degree.
     pub(super) fn temperature(&self) -> i32 {
         (self.celsius * 10.0).round() as i32
     }

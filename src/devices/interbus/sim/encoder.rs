@@ -210,7 +210,7 @@ impl Encoder {
         self.eeprom.set_die_in_store(faults.die_in_store());
     }
 
-    /// It has power, without which it has no words.
+    /// Returns whether it has power, without which it has no words.
     pub const fn has_power(&self) -> bool {
         self.power
     }
@@ -305,7 +305,7 @@ impl Encoder {
         }
     }
 
-    /// Something was set, or not: the IN word is its echo, or an error.
+    /// Ends a setting: the IN word is its echo, or an error.
     fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
         let says = match taken {
             Ok(_) => self.out | ECHO,
@@ -363,7 +363,7 @@ impl Encoder {
         }
     }
 
-    /// From now on, without busy words.
+    /// Changes the activity from now on, without busy words.
     const fn turn_to(&mut self, doing: Activity, says: Says) {
         (self.doing, self.says, self.busy_until) = (doing, says, Moment::START);
     }

@@ -18,7 +18,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// As delivered: all steps over all turns, no cam works.
+    /// Returns the memory as delivered: all steps over all turns, no active cams.
     pub(super) fn delivered() -> Self {
         Memory {
             gear: FULL,

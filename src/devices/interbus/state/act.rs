@@ -74,7 +74,7 @@ impl Encoder {
         self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Everything that there is to be read of a virtual encoder is read by itself; false where there is nothing more.
+    /// Reads the rest of a virtual encoder by itself; false if there is nothing more.
     pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

@@ -202,7 +202,7 @@ impl VisibleRange {
         VisibleRange { first: around - part * span, span }.within(range)
     }
 
-    /// Further along by so many positions.
+    /// Returns the view moved by this many positions.
     #[must_use]
     pub fn panned(&self, by: f64, range: u32) -> Self {
         VisibleRange { first: self.first + by, ..*self }.within(range)

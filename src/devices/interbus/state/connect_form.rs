@@ -94,12 +94,12 @@ impl InterbusForm {
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Those of where the words stand in the gateway, and those that are rarely needed.
+    /// Returns the entries for the location of the words in the gateway, and those that are rarely needed.
     pub fn of_the_link() -> (Vec<Entry>, Vec<Entry>) {
         LinkParameters::entries().into_iter().partition(|own| ["unit", "input", "output"].contains(&own.key))
     }
 
-    /// Those of the virtual encoder.
+    /// Returns the entries of the virtual encoder.
     pub fn of_the_virtual() -> Vec<Entry> {
         Config::entries()
     }

@@ -127,7 +127,7 @@ impl Encoder {
         self.record.last().and_then(|reading| reading.mode).or_else(read)
     }
 
-    /// With what its IN words are read.
+    /// Returns what is needed to read its IN words.
     pub fn known(&self) -> Known {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => Mode::Velocity,
@@ -196,12 +196,12 @@ impl Encoder {
         self.staged.differences().iter().any(|own| matches!(own.place, ValueId::Parameter(_)))
     }
 
-    /// Something about cams is edited.
+    /// Returns whether cams are edited.
     pub fn edits_cams(&self) -> bool {
         self.staged.differences().iter().any(|own| !matches!(own.place, ValueId::Parameter(_)))
     }
 
-    /// There are edits that are not written.
+    /// Returns whether there are edits that are not written.
     pub fn is_dirty(&self) -> bool {
         self.staged.is_dirty()
     }

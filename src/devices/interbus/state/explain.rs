@@ -147,7 +147,7 @@ pub fn implausible(why: Implausible) -> Text {
     }
 }
 
-/// In which state an encoder may be that could not be led back; the part of a sentence.
+/// Returns the possible states of an encoder that could not be returned to operation, as part of a sentence.
 fn standing(standing: &LeftState) -> Text {
     let id = if standing.parameterising { "ib_standing.set" } else { "ib_standing.out" };
     let state = TEXTS.text(id).with("out", word(standing.out));

@@ -23,7 +23,7 @@ pub(super) fn words(job: &InterbusJob) -> Text {
     }
 }
 
-/// It takes the position away or switches the outputs: the machine has to stand.
+/// Returns whether the job takes the position away or switches the outputs: the machine has to stand still.
 pub(super) fn disturbs(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

@@ -59,7 +59,7 @@ pub struct Staged {
 }
 
 impl Wanted {
-    /// With nothing named.
+    /// Creates the edits without names.
     pub fn of(image: Image) -> Self {
         Wanted { image, names: Names::default() }
     }
@@ -85,7 +85,7 @@ impl Wanted {
 }
 
 impl Staged {
-    /// Of a profile, which can be made to say what it does not say yet.
+    /// Creates the edits of a profile, which can also gain values that it does not have.
     pub fn of_profile(image: Image, names: Names) -> Self {
         let base = Wanted { image, names };
         Staged { ground: Ground::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
@@ -155,7 +155,7 @@ impl Staged {
         *self = Staged { ground: self.ground, ..Staged::default() };
     }
 
-    /// As the encoder or the profile says; `None`: nothing was read.
+    /// Returns the values of the encoder or the profile; `None` if nothing was read.
     pub fn base(&self) -> Option<&Wanted> {
         self.base.as_ref()
     }

@@ -53,8 +53,8 @@ pub(super) fn families(output: &Output) -> Result<Families> {
     Ok(families)
 }
 
-/// It names a file: by a path, by its ending, or because there is one and no family of this name. Behind the first comma
-/// stand settings, in which `/` is a fraction.
+/// Returns whether it names a file: by a path, by its extension, or because there is one and no family of this name.
+/// After the first comma there are settings, in which `/` is a fraction.
 fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);

@@ -163,7 +163,7 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
     Ok(Done::Well)
 }
 
-/// With the number of its clock, where it has one.
+/// Returns the finding as JSON, with the number of its clock if it has one.
 fn item(layout: &Layout, finding: &FrameFinding) -> Json {
     let clock = match finding {
         FrameFinding::Error { name, .. } => layout.descriptor().errors.iter().find(|bit| bit.name == *name),

@@ -120,10 +120,10 @@ impl Station {
         }
     }
 
-    /// As the parameters of its link say.
+    /// Reads the parameters of a link. Those that do not concern the line are ignored.
     ///
     /// # Errors
-    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    /// A value that cannot be used, with the allowed values.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));

@@ -59,12 +59,12 @@ impl Words {
         }
     }
 
-    /// Nothing came before them since words are taken like this.
+    /// Returns whether nothing came before these words since recording began.
     pub const fn begins(&self) -> bool {
         self.first == self.lost
     }
 
-    /// They came without being asked.
+    /// Returns whether the words were streamed.
     pub const fn is_streamed(&self) -> bool {
         self.period_ns > 0
     }

@@ -25,7 +25,7 @@ pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     comparison
 }
 
-/// Everything that is compared, by name, in the order of the file.
+/// Returns everything that is compared, by name, in the order of the file.
 fn items(profile: &SsiProfile) -> Vec<(String, String)> {
     let frame = &profile.descriptor;
     let mut items: Vec<(String, String)> = Vec::new();

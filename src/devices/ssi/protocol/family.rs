@@ -282,7 +282,7 @@ impl Families {
         Families(all)
     }
 
-    /// By its key.
+    /// Returns the family with this key.
     pub fn named(&self, key: &str) -> Option<&Family> {
         self.0.iter().find(|family| family.key == key)
     }

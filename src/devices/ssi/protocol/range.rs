@@ -197,8 +197,8 @@ impl Range {
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
-    /// From 0 at the shaft's zero. What is turned counterclockwise counts like what is turned clockwise, so that either
-    /// direction holds each position as long.
+    /// Returns the count from 0 at the shaft's zero. Both directions count alike, so that each position is held equally
+    /// long in either.
     fn counted(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last().unwrap_or(0);

@@ -86,7 +86,7 @@ impl<'t> Setting<'t> {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }
 
-    /// There is no such name.
+    /// Returns the error for an unknown name.
     pub(super) fn unknown(self) -> SpecError {
         SpecError::Name { name: self.name.to_owned(), names: self.names }
     }

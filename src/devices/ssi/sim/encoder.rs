@@ -17,7 +17,7 @@ pub struct Encoder {
 }
 
 impl Encoder {
-    /// Of a family with its settings, as `atm60,code=gray`; `None` where there is none such.
+    /// Returns the encoder of a family with its settings, such as `atm60,code=gray`; `None` if there is none.
     pub(super) fn named(text: &str) -> Option<Self> {
         let (key, settings) = Settings::parse(text).ok()?;
         let families = Families::built_in();

@@ -52,8 +52,8 @@ impl InjectedFault {
         bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
     }
 
-    /// It shows in a transfer at a moment, behind one before. What a transfer clears is about the time between the two;
-    /// what comes and goes is there in the second half of its period.
+    /// Returns whether the fault shows in a transfer, given the time of the previous one. A fault that a transfer
+    /// clears is about the time between the two; an intermittent one is present in the second half of its period.
     pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, Shows::Bit { cleared: true, .. });

@@ -97,7 +97,7 @@ impl SsiForm {
         [own, LinkParameters::entries()].concat()
     }
 
-    /// Those of the virtual encoder and the adapter before it.
+    /// Returns the entries of the virtual encoder and its adapter.
     pub fn of_the_virtual() -> Vec<Entry> {
         [Settings::entries(), bridge::entries()].concat()
     }

@@ -101,14 +101,14 @@ impl Default for Design {
 }
 
 impl Designer {
-    /// With a layout as it is saved. One that cannot work, which no file holds, is left out.
+    /// Creates the design of a saved layout. An impossible one, which no file contains, is left out.
     fn with(profile: SsiProfile, families: Arc<Families>) -> Self {
         let now = Design::of(profile, &families, None).unwrap_or_default();
         let saved = now.profile.clone();
         Designer { families, now, saved, history: History::default(), problem: None }
     }
 
-    /// With the layout of a family as delivered.
+    /// Creates the design of a family's layout as delivered.
     pub(super) fn delivered(families: Arc<Families>) -> Self {
         let profile = of_text(TO_BEGIN_WITH, &families);
         Designer::with(profile, families)
@@ -177,7 +177,7 @@ impl Designer {
         self.problem.as_ref()
     }
 
-    /// As it was saved.
+    /// Returns the saved profile.
     pub(super) fn saved(&self) -> &SsiProfile {
         &self.saved
     }
@@ -215,7 +215,7 @@ impl Designer {
         }
     }
 
-    /// Something was entered that stands for nothing.
+    /// Refuses an entry with a reason.
     pub(super) fn refuse(&mut self, why: Text) {
         self.problem = Some(why);
     }
@@ -273,7 +273,7 @@ impl Designer {
         true
     }
 
-    /// It is saved like this now; changes stay changes.
+    /// Takes the profile as saved; undo steps stay.
     pub(super) fn saved_as(&mut self, profile: SsiProfile) {
         self.saved = profile;
     }

@@ -162,7 +162,7 @@ impl Encoder {
         })
     }
 
-    /// It is a profile in a file, or one that will be.
+    /// Returns whether it is a profile in a file, or will be.
     pub fn is_profile(&self) -> bool {
         !matches!(self.session.source, Source::Link(_))
     }

@@ -36,7 +36,7 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// Something that a frame gives cause to say.
+/// Returns the text of a finding about a frame.
 pub fn finding(finding: &FrameFinding) -> Text {
     match finding {
         FrameFinding::Error { name, meaning, cleared_by_transfer } => {
@@ -62,7 +62,7 @@ pub fn finding(finding: &FrameFinding) -> Text {
     }
 }
 
-/// Something that is accepted although the manual does not speak of it.
+/// Returns the text about a layout that is accepted although the manual does not describe it.
 pub fn advice(advice: &Advice) -> Text {
     match advice {
         Advice::Code(code) => TEXTS.text("ssi.other_code").with("code", code),

@@ -76,7 +76,7 @@ impl Format {
         }
     }
 
-    /// It is a picture, and no text to read.
+    /// Returns whether it is a picture rather than text.
     pub const fn is_picture(self) -> bool {
         matches!(self, Format::Frame | Format::Timing)
     }

@@ -231,19 +231,19 @@ impl Field {
         self.last.saturating_sub(self.first) + 1
     }
 
-    /// It carries nothing.
+    /// Returns whether the field carries nothing.
     pub const fn is_zeros(&self) -> bool {
         matches!(self.kind, Kind::Before | Kind::Between | Kind::Behind | Kind::Gap | Kind::After)
     }
 
-    /// It is a bit of its own, however many stand beside it.
+    /// Returns whether the field is a single bit, however many stand beside it.
     pub const fn is_single(&self) -> bool {
         matches!(self.kind, Kind::Error(_) | Kind::Parity)
     }
 }
 
 impl Handle {
-    /// It stands on a clock and not between two.
+    /// Returns whether it is on a clock pulse rather than between two.
     pub const fn is_cell(self) -> bool {
         matches!(self, Handle::Error(_) | Handle::Parity | Handle::Position)
     }

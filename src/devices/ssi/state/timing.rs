@@ -173,7 +173,7 @@ impl Diagram {
         (1..=self.clocks()).map(|clock| Bit { clock, from: comes(clock), to: comes(clock + 1).min(burst) }).collect()
     }
 
-    /// From where to where a field is on the data line, in seconds.
+    /// Returns the start and end of a field on the data line, in seconds.
     pub fn field(&self, field: &Field) -> (f64, f64) {
         let period = self.timing.period.as_secs_f64();
         let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
@@ -188,7 +188,7 @@ impl Diagram {
         (burst, (burst + least.as_secs_f64()).min(cycle), (burst + most.as_secs_f64()).min(cycle))
     }
 
-    /// From when on the next bits come, in seconds.
+    /// Returns when the next bits come, in seconds.
     pub fn next(&self) -> f64 {
         self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
     }

@@ -23,7 +23,7 @@ pub(super) struct TrialUiState {
 }
 
 impl TrialUiState {
-    /// Something is being typed; what was refused only stands there.
+    /// Returns whether the user is typing, rather than an entry that was refused.
     fn is_typed_in(&self) -> bool {
         let numbers = [&self.position, &self.turns, &self.steps];
         self.bits.is_some() || numbers.into_iter().flatten().any(|(_, problem)| problem.is_none())

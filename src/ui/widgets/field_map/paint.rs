@@ -101,7 +101,7 @@ fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     }
 }
 
-/// As much of a caption as fits: its parts, separated by ` · `, fall away from the end.
+/// Returns the part of a caption that fits: parts separated by ` · ` are dropped from the end.
 fn fitting(ui: &Ui, theme: &Theme, caption: &str, room: f32) -> Option<std::sync::Arc<egui::Galley>> {
     let mut rest = caption;
     while !rest.is_empty() {

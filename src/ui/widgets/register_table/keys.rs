@@ -66,7 +66,7 @@ fn walk(key: Key, modifiers: Modifiers, lines: &Lines, view: &mut RegisterView) 
     true
 }
 
-/// To the next line that can be selected: bit fields are passed.
+/// Moves to the next line that can be selected, skipping bit fields.
 fn step(at: usize, lines: &Lines, view: &mut RegisterView, next: impl Fn(usize) -> Option<usize>) -> bool {
     let mut line = at;
     while let Some(to) = next(line) {

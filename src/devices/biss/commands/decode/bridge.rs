@@ -60,7 +60,7 @@ fn meaning(packet: &Packet) -> Result<Vec<String>, String> {
     }
 }
 
-/// As the reference calls it.
+/// Returns the name in the reference.
 fn name(operation: Operation) -> &'static str {
     match operation {
         Operation::Hello => "HELLO",

@@ -27,7 +27,7 @@ pub(super) fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explaine
     explained
 }
 
-/// Of the frame that begins these bytes, as its header says.
+/// Returns the length of the frame that begins these bytes, from its header.
 fn length(bytes: &[u8]) -> usize {
     match bytes {
         [_, _, _, low, high, ..] => usize::from(u16::from_le_bytes([*low, *high])) + Frame::OVERHEAD,

@@ -35,7 +35,7 @@ impl<'a> Master<'a> {
         Adapter { line: &mut self.line, state: &mut self.station.line, adapter: &mut self.station.adapter }
     }
 
-    /// As [`be_ready_for`](Self::be_ready_for), with the widths that are known.
+    /// Prepares the bus like [`be_ready_for`](Self::be_ready_for), with the known widths.
     pub(super) fn be_ready_on_bus(&mut self) -> Result<(), Error> {
         let layout = self.station.frame();
         self.be_ready_for(layout.data_bits(), layout.crc_bits())

@@ -50,7 +50,7 @@ impl Master<'_> {
         })
     }
 
-    /// Something may be under way in the encoder that needs its power.
+    /// Returns whether the encoder may be doing something that needs its power.
     fn is_unfinished(&mut self) -> Result<bool, Error> {
         if self.station.unfinished {
             return Ok(true);

@@ -137,7 +137,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.standing.activity = activity;
     }
 
-    /// Back to operation and without the password, whatever has happened. Nothing is sent where it is so already.
+    /// Returns the encoder to operation and clears the password, whatever has happened. Sends nothing if it is in
+    /// operation already.
     pub(in crate::devices::biss::procedures) fn lead_back(&mut self) -> Result<(), Error> {
         let Some(lock) = self.description.lock().filter(|_| !self.standing.is_in_operation()) else { return Ok(()) };
         self.step(ProcedureStep::LeadBack);
@@ -372,8 +373,8 @@ fn set_mode(master: &mut Master<'_>, lock: Lock, mode: DeviceMode, standing: &mu
     ended
 }
 
-/// From whatever mode to operation, and the password cleared. A calibration that runs is let finish: leaving it would
-/// lose the table. Gives back the mode in which it was.
+/// Returns the encoder to operation from any mode and clears the password. A running calibration is allowed to finish:
+/// leaving it would lose the table. Returns the mode in which the encoder was.
 pub(super) fn lead_back(
     master: &mut Master<'_>,
     description: &Description,

@@ -52,14 +52,14 @@ impl<T: Copy + PartialEq> Possible<T> {
         self.0.contains(&value)
     }
 
-    /// It may be this as well.
+    /// Adds a possible value.
     pub fn or(&mut self, value: T) {
         if !self.may_be(value) {
             self.0.push(value);
         }
     }
 
-    /// Something is written that makes it `after`; how that ended tells what it is then.
+    /// Records a write that sets the value to `after`; its result decides what the value is known to be.
     pub(super) fn becomes(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = Possible::known(after),
@@ -79,7 +79,7 @@ impl LeftState {
         }
     }
 
-    /// It is certainly in operation, without the password.
+    /// Returns whether it is certainly in operation, without the password.
     pub fn is_in_operation(&self) -> bool {
         self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
     }

@@ -52,12 +52,12 @@ impl SpeedRange {
 }
 
 impl Run {
-    /// It needs rising positions.
+    /// Returns whether it needs rising positions.
     pub const fn is_clockwise(self) -> bool {
         matches!(self, Run::CalibrationClockwise | Run::WiegandClockwise)
     }
 
-    /// It is part of the calibration.
+    /// Returns whether it is part of the calibration.
     pub const fn calibrates(self) -> bool {
         matches!(self, Run::CalibrationCounterclockwise | Run::CalibrationClockwise)
     }
@@ -212,7 +212,7 @@ impl Demand {
         }
     }
 
-    /// Nothing stands against a start.
+    /// Returns whether nothing prevents a start.
     pub fn is_ready(&self) -> bool {
         self.blockers.is_empty()
     }
@@ -246,7 +246,7 @@ pub enum Answer {
 
 /// The person beside the motor.
 pub trait Operator {
-    /// Something is asked for the first time: whatever was answered before that belongs to something else.
+    /// Begins a question: earlier answers belong to another one.
     fn begins(&mut self) {}
 
     /// Asked again and again, a few times a second, each time with a new measurement.

@@ -56,7 +56,7 @@ struct File {
 }
 
 impl File {
-    /// Everything that has a name of its own.
+    /// Returns everything that has a name of its own.
     fn names(&mut self) -> impl Iterator<Item = &mut Name> {
         let registers = self.registers.0.iter_mut().flat_map(|register| {
             let values: Box<dyn Iterator<Item = &mut Name>> = match &mut register.decoding {

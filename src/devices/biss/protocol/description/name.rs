@@ -16,17 +16,17 @@ impl Name {
         Name { english: english.into(), german: None }
     }
 
-    /// In English.
+    /// Returns the English name.
     pub fn english(&self) -> &str {
         &self.english
     }
 
-    /// In German; in English where the description has no German name for it.
+    /// Returns the German name; the English one if the description has none.
     pub fn german(&self) -> &str {
         self.german.as_deref().unwrap_or(&self.english)
     }
 
-    /// It has none.
+    /// Returns whether there is no name.
     pub fn is_empty(&self) -> bool {
         self.english.is_empty()
     }

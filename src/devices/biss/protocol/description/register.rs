@@ -135,12 +135,12 @@ pub struct Area {
 }
 
 impl Access {
-    /// It can be read.
+    /// Returns whether it can be read.
     pub const fn reads(self) -> bool {
         matches!(self, Access::R | Access::Rw)
     }
 
-    /// It can be written.
+    /// Returns whether it can be written.
     pub const fn writes(self) -> bool {
         matches!(self, Access::W | Access::Rw)
     }

@@ -111,12 +111,12 @@ pub fn wiegand_needs() -> Text {
     speeds(TEXTS.text("mounting_card.wiegand_words"), Run::WiegandClockwise.allowed())
 }
 
-/// With the temperatures of a calibration.
+/// Adds the temperatures of a calibration.
 pub(super) fn temperatures(text: Text) -> Text {
     text.with("coldest", Demand::CELSIUS.start()).with("warmest", Demand::CELSIUS.end())
 }
 
-/// With the slowest and the fastest speed.
+/// Adds the slowest and the fastest speed.
 pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }

@@ -162,7 +162,7 @@ pub fn weight(text: &Text) -> Severity {
     }
 }
 
-/// In which state an encoder was left that could not be led back.
+/// Returns the state in which an encoder was left that could not be returned to operation.
 fn left(standing: &LeftState) -> Vec<Text> {
     let mut texts = vec![match standing.mode.values() {
         [certain] => TEXTS.text("biss_left.mode").with_text("mode", mode(*certain)),

@@ -38,7 +38,7 @@ const FIRST: Duration = Duration::from_secs(1);
 const HEADER: usize = 4;
 
 impl Connection {
-    /// At the moment at which it was opened; the first packet is due at once.
+    /// Creates the connection at the time it was opened; the first packet is due at once.
     pub fn new(opened: &Opened, now: Moment) -> Self {
         // An interval of nothing would never end.
         let interval = |interval: Duration| interval.max(Duration::from_millis(1));
@@ -71,7 +71,7 @@ impl Connection {
         self.layout
     }
 
-    /// When the next packet is due.
+    /// Returns when the next packet is due.
     pub const fn poll_at(&self) -> Moment {
         self.next
     }

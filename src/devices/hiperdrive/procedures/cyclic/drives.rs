@@ -40,7 +40,7 @@ const LADDER: Duration = Duration::from_millis(700);
 const OFF: u32 = 3;
 
 impl Drives {
-    /// At the moment at which the connection was opened. No act up to `spent` moves anything.
+    /// Creates the drives at the time the connection was opened. No act up to `spent` moves anything.
     pub fn new(opened: &Opened, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
         let placed = drives.iter().filter(|drive| drive.get() <= places);
@@ -63,12 +63,12 @@ impl Drives {
         self.lost.as_ref()
     }
 
-    /// Nothing may begin any more.
+    /// Returns whether nothing may begin any more.
     pub const fn is_ending(&self) -> bool {
         self.ending.is_some()
     }
 
-    /// Nothing is to be sent any more: the connection is to be closed.
+    /// Returns whether nothing is to be sent any more: the connection is to be closed.
     pub fn is_over(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= OFF);
         off || matches!(self.lost, Some(CyclicLost::DoesNotStand(_) | CyclicLost::Port(_)))
@@ -99,7 +99,7 @@ impl Drives {
         true
     }
 
-    /// When [`poll`](Self::poll) has something to send.
+    /// Returns when [`poll`](Self::poll) has something to send.
     pub const fn poll_at(&self) -> Moment {
         self.connection.poll_at()
     }

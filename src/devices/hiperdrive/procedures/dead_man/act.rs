@@ -257,7 +257,7 @@ impl Intent {
     /// How long a refresh stays valid. It has to be repeated every 100 ms.
     pub const FRESH: Duration = Duration::from_millis(250);
 
-    /// Nothing is wanted.
+    /// Creates an act that requests nothing.
     pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
         Intent { drive, wish: MotionRequest::Rest, number, refreshed: now }
     }
@@ -269,7 +269,7 @@ impl Intent {
 }
 
 impl MotionRequest {
-    /// It makes the drive move. A pause does not.
+    /// Returns whether the act makes the drive move. A pause does not.
     pub const fn moves(self) -> bool {
         matches!(
             self,
@@ -350,7 +350,7 @@ const fn percent(percent: u8) -> Percent {
 }
 
 impl Default for Permit {
-    /// Nothing: as long as a drive's parameters were not read.
+    /// Returns the permit for nothing, as long as a drive's parameters were not read.
     fn default() -> Self {
         Permit { limits: None, locks: vec![Lock::Unread], endless: false, doubted: false, degree: 1 }
     }

@@ -147,7 +147,7 @@ impl DeadMan {
         }
     }
 
-    /// Nothing begins yet, but the word is one from which it can.
+    /// Sends a word from which a motion can begin; nothing begins yet.
     fn arm(&mut self, now: Moment, actual: Actual, motive: Motive) {
         let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(motive, Motive::Run { .. });

@@ -56,7 +56,7 @@ pub(super) struct Mark {
 const REPORTS: u64 = 2;
 
 impl Mark {
-    /// Something has been heard since `earlier`, which is so long ago.
+    /// Returns whether something was heard since `earlier`, and that is `time` ago.
     pub(super) fn is_past(self, earlier: Mark, time: Duration) -> bool {
         self.at.since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }

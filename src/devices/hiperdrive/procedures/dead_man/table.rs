@@ -59,7 +59,7 @@ impl Bench {
         (0..count).for_each(|_| self.cycle());
     }
 
-    /// In this phase of the table.
+    /// Returns the row of the table for this phase.
     fn in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: Effort::JOG };
         let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };

@@ -120,7 +120,7 @@ impl Motion {
 }
 
 impl Watch {
-    /// At the beginning of a motion.
+    /// Creates the watch at the beginning of a motion.
     pub(super) fn begin(motion: &Motion, actual: Actual, permit: &Permit) -> Self {
         let limits = motion.limits(permit);
         let outside = limits.and_then(|_| permit.outside(actual));

@@ -72,7 +72,7 @@ impl Connections {
         self.cyclic.is_some()
     }
 
-    /// When something is to be sent next.
+    /// Returns when something is to be sent next.
     pub(super) fn due(&self) -> Option<Moment> {
         self.cyclic.as_ref().map(Cyclic::due)
     }
@@ -226,7 +226,7 @@ impl Plant {
         }
     }
 
-    /// With parameter words or without, the same both ways.
+    /// Returns the layout, with or without parameter words in both directions.
     fn layout(&self, open: &ForwardOpen) -> Result<Layout, Refusal> {
         let topology = self.station.topology();
         let layouts = [true, false].map(|pkw| Layout { topology, pkw, order: self.order });
@@ -236,7 +236,7 @@ impl Plant {
         if usize::from(open.to_originator.size()) == back { Ok(layout) } else { Err(TO_ORIGINATOR_SIZE) }
     }
 
-    /// To the message router.
+    /// Opens an explicit connection to the message router.
     fn open_explicit(&mut self, session: u32, open: &ForwardOpen) -> Result<u32, Refusal> {
         let connections = &mut self.connections;
         if connections.explicit.iter().any(|explicit| explicit.owner == open.owner) {

@@ -44,7 +44,7 @@ impl Cyclic {
         }
     }
 
-    /// When the next packet goes.
+    /// Returns when the next packet is due.
     pub(super) const fn due(&self) -> Moment {
         self.next
     }

@@ -104,7 +104,7 @@ impl Target {
         self.lock().figures
     }
 
-    /// It has closed this TCP connection.
+    /// Returns whether it has closed this TCP connection.
     pub const fn has_ended(&self) -> bool {
         self.ended
     }

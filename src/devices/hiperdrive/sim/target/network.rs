@@ -40,7 +40,7 @@ const MEGABITS: u32 = 100;
 const LINK_UP: u32 = 0x03;
 
 impl Network {
-    /// As delivered: DHCP.
+    /// Creates the settings as delivered: DHCP.
     pub(super) fn new(switch: u8, serial_number: u16) -> Self {
         let [high, low] = serial_number.to_be_bytes();
         let mac = [0x02, 0x00, 0x00, 0x00, high, low];
@@ -66,7 +66,7 @@ impl Network {
             if stored { self.stored.clone() } else { InterfaceConfiguration { address: GIVEN, mask: NETWORK, ..NONE } };
     }
 
-    /// As delivered again; the address is kept until the supply is switched.
+    /// Restores the factory settings; the address is kept until the supply is switched.
     pub(super) fn factory(&mut self) {
         (self.control, self.stored) = (dhcp(), NONE);
     }

@@ -141,14 +141,14 @@ impl Plant {
         self.datagrams = Queue::default();
     }
 
-    /// Something has come: whether it is heard.
+    /// Notes that something has arrived; returns whether it is heard.
     pub(super) fn hears(&mut self) -> bool {
         let speaks = self.speaks();
         self.heard = self.heard.saturating_add(1);
         speaks && !self.station.is_dead(self.now)
     }
 
-    /// It has not fallen silent.
+    /// Returns whether it has not fallen silent.
     pub(super) fn speaks(&self) -> bool {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }

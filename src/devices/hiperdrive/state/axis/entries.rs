@@ -71,10 +71,10 @@ impl Entries {
         }
     }
 
-    /// Of the spindle.
+    /// Returns the pitch of the spindle.
     ///
     /// # Errors
-    /// In words.
+    /// A text.
     pub fn pitch(&self) -> Result<Length, Text> {
         length("hd_axis.pitch", &self.pitch, 1000.0)
     }

@@ -27,14 +27,14 @@ impl Axis {
         }
     }
 
-    /// To the next step, where this one is done; `when`: the time, as it is written.
+    /// Goes to the next step if this one is done; `when` is the time as written in the report.
     pub(crate) fn go_on(&mut self, seen: &Seen, when: &str) {
         if self.over.is_none() && self.may_go_on(seen).is_ok() {
             self.leave(seen, false, when);
         }
     }
 
-    /// To the next step without this one, where that may be left out.
+    /// Skips this step, if that is allowed.
     pub(crate) fn skip(&mut self, seen: &Seen, when: &str) {
         if self.over.is_none() && self.may_skip(seen) {
             self.leave(seen, true, when);
@@ -63,7 +63,7 @@ impl Axis {
         }
     }
 
-    /// To the step before, or to the one that has to be done again. What was written stays.
+    /// Goes to the previous step, or to the one that has to be repeated. Values that were written stay.
     pub(crate) fn back(&mut self, seen: &Seen) {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;

@@ -63,7 +63,8 @@ impl Power {
         Power::On(Before::default()).followed(seen)
     }
 
-    /// While it is on, the latest counts. As long as the mark is there, it was not off since the mark was set.
+    /// Takes the latest values while the supply is on. As long as the mark is there, the supply was not off since it
+    /// was set.
     pub(super) fn followed(self, seen: &Seen) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
@@ -82,7 +83,7 @@ impl Power {
         }
     }
 
-    /// It has stopped answering.
+    /// Notes that the drive has stopped answering.
     pub(super) const fn gone(self) -> Self {
         match self {
             Power::On(before) | Power::Gone(before) | Power::Back { before, .. } => Power::Gone(before),

@@ -243,7 +243,7 @@ pub fn changes(axis: &Axis) -> Text {
     TEXTS.text("hd_axis.was_written").with_list("changes", last.map(|(_, own)| change(own)))
 }
 
-/// As the number that was written: the scale may be another by now.
+/// Returns the change with the number that was written: the scale may have changed since.
 fn change(own: &AxisChange) -> Text {
     let text = TEXTS.text("hd_axis.changed");
     match own {

@@ -96,7 +96,7 @@ pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, e
     }
 }
 
-/// Without the cyclic connection nothing moves, nor in a fault.
+/// Draws the button that takes control. Nothing moves without the cyclic connection, nor in a fault.
 fn control(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = say(theme, "hd_axis.take");

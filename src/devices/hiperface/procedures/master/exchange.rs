@@ -80,7 +80,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Before each exchange: the user's wish, the dead time, and silence on the line.
+    /// Prepares an exchange: checks for a request to end, then waits for the dead time and for silence on the line.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let quiet = self.quiet();
         Ok(self.line.begin(&mut self.station.line, quiet)?)

@@ -220,7 +220,7 @@ pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
     if ready { Ok(()) } else { Err(TEXTS.text("commutation.not_ready")) }
 }
 
-/// From one position to the other, in periods, the short way round within a revolution.
+/// Returns the distance between two positions in periods, the shorter way within a revolution.
 fn apart(from: f64, to: f64, periods: u32) -> f64 {
     let turn = f64::from(periods);
     let forward = (to - from).rem_euclid(turn);

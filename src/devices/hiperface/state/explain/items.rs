@@ -7,7 +7,7 @@ use crate::devices::hiperface::profile::{EntryError, FieldRange, Item, PlanItem}
 use crate::devices::hiperface::state::TEXTS;
 use crate::profile::Cause;
 
-/// Something that can be read.
+/// Returns the name of an item that can be read.
 pub fn item(item: &Item) -> Text {
     match item {
         Item::Field(range) => field_range(range),

@@ -60,7 +60,7 @@ fn define(field: u8, from: Option<DataFieldStatus>, to: DataFieldStatus) -> OpWo
     }
 }
 
-/// Only what an operation changes of a field: that is what has to be looked at.
+/// Returns only the properties of a field that an operation changes.
 fn differing(from: DataFieldStatus, to: DataFieldStatus) -> Vec<(Text, Text)> {
     let size = |status: DataFieldStatus| TEXTS.text("op.size").with("size", status.size().bytes());
     let code = |status: DataFieldStatus| TEXTS.text("op.code").with("code", status.code());

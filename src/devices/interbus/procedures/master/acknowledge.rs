@@ -26,11 +26,11 @@ impl Master<'_> {
         self.set_again(command, 0)
     }
 
-    /// As [`set`](Self::set), for a word whose echo proves nothing: `question` reads out what it sets, and it is sent again
-    /// where that is not there, each time watched for longer.
+    /// Sets like [`set`](Self::set), for a word whose echo proves nothing: `question` reads the value back, and the
+    /// word is repeated until it is there, each time with a longer wait.
     ///
     /// # Errors
-    /// As [`set`](Self::set); [`Error::NotTaken`] with what it is called by `item`.
+    /// As [`set`](Self::set); [`Error::NotTaken`] with the name `item`.
     pub(in crate::devices::interbus::procedures) fn set_and_read_out(
         &mut self,
         command: Command,
@@ -57,7 +57,7 @@ impl Master<'_> {
         self.acknowledged(command, tried, false)
     }
 
-    /// As [`set`](Self::set), for a word that an encoder may also take without a word, and go on (`U`).
+    /// Sets like [`set`](Self::set), for a word that an encoder may also take without a reply, and goes on (`U`).
     pub(super) fn tell_to(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;

@@ -33,12 +33,12 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// It does not hold yet.
+    /// Creates the check; the condition does not hold yet.
     pub(super) const fn new(timeless: bool) -> Self {
         Held { timeless, cycles: 0, since: None, lasted: Duration::ZERO }
     }
 
-    /// It holds in the cycle that ends now, or it does not.
+    /// Takes whether the condition holds in the cycle that ends now.
     pub(super) fn go_on(&mut self, holds: bool, now: Moment) {
         if !holds {
             *self = Held::new(self.timeless);
@@ -64,7 +64,7 @@ impl Held {
         self.cycles >= least && self.lasts(duration)
     }
 
-    /// From the first of these cycles to the last.
+    /// Returns the time from the first of these cycles to the last.
     pub(super) const fn lasted(self) -> Duration {
         self.lasted
     }

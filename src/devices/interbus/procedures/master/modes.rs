@@ -105,7 +105,7 @@ impl Master<'_> {
         }
     }
 
-    /// From now on this is what the encoder is led back to.
+    /// Makes the present mode the one to which the encoder is returned.
     pub(in crate::devices::interbus::procedures) fn stay(&mut self) {
         self.found = self.is;
     }
@@ -159,7 +159,7 @@ impl Master<'_> {
         self.go(mode)
     }
 
-    /// It was sent nothing, or nothing but normal running stands.
+    /// Returns whether the encoder was sent nothing, or is in normal operation.
     fn is_as_found(&self) -> bool {
         let rests = matches!(self.out, None | Some(Command::Normal));
         rests && !self.lost && !self.parameterising && !self.unsure && self.is == self.found
@@ -201,7 +201,7 @@ impl Master<'_> {
         Err(Error::NoMode { wanted, is })
     }
 
-    /// Back to what the encoder did when it was found.
+    /// Returns the encoder to the mode in which it was found.
     fn lead_back(&mut self) -> Result<(), Error> {
         if self.out.is_none() {
             return Ok(());

@@ -45,7 +45,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Something is set in the program that runs.
+    /// Notes that a value of the running program is set.
     pub(super) fn sets_program(&mut self) {
         self.notes.is_set = matches!(self.is, Some(StartupMode::Cams(_)));
     }
@@ -73,7 +73,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// It is about to be sent into this mode.
+    /// Notes that the encoder is about to be sent into this mode.
     pub(super) fn note_switch(&mut self, wanted: StartupMode) -> Result<(), Error> {
         if let Some(StartupMode::Cams(_)) = self.is
             && !std::mem::take(&mut self.notes.is_set)

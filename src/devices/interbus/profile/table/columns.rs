@@ -22,7 +22,7 @@ const WORDS: [(Column, &[&str]); 5] = [
 ];
 
 impl Columns {
-    /// As a header names them; `None` where it names neither a start nor a stop.
+    /// Finds the columns by their header; `None` if it names neither a start nor a stop.
     pub(super) fn of_header(cells: &[&str]) -> Option<Self> {
         let mut places: Vec<(Column, usize)> = Vec::new();
         for (place, cell) in cells.iter().enumerate() {
@@ -38,7 +38,7 @@ impl Columns {
         has_edge.then_some(Columns { places, cam_or_name })
     }
 
-    /// Without a header: by how many there are.
+    /// Guesses the columns by their number, without a header.
     pub(super) fn of_count(count: usize) -> Self {
         use Column::{Cam, Name, Program, Start, Stop};
         let order: &[Column] = match count {

@@ -23,7 +23,7 @@ impl Setting<'_> {
         Ok(())
     }
 
-    /// There are 8 cams: more of them are wrong data (reference 6.9, `U`).
+    /// Activates cams. More than 8 are wrong data (reference 6.9, `U`).
     pub(super) fn activate(&mut self, mask: u16) -> Result<(), Fault> {
         self.0.mask = u8::try_from(mask).map_err(|_| Fault::WrongData)?;
         Ok(())

@@ -15,7 +15,7 @@ pub enum Hold {
 }
 
 impl Hold {
-    /// Whose lane.
+    /// Returns the cam of the lane.
     pub const fn cam(self) -> CamNumber {
         match self {
             Hold::Edge(cam, _) | Hold::Whole(cam) | Hold::New(cam) => cam,
@@ -23,8 +23,8 @@ impl Hold {
     }
 }
 
-/// With an edge further along by so many steps; back where that is below 0. A cam keeps at least one position, and at
-/// most all of them; what lies beyond the range is brought within it.
+/// Returns the cam with an edge moved by this many steps; backwards if negative. A cam keeps at least one position, and
+/// at most all of them; positions beyond the range are brought within it.
 pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (start, stop) = (i64::from(cam.start.get()), i64::from(cam.stop.get()));
@@ -51,7 +51,7 @@ pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     with(start, Edge::Stop, i64::from(cam.stop.get()) + by, whole)
 }
 
-/// From where the pointer was pressed to where it is, whichever comes first. It may go over the ends of the range.
+/// Returns the cam between two positions of the pointer, in either order. It may pass the ends of the range.
 pub fn drawn(from: i64, to: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     let (first, last) = (from.min(to), from.max(to));

@@ -19,7 +19,7 @@ impl Snap {
     /// Nothing draws.
     pub const OFF: Snap = Snap { reach: 0.0, apart: None, edges: false };
 
-    /// Everything does, in a chart with so many steps a point: within six points, on a grid of at least ten.
+    /// Snaps to everything, in a chart with this many steps a point: within six points, on a grid of at least ten.
     pub const fn on(steps_in_point: f64) -> Self {
         Snap { reach: steps_in_point * REACH, apart: Some(steps_in_point * GRID), edges: true }
     }
@@ -30,8 +30,8 @@ const REACH: f64 = 6.0;
 /// Least distance of the lines of the grid, in points.
 const GRID: f64 = 10.0;
 
-/// By how much something that would be moved by `by` steps is moved instead: an edge of the cam as it was comes to the
-/// nearest of what draws it, else to a whole step.
+/// Returns the number of steps to move instead of `by`: an edge of the original cam snaps to the nearest target, else
+/// to a whole step.
 pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &Snap) -> i64 {
     let whole = by.round() as i64;
     let edges: &[Edge] = match hold {

@@ -21,7 +21,7 @@ pub fn layout(table: &CamTable) -> Text {
     TEXTS.text(id).with("count", table.rows.len()).with_text("delimiter", TEXTS.text(delimiter))
 }
 
-/// Something that could not be taken, with where it stands.
+/// Returns the text of a problem in a table, with its location.
 pub fn problem(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
     text.with_text("what", wrong(&problem.what))
@@ -51,7 +51,7 @@ fn wrong(wrong: &Wrong) -> Text {
     }
 }
 
-/// Something about what was taken.
+/// Returns the text of a note about what was read.
 pub fn note(note: &TableNote) -> Text {
     match note {
         TableNote::Pulses { program, name, cams } => {

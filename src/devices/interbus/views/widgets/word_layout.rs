@@ -86,7 +86,7 @@ impl WordLayout<'_> {
         CamOutput::bit(bit, self.shift).unwrap_or(CamBit::Zero)
     }
 
-    /// From the highest bit on.
+    /// Returns the groups from the highest bit on.
     fn groups(&self) -> Vec<Group> {
         let mut groups: Vec<Group> = Vec::new();
         for bit in (0..BITS).rev() {

@@ -72,7 +72,7 @@ pub(super) fn any_other(
     }
 }
 
-/// In the place of a parity: a zero behind the position, or an error bit, that the code goes over.
+/// Returns the alternatives to a parity bit: a zero after the position, or an error bit included in the code.
 fn over_zero(frame: &Descriptor, parity: Parity) -> [Descriptor; 2] {
     let none = Descriptor { parity: None, ..frame.clone() };
     let mut errors = frame.errors.clone();

@@ -59,7 +59,7 @@ pub(super) fn members(
     found
 }
 
-/// In binary, exchanged wires only turn the direction.
+/// Returns the inversions to try. In binary, swapped wires only reverse the direction.
 fn inversions(read: &Read) -> &'static [bool] {
     match (read.reading.code, read.reading.inverted) {
         (Code::Binary, _) if read.reading.steps.is_none() => &[false, true],

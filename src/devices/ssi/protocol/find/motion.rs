@@ -27,7 +27,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Of numbers that begin again behind `round`; 0: behind all 64 bits.
+    /// Analyses numbers that wrap after `round`; 0: after all 64 bits.
     pub(super) fn of(numbers: &[Option<u64>], round: u64) -> Self {
         let steps: Vec<Option<i64>> = numbers
             .iter()

@@ -193,7 +193,7 @@ impl Read {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
 
-    /// From this frame to the next the numbers begin again, and the motion goes on.
+    /// Returns whether the numbers wrap between this frame and the next while the motion continues.
     pub(super) fn passes_end(&self, index: usize) -> bool {
         let pair = self.numbers.get(index).copied().flatten().zip(self.numbers.get(index + 1).copied().flatten());
         let step = self.motion.steps.get(index).copied().flatten();

@@ -209,7 +209,7 @@ fn plus(value: u8, by: i16) -> Option<u8> {
     u8::try_from(i16::from(value) + by).ok()
 }
 
-/// With other numbers of bits for turns and steps; both keep one at least.
+/// Returns the range with other numbers of bits for turns and steps; each keeps at least one.
 fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
     let Range::Bits { multiturn, singleturn } = range else { return None };
     let multiturn = plus(multiturn, turns).filter(|bits| *bits > 0)?;
@@ -217,7 +217,7 @@ fn resized(range: Range, turns: i16, steps: i16) -> Option<Range> {
     Some(Range::Bits { multiturn, singleturn })
 }
 
-/// With another number of bits, of which there is one kind only; one stays at least.
+/// Returns the range with another number of bits, if it has only one kind; at least one remains.
 fn resized_one(range: Range, by: i16) -> Option<Range> {
     let more = |bits| plus(bits, by).filter(|bits| *bits > 0);
     match range {

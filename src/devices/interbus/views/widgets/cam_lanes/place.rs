@@ -37,7 +37,7 @@ impl PlotArea {
         Vec2::new(width, rulers + Program::CAMS as f32 * LANE)
     }
 
-    /// In a rectangle of that size.
+    /// Creates the area in a rectangle.
     pub(super) fn new(outer: Rect, view: VisibleRange, gap: f32) -> Self {
         let top = outer.top() + RULER;
         let bottom = top + Program::CAMS as f32 * LANE;

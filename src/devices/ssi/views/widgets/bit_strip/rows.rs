@@ -53,7 +53,7 @@ impl Rows {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
 
-    /// With its lines where so many lines of names below each leave them, and its upper left corner there.
+    /// Places the rows at an upper left corner, with room for `names` lines of labels below each.
     pub(super) fn at(mut self, origin: Pos2, names: &[usize]) -> Self {
         self.origin = origin + Vec2::new(MARGIN, 0.0);
         let mut top = 0.0;
