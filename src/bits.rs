@@ -67,7 +67,7 @@ impl MaskedBytes {
         self.0.len()
     }
 
-    /// No byte at all.
+    /// Returns whether there are no bytes.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }

@@ -84,7 +84,8 @@ impl Motor {
         sensible.then_some(SecondVector { pole_pairs: pole_pairs as u32, ratio })
     }
 
-    /// Whole revolutions are left out: multiplied by the pole pairs they would cost digits of the fraction.
+    /// Returns the revolutions within one turn: whole ones, multiplied by the pole pairs, would cost digits of the
+    /// fraction.
     fn revolutions(&self, periods: f64) -> f64 {
         periods.rem_euclid(f64::from(self.periods)) / f64::from(self.periods)
     }

@@ -221,7 +221,7 @@ impl Correction {
     }
 }
 
-/// Names what is wrong with points that have no area.
+/// Returns the reason why points without area do not fit.
 fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);

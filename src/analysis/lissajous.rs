@@ -64,8 +64,8 @@ impl Square {
 }
 
 impl Density {
-    /// No samples yet, in `side` × `side` cells, at least one and at most [`MOST_CELLS`] a side. `None` where the square is
-    /// none.
+    /// Creates an empty picture of `side` × `side` cells, at least one and at most [`MOST_CELLS`] a side. `None` for an
+    /// empty square.
     pub fn new(square: Square, side: usize) -> Option<Self> {
         let Square { cosine_v, sine_v, half_v } = square;
         if !(cosine_v.is_finite() && sine_v.is_finite() && half_v.is_finite() && half_v > 0.0) {
@@ -174,7 +174,7 @@ fn sector(sine: f64, cosine: f64) -> usize {
     ((share * SECTORS as f64) as usize).min(SECTORS - 1)
 }
 
-/// Least and greatest of the values that are numbers.
+/// Returns the least and greatest of the values that are numbers.
 fn range(values: &[f64]) -> Option<(f64, f64)> {
     let finite = |value: f64| value.abs() < f64::INFINITY;
     let (groups, rest) = values.as_chunks::<4>();

@@ -51,7 +51,7 @@ impl Scale {
 }
 
 impl Moments {
-    /// No sample yet.
+    /// Creates the moments without samples.
     pub fn new(scale: Scale) -> Self {
         let (least, most) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
         Moments { scale, count: 0, sums: [0.0; ROW * ROW], least, most }

@@ -72,7 +72,7 @@ impl Brakes {
         self.0.released.load(Ordering::SeqCst)
     }
 
-    /// No drive is connected.
+    /// Returns whether no drive is connected.
     pub fn is_done(&self) -> bool {
         !self.sessions().iter().any(|(brake, _)| brake.is_connected())
     }

@@ -65,7 +65,7 @@ impl Studio {
         }
     }
 
-    /// Tells that something was meant for another kind of device; nothing goes on moving.
+    /// Reports that an action was meant for another kind of device, and stops all motion.
     pub(super) fn refuse_kind(&mut self, about: Option<&str>) {
         self.stop_motion();
         self.services.tell(Severity::Error, vec![Text::new("session.wrong_kind")], about);

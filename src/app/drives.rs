@@ -87,7 +87,7 @@ pub trait RemembersDrives {
     /// Returns whether the settings were read since control was taken.
     fn marks(&self) -> Marks;
 
-    /// Says whether the settings were read since control was taken: before that nothing moves.
+    /// Sets whether the settings were read since control was taken: nothing moves before.
     fn set_marks(&mut self, marks: Marks);
 }
 

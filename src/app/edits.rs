@@ -59,7 +59,7 @@ impl<B: EditBase> Edits<B> {
         self.history.step(&mut self.edits, after);
     }
 
-    /// Takes edits back, as one step that can be undone. False where none is meant.
+    /// Undoes the edits that `is_meant` selects, as one step. False if there are none.
     pub fn take_back(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));

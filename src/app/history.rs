@@ -43,7 +43,7 @@ impl<T> History<T> {
         true
     }
 
-    /// Does the last undone step again. False when there is none.
+    /// Redoes the last undone step. False if there is none.
     pub(crate) fn redo(&mut self, now: &mut T) -> bool {
         let Some(after) = self.redo.pop() else { return false };
         self.undo.push(std::mem::replace(now, after));

@@ -119,7 +119,7 @@ impl HoldState {
         }
     }
 
-    /// Takes what came, by the clock of the pictures.
+    /// Takes the input of a frame at a time of the window's clock.
     pub fn take(&mut self, now: f64, input: HoldInput) {
         let Some(scene) = self.scene else { return };
         match input {

@@ -79,7 +79,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.polling()
     }
 
-    /// Takes samples from now on, or no more.
+    /// Starts or stops polling.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) {
         self.worker.poll(interval);
     }

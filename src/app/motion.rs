@@ -17,7 +17,7 @@ impl Studio {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
 
-    /// Some drive moves, as far as is known here, or is about to.
+    /// Returns whether a drive is known to move, or is about to.
     pub fn moves(&self) -> bool {
         self.motions().any(MotionControl::is_moving)
     }

@@ -140,7 +140,7 @@ impl Studio {
         }
     }
 
-    /// Another attempt to open a link for a session: from now on only its result counts.
+    /// Opens a link for a session once more: only the result of this attempt counts.
     fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);

@@ -17,10 +17,10 @@ pub trait PendingEdits {
     /// Undoes the last step. False where nothing has changed.
     fn undo(&mut self) -> bool;
 
-    /// Does the last undone step again. False where nothing has changed.
+    /// Redoes the last undone step. False if there is none.
     fn redo(&mut self) -> bool;
 
-    /// Takes all edits back, as one step that can be undone. False where there are none.
+    /// Discards all edits as one step that can be undone. False if there are none.
     fn revert(&mut self) -> bool;
 
     /// The edits were written or saved: what led to them cannot be undone any more.

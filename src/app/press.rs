@@ -57,7 +57,8 @@ impl FreshKeys {
         *self.of(key) = Seen::Released(now);
     }
 
-    /// Another key goes down. Only the key that was pressed last repeats itself: one of which nothing is known does not.
+    /// Notes that another key was pressed. Only the key pressed last repeats itself, so a repeat of an unknown key is
+    /// ignored.
     pub fn press_other(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -67,8 +68,8 @@ impl FreshKeys {
         }
     }
 
-    /// Another key goes down, which is not typed into a text entry: a press at once after it is no person's. A barcode
-    /// scanner types digits and Enter that fast.
+    /// Notes that another key was pressed outside a text entry: a press immediately after it is not a person's, because
+    /// a barcode scanner types digits and Enter that fast.
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);

@@ -135,7 +135,7 @@ impl Settings {
         }
     }
 
-    /// Takes over what is remembered of drives.
+    /// Takes over the remembered drives.
     pub(super) fn take_drives(&mut self, from: &Settings) {
         self.drives = from.drives.clone();
     }

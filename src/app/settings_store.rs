@@ -108,7 +108,7 @@ impl SettingsStore {
         (settings, keeper)
     }
 
-    /// Takes over what was read; what the user has set meanwhile stays.
+    /// Takes over the settings that were read; changes by the user since then stay.
     pub(super) fn take(&mut self, read: SettingsRead, settings: &mut Settings, services: &mut Services) {
         services.log.settle("session.settings_slow", None);
         let kinds = services.world.kinds;
@@ -203,7 +203,7 @@ impl SettingsStore {
         self.unseen = self.looking.take();
     }
 
-    /// Handles settings that were read. While a write is pending, whose result tells what it found, they are returned.
+    /// Merges settings that were read. During a write they are returned instead: its result is merged later.
     pub(crate) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
         self.looked = self.looking.take();
         if self.busy.is_some() {
@@ -222,7 +222,7 @@ impl SettingsStore {
         age.is_none_or(|age| age > than)
     }
 
-    /// Takes over what others have written about drives.
+    /// Takes over what other windows have written about drives.
     fn meet(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
         settings.take_drives(found);

@@ -95,7 +95,7 @@ impl Left for End {
     }
 }
 
-/// Two links that lead to the same wire.
+/// Returns whether two links lead to the same wire.
 pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
     one.wire() == other.wire() && one.wire() != Wire::Inside
 }
@@ -122,7 +122,7 @@ impl Services {
         self.leaving.push(Leaving { who, ending });
     }
 
-    /// Takes what those that were let go still tell.
+    /// Takes the events of sessions that are ending.
     pub(super) fn pump_leaving(&mut self) {
         let mut told = Vec::new();
         self.leaving.retain_mut(|leaving| {
@@ -148,12 +148,12 @@ impl Services {
         }
     }
 
-    /// One that was let go still writes.
+    /// Returns whether an ending session still writes.
     pub(super) fn leaves_writing(&self) -> bool {
         self.leaving.iter().any(|leaving| leaving.who.write.is_some())
     }
 
-    /// Returns those that still hold a wire, with the time they get.
+    /// Returns the sessions that are ending on the wire of a link, with the time each gets.
     pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn Left>, Duration)> {
         let own = self.leaving.iter().filter(|leaving| same_wire(&leaving.who.url, url));
         own.map(|leaving| (leaving.ending.clone(), self.patience_with(leaving.who.write.is_some()))).collect()

@@ -81,7 +81,7 @@ impl Studio {
         }
     }
 
-    /// Does what is asked.
+    /// Carries out an action.
     pub fn act(&mut self, action: Action) {
         self.devices.iter_mut().for_each(|device| device.may_have_changed());
         match self.with_whole_path(action) {
@@ -205,7 +205,7 @@ impl Studio {
         &self.devices
     }
 
-    /// One of them.
+    /// Returns an open device.
     pub fn device(&self, id: SessionId) -> Option<&AnyDevice> {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }

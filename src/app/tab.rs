@@ -17,7 +17,7 @@ impl Tab {
         Tab(name)
     }
 
-    /// Its name in the settings, which is no word for people.
+    /// Returns the name in the settings.
     pub fn name(self) -> &'static str {
         self.0
     }
@@ -79,8 +79,8 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
-/// Names that were read from settings: also of tabs that this program does not have, whose links another one goes on with.
-/// Each is kept once, as long as the program runs.
+/// Interns a name that was read from settings, including tabs that this program does not have: another version keeps
+/// using their links. Each name is kept once for the life of the process.
 fn kept(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

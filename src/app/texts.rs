@@ -205,7 +205,7 @@ impl Catalogue {
         Some(Text { catalogue: self, id, arguments: Vec::new() })
     }
 
-    /// Names of all texts.
+    /// Returns the ids of all texts.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.rows().keys().map(String::as_str)
     }

@@ -27,7 +27,7 @@ pub trait ToolKind: Sync {
 
 /// A tab that needs no device.
 pub trait Tool: Any {
-    /// Does what is asked.
+    /// Carries out an action.
     ///
     /// # Errors
     /// The action is for something else.
@@ -120,7 +120,7 @@ impl Studio {
         self.tools.iter().find_map(|(_, tool)| tool.get())
     }
 
-    /// Does what is asked of a tool.
+    /// Carries out an action of a tool.
     pub(super) fn act_tool(&mut self, tab: Tab, action: Payload) {
         let Some(at) = self.tools.iter().position(|(own, _)| *own == tab) else { return self.refuse_kind(None) };
         let (_, mut tool) = self.tools.remove(at);

@@ -303,8 +303,8 @@ impl<W: Watchable> Track<W> {
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Another device: nothing of what was recorded is about it, and of minutes that no table has it stays. What is watched
-    /// is watched on.
+    /// Forgets the recording of the previous device, unless minutes of it are not exported. Watched values stay
+    /// watched.
     pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
@@ -346,7 +346,7 @@ impl<W: Watchable> Track<W> {
         self.follower = Some(Follower::new(meaning.clone()));
     }
 
-    /// Other lines for positions of this meaning, in the place of those that were.
+    /// Replaces the lines with those for positions of this meaning.
     fn part(&mut self, meaning: &Meaning) {
         let has_samples = self.positions() > 0;
         let group = self.recorder.add_group(&COLUMNS, CAPACITY, Some(APART));

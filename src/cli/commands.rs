@@ -86,7 +86,7 @@ pub trait DeviceCommands: Sync {
     /// The kind as it is written on the command line and in profiles.
     fn name(&self) -> &'static str;
 
-    /// One sentence on the kind, for the help.
+    /// Returns one sentence about the kind, for the help.
     fn about(&self) -> &'static str;
 
     /// Returns additional sentences for the help of the program.
@@ -173,7 +173,7 @@ pub trait DeviceCommands: Sync {
 
 /// A command that a kind of device, or a part of the program beside the devices, has for itself.
 pub trait OwnCommand: Sync {
-    /// Its name, options and help.
+    /// Returns the name, options and help.
     fn command(&self) -> clap::Command;
 
     /// Runs it with what was given.
@@ -185,7 +185,7 @@ pub trait ProtocolDecoder: Sync {
     /// Returns the word on the command line.
     fn name(&self) -> &'static str;
 
-    /// One sentence on the protocol, for the help.
+    /// Returns one sentence about the protocol, for the help.
     fn about(&self) -> &'static str;
 
     /// Returns the help of `decode` for these bytes.

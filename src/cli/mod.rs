@@ -99,7 +99,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands
     }
 }
 
-/// Says why there is no window. Returns the status with which the process ends.
+/// Prints why there is no window. Returns the exit status.
 pub fn no_window(why: &str) -> u8 {
     end(Err(Failure::Failed(vec![why.to_owned()])))
 }

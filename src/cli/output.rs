@@ -78,7 +78,7 @@ impl Output {
         })
     }
 
-    /// Says something that is not a result.
+    /// Prints something that is not a result.
     pub fn remark(&self, text: &str) {
         say(&format!("{text}\n"));
     }

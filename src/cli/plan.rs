@@ -108,7 +108,7 @@ impl WriteSummary {
     }
 }
 
-/// Tells what the logbook could not take.
+/// Reports what the logbook could not record.
 pub(crate) fn warn(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
         output.remark(&explain::logbook(why).terminal());

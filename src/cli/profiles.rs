@@ -32,7 +32,7 @@ pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     Ok(document.body)
 }
 
-/// Says what is to be known of it.
+/// Reports notes about the document.
 fn remark(output: &Output, path: &Path, document: &Document) -> Result<()> {
     explain::profile_remarks(path, document).iter().for_each(|words| say(&format!("{}\n", words.terminal())));
     if let Some(words) = output.commands().device(document.body.kind())?.remark(&document.body) {
@@ -96,7 +96,7 @@ pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     profile.into_profile().map_err(|error| failed(&explain::profile(&restore.file, &error, Kinds::NONE)))
 }
 
-/// Says which values of another device's mounting are left as they are.
+/// Reports which values of another device's mounting are left unchanged.
 pub(crate) fn say_mounting_left(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!(

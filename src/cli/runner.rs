@@ -39,7 +39,7 @@ pub trait Runs: Kind {
     /// Makes a session ready, with what the options of every command give.
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
-    /// Says at once what the device said on the way.
+    /// Prints a message of the device at once.
     fn print_message(remark: &Self::DeviceMessage);
 
     /// A step, beside the bar at a terminal.

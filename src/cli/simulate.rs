@@ -144,7 +144,7 @@ impl Device {
         }
     }
 
-    /// One line on stdout that scripts wait for.
+    /// Prints a line that scripts wait for.
     fn ready(&self, place: &str) -> Result<()> {
         let mut out = std::io::stdout().lock();
         writeln!(out, "ready {} {place}", self.kind)
@@ -329,7 +329,7 @@ mod terminal {
         }
     }
 
-    /// No client has the other side open.
+    /// Returns whether no client has the other side open.
     fn hung_up(master: &mut TTYPort) -> bool {
         let _ = master.set_timeout(Duration::ZERO);
         matches!(Read::read(master, &mut []), Err(error) if error.kind() != ErrorKind::TimedOut)

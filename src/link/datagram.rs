@@ -38,10 +38,10 @@ pub trait Datagrams: Send {
 
 /// Opens channels for packets to and from a target.
 pub trait DatagramPort: Send {
-    /// Takes a port of ours.
+    /// Opens a local port.
     ///
     /// # Errors
-    /// When there is none, or no way to the target.
+    /// There is none, or no way to the target.
     fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError>;
 }
 

@@ -154,7 +154,7 @@ impl<'a> SerialLine<'a> {
         })
     }
 
-    /// Takes what comes, at most until `until`.
+    /// Receives bytes, at most until `until`.
     ///
     /// # Errors
     /// The wire.
@@ -167,7 +167,7 @@ impl<'a> SerialLine<'a> {
         self.passed = Some(Vec::new());
     }
 
-    /// Takes what came too late or behind a reply since it is kept, and keeps no more of it.
+    /// Takes the bytes that came too late or after a reply since they are kept, and stops keeping them.
     pub(crate) fn take_passed(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }

@@ -104,7 +104,7 @@ impl Cancel {
         self.0.wished.store(true, Ordering::SeqCst);
     }
 
-    /// Takes the wish back, for the next job.
+    /// Withdraws the request, for the next job.
     pub fn reset(&self) {
         self.0.wished.store(false, Ordering::SeqCst);
     }

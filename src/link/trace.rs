@@ -49,12 +49,12 @@ impl fmt::Debug for Trace {
 }
 
 impl Trace {
-    /// Tells every frame from now on to `watcher`, which must not wait.
+    /// Reports every further frame to `watcher`, which must not wait.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
         self.watchers.push(Box::new(watcher));
     }
 
-    /// Tells a frame to all who watch.
+    /// Reports a frame to all watchers.
     pub fn record(&mut self, at: Moment, direction: Direction, bytes: MaskedBytes) {
         if bytes.is_empty() {
             return;

@@ -4,7 +4,8 @@ use super::source::{Carried, Change, applied, carry, changes, lost};
 use super::{Document, Formats, ProfileError};
 
 impl Document {
-    /// Its text where `text` stood: what says the same stays as it is written, with comments, order and line ends.
+    /// Returns the document in place of `text`: what is equal stays as it is written, with comments, order and line
+    /// ends.
     pub fn emit_over(&self, text: &str, formats: Formats) -> Carried {
         let own = self.emit();
         let before = Document::parse(text, formats).map(|before| before.emit());

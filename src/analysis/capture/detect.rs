@@ -210,7 +210,7 @@ fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
     fields.iter().map(|field| field.trim_ascii().to_vec()).collect()
 }
 
-/// Some number has a comma, and none has a point.
+/// Returns whether some number has a comma and none has a point.
 fn decimal_comma(lines: &[HeaderLine]) -> bool {
     let numeric = |field: &&Vec<u8>| matches!(number(field, true), Number::Finite(_));
     let has = |byte: u8| lines.iter().flat_map(|line| &line.fields).filter(numeric).any(|field| field.contains(&byte));
@@ -250,7 +250,7 @@ fn filled(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
 
-/// Names, and a line of units where there is one: the last lines before the numbers that are as wide as these.
+/// Returns the names, and a line of units if there is one: the last lines before the numbers with as many columns.
 fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let wide = |line: &&HeaderLine| filled(&line.fields) >= width.min(2) && filled(&line.fields) + 1 >= width;
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();

@@ -159,7 +159,7 @@ impl Import {
         self.first_left_out.get_or_insert((row, why));
     }
 
-    /// One call of the splitter; bytes used.
+    /// Calls the splitter once; returns the number of bytes used.
     fn step(&mut self, bytes: &[u8]) -> Result<usize, CaptureError> {
         let row = self.row.get_mut(self.written..).unwrap_or_default();
         let ends = self.ends.get_mut(self.ended..).unwrap_or_default();
@@ -194,7 +194,7 @@ impl Import {
 }
 
 impl Taken {
-    /// Takes a row; gives what is missing in it where it is left out.
+    /// Takes a row; returns what is missing if the row is left out.
     fn take(
         &self,
         row: &[u8],

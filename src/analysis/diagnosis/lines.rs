@@ -76,7 +76,7 @@ pub(super) struct Seen {
     pub(super) radial_v2: f64,
 }
 
-/// `None` where the times are not even, or there is too little.
+/// Finds the lines; `None` if the times are not even, or there are too few samples.
 pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Seen> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
     let all = samples.time_s.get(..count)?;
@@ -203,7 +203,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     (middle < values.len()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Tells lines of the mains. 300 Hz and 600 Hz are of both: they go with what else is there.
+/// Names the lines of the mains. 300 Hz and 600 Hz belong to both frequencies: they follow the other lines present.
 fn name_mains(lines: &mut [Interference], spacing_hz: f64) {
     if spacing_hz > MAINS_SPACING_HZ {
         return;

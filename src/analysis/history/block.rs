@@ -121,8 +121,8 @@ impl<T: Number> Block<T> {
         self.values.len()
     }
 
-    /// Takes `values`, for which there is room, with their flags (none of them: nothing is remarkable). A value that is no
-    /// number is a bad one.
+    /// Appends `values`, for which there is room, with their flags (none: nothing is remarkable). A value that is not a
+    /// number is bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
         self.values.extend_from_slice(values);
@@ -344,7 +344,7 @@ impl Search {
     }
 }
 
-/// Least and greatest value of the samples in `range` that have one.
+/// Returns the least and greatest value of the samples in `range` that have one.
 fn extremes_within<T: Number>(values: &[T], flags: &FlagBlock, range: Range<usize>) -> Option<(T, T)> {
     flags.good(range).filter_map(|good| extremes(values.get(good)?)).reduce(|one, other| {
         (if other.0 < one.0 { other.0 } else { one.0 }, if other.1 > one.1 { other.1 } else { one.1 })

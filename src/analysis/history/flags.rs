@@ -19,7 +19,7 @@ impl Flags {
     /// The device warned; the value counts.
     pub const WARNING: Flags = Flags(4);
 
-    /// Every flag of `other` is set here.
+    /// Returns whether every flag of `other` is set.
     pub const fn contains(self, other: Flags) -> bool {
         self.0 & other.0 == other.0
     }

@@ -268,7 +268,7 @@ impl Column {
         }
     }
 
-    /// Takes the values of `part` in `range`; of another kind of values nothing, which `History::append` has ruled out.
+    /// Appends the values of `part` in `range`; ignores values of another kind, which `History::append` has ruled out.
     fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {

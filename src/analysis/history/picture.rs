@@ -184,7 +184,7 @@ impl<T: Number> Painter<'_, T> {
         }
     }
 
-    /// One sample as a pixel of its own.
+    /// Adds one sample as a pixel of its own.
     fn sample(&mut self, index: u64) {
         let (Some((value, flags)), Some(time)) = (self.series.get(index), self.history.time(index)) else { return };
         let good = !flags.contains(Flags::BAD);

@@ -23,7 +23,8 @@ impl<T: Number> Series<T> {
         Series { blocks: VecDeque::with_capacity(blocks), first: 0 }
     }
 
-    /// Takes `values`, for which there is room in the newest block or which begin a new one. At most `keep` blocks are kept.
+    /// Appends `values`, for which there is room in the newest block or which begin a new one. At most `keep` blocks
+    /// are kept.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags], keep: usize) {
         if self.blocks.back().is_none_or(|block| block.len() == BLOCK) {
             self.open(keep);
@@ -74,7 +75,7 @@ impl<T: Number> Series<T> {
         widen(widen(known, first, from..BLOCK), last, 0..to + 1)
     }
 
-    /// No sample near `range` has a flag: a quick look, which may miss that none in it has.
+    /// Returns whether no sample near `range` has a flag: a quick check that may return false although none in it has.
     pub(super) fn is_plain(&self, range: Range<u64>) -> bool {
         let ((first, _), (last, _)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
         let flagged = |block: usize| self.blocks.get(block).is_some_and(|block| block.flags().any() != Flags::NONE);

@@ -29,7 +29,7 @@ impl<T: Number> Spread<T> {
         Some(Spread { count: values.len() as u64, base, mean, squares, min, max })
     }
 
-    /// Both together.
+    /// Returns the union of both.
     pub(super) fn with(self, other: Self) -> Self {
         let (own, others) = (self.count as f64, other.count as f64);
         let all = own + others;
@@ -45,7 +45,7 @@ impl<T: Number> Spread<T> {
     }
 }
 
-/// Both together, where either may be nothing.
+/// Returns the union of two optional spreads.
 pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T>>) -> Option<Spread<T>> {
     match (one, other) {
         (Some(one), Some(other)) => Some(one.with(other)),
@@ -53,7 +53,7 @@ pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T
     }
 }
 
-/// Least and greatest of `values`, which are all numbers. Eight side by side, as with the sums.
+/// Returns the least and greatest of `values`, which are all numbers; eight are compared in parallel, as with the sums.
 pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
     let (groups, rest) = values.as_chunks::<8>();
     let of_groups = groups.split_first().map(|(first, others)| {
@@ -70,7 +70,7 @@ pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
     Some(rest.iter().fold(start, |(least, most), value| (lesser(least, *value), greater(most, *value))))
 }
 
-/// Least and greatest of eight values, which are all numbers.
+/// Returns the least and greatest of eight values, which are all numbers.
 pub(super) fn extremes_of_eight<T: Number>(values: &[T; 8]) -> (T, T) {
     (of_eight(*values, lesser), of_eight(*values, greater))
 }

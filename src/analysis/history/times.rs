@@ -21,12 +21,12 @@ impl Times {
         Times { blocks: VecDeque::with_capacity(blocks), starts: VecDeque::with_capacity(blocks), first: 0 }
     }
 
-    /// Absolute index of the oldest sample that is still there.
+    /// Returns the absolute index of the oldest sample stored.
     pub(super) fn first(&self) -> u64 {
         self.first
     }
 
-    /// Absolute index of the next sample.
+    /// Returns the absolute index of the next sample.
     pub(super) fn end(&self) -> u64 {
         let last = self.blocks.back().map_or(0, Vec::len);
         self.first + (self.blocks.len().saturating_sub(1) * BLOCK + last) as u64
@@ -46,7 +46,8 @@ impl Times {
         self.blocks.get(at / BLOCK)?.get(at % BLOCK).copied()
     }
 
-    /// Takes `times`, for which there is room in the newest block or which begin a new one. At most `keep` blocks are kept.
+    /// Appends `times`, for which there is room in the newest block or which begin a new one. At most `keep` blocks are
+    /// kept.
     pub(super) fn append(&mut self, times: &[Time], keep: usize) {
         let Some(start) = times.first() else { return };
         if self.room() == 0 {
@@ -68,7 +69,7 @@ impl Times {
         }
     }
 
-    /// Absolute index of the first sample at or after `time`; the end when there is none.
+    /// Returns the absolute index of the first sample at or after `time`; the end if there is none.
     pub(super) fn search(&self, time: Time) -> u64 {
         let Some(number) = self.starts.partition_point(|start| *start < time).checked_sub(1) else { return self.first };
         let inside = self.blocks.get(number).map_or(0, |block| search_in(block, time));

@@ -70,7 +70,7 @@ impl<'a> FinderContext<'a> {
         self.studio.question = Some(Question::other_master(url, Then::Find(self.tab)));
     }
 
-    /// Says why what was asked for was not done.
+    /// Reports why a request was not carried out.
     pub fn refuse(&mut self, problem: Text) {
         self.problem = Some(problem);
     }

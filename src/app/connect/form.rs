@@ -47,13 +47,13 @@ pub trait Finder: Default + 'static {
     /// The results of its tasks.
     type Done: Any + Send;
 
-    /// Does what is asked.
+    /// Carries out an action.
     fn act(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
     /// Handles the result of a task; `None` where the dialog was closed meanwhile.
     fn done(finder: Option<&mut Self>, done: Self::Done, services: &mut Services);
 
-    /// Goes on after the user has said that no other master is on the line.
+    /// Goes on after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, _context: &mut FinderContext<'_>) {}
 
     /// Looks what has happened since the last time.
@@ -124,12 +124,12 @@ pub trait AnyForm {
     /// # Errors
     /// They are of another kind of device.
     fn edit(&mut self, entries: Payload) -> Result<(), WrongKind>;
-    /// Does what its finder is asked for. Returns whether it has filled in the form.
+    /// Passes an action to the finder. Returns whether it has filled in the form.
     ///
     /// # Errors
-    /// It is of another kind of device.
+    /// The action is of another kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, WrongKind>;
-    /// Goes on after the user has said that no other master is on the line.
+    /// Goes on after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, context: &mut FinderContext<'_>);
     /// Looks what its finder has come to.
     fn pump(&mut self);

@@ -47,7 +47,7 @@ impl Typed {
 pub(crate) struct Parameters(Vec<Pair>);
 
 impl Parameters {
-    /// One that is not as usual.
+    /// Sets a parameter that differs from its default.
     pub(crate) fn set(&mut self, name: &str, value: &str) {
         self.0.push((name.to_owned(), value.to_owned()));
     }

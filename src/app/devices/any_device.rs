@@ -26,7 +26,7 @@ impl AnyDevice {
         (self as &mut dyn Any).downcast_mut()
     }
 
-    /// Its number in the studio.
+    /// Returns the number of the session in the studio.
     pub fn id(&self) -> SessionId {
         self.state().id
     }
@@ -55,7 +55,7 @@ impl AnyDevice {
         &mut self.state_mut().phase
     }
 
-    /// Its link is being opened.
+    /// Returns whether its link is being opened.
     pub(in crate::app) fn is_opening(&self) -> bool {
         self.state().opening.is_some()
     }

@@ -38,10 +38,10 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         Box::new(|_| ())
     }
 
-    /// Takes the session of a link that was opened for it.
+    /// Takes over the session of the link that was opened for it.
     fn connect(&mut self, opened: Opened<Self::Device>, services: &mut Services);
 
-    /// Does what this kind alone can be asked for.
+    /// Carries out an action of this kind of device.
     fn act(&mut self, action: Self::Action, context: &mut ActContext<'_>);
 
     /// Handles the result of a task that this device started.
@@ -66,7 +66,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         vec![self.record_mut().recorder_mut()]
     }
 
-    /// Does what every device can be asked for.
+    /// Carries out a command that every device has.
     fn command(&mut self, command: DeviceCommand, services: &mut Services) {
         match command {
             // The studio opens links, and knows other sessions.
@@ -100,7 +100,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.submit(Self::Device::survey(), services);
     }
 
-    /// Takes a step through the edits.
+    /// Undoes or redoes an edit.
     fn step(&mut self, step: EditStep) {
         step(self.pending_mut());
     }
@@ -110,7 +110,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.session().ask_where_to_save(services);
     }
 
-    /// Its positions can come as a stream, thousands a second.
+    /// Returns whether its positions can be streamed, thousands a second.
     fn streams(&self) -> bool {
         false
     }
@@ -137,7 +137,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The reason why nothing is written into such a device.
     fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text>;
 
-    /// Does something with the memory, or says why there is none.
+    /// Calls `act` with the memory, or reports why there is none.
     fn with_memory<R>(
         &mut self,
         services: &mut Services,
@@ -269,7 +269,7 @@ pub trait DeviceMemory {
     /// Returns the review of a write, where one is on its way.
     fn sheet(&self) -> Option<ReviewSheet>;
 
-    /// Does what is asked of the review.
+    /// Carries out an action of the review.
     fn act_review(&mut self, action: ReviewAction, services: &mut Services);
 
     /// Closes the review; what is being written goes on.
@@ -293,10 +293,10 @@ pub trait DeviceMemory {
     /// Reads a backup, to be restored.
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
-    /// Takes the lists of backups and writes; those of another device than the one that is connected are dropped.
+    /// Takes the lists of backups and writes; drops those of another device.
     fn listed(&mut self, of: &DeviceKey, listed: Listed);
 
-    /// Takes a backup that was read, or not; one of another device than the one that is connected is dropped.
+    /// Takes a backup that was read, or the error; drops one of another device.
     fn take_backup(
         &mut self,
         of: &DeviceKey,

@@ -33,11 +33,11 @@ pub trait OpenDevice: Any {
     fn tab(&self) -> Tab;
     /// The device lives in this process.
     fn is_virtual(&self) -> bool;
-    /// Its line is open.
+    /// Returns whether its line is open.
     fn is_connected(&self) -> bool;
     /// Returns whether a job runs on its line.
     fn is_busy(&self) -> bool;
-    /// Its memory is being changed.
+    /// Returns whether its memory is being changed.
     fn is_writing(&self) -> bool;
     /// Returns whether the device is polled.
     fn is_polling(&self) -> bool;
@@ -49,7 +49,7 @@ pub trait OpenDevice: Any {
     fn is_readable(&self) -> bool;
     /// A profile of it can be saved now.
     fn is_savable(&self) -> bool;
-    /// Its positions can come as a stream, thousands a second.
+    /// Returns whether its positions can be streamed, thousands a second.
     fn streams(&self) -> bool;
     /// Returns the job that runs.
     fn running(&self) -> Option<Progressing>;
@@ -61,9 +61,9 @@ pub trait OpenDevice: Any {
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
-    /// Its edits come back after it was closed.
+    /// Returns whether its edits come back after it is closed.
     fn keeps_edits(&self) -> bool;
-    /// Every edit is on disk, as far as the disk takes it.
+    /// Returns whether every edit is on disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were taken and dropped before they were recorded.
     fn dropped(&self) -> u64;

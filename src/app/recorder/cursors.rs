@@ -127,7 +127,7 @@ impl Recorder {
         }
     }
 
-    /// Both to a third of what is visible of the samples, or away.
+    /// Shows both cursors at the thirds of the visible samples, or hides them.
     pub(super) fn show_cursors(&mut self, shown: bool) {
         if !shown {
             self.cursors = [None; 2];

@@ -135,12 +135,12 @@ impl Recorder {
         Recorder { counts: true, ..Recorder::new(samples.saturating_mul(SAMPLE)) }
     }
 
-    /// Ends the recording, so that a trigger which has not fired is reported as missed.
+    /// Marks the recording as complete: no further samples come, so a trigger has fired or never will.
     pub(crate) fn finish(&mut self) {
         self.finished = true;
     }
 
-    /// Its times are numbers of samples.
+    /// Returns whether its times are numbers of samples.
     pub fn counts(&self) -> bool {
         self.counts
     }
@@ -163,7 +163,7 @@ impl Recorder {
         id
     }
 
-    /// Takes a line away, with its samples when no other line shows some of the same group.
+    /// Removes a line, with its samples unless another line shows some of the same group.
     pub(in crate::app) fn remove_line(&mut self, id: LineId) {
         let Some(at) = self.lines.iter().position(|line| line.id == id) else { return };
         let group = self.lines.remove(at).group;
@@ -210,7 +210,7 @@ impl Recorder {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
 
-    /// Does what is asked.
+    /// Carries out an action.
     pub fn act(&mut self, action: RecorderAction) {
         match action {
             RecorderAction::Show(id, shown) => self.with_line(id, |line| line.shown = shown),

@@ -29,7 +29,7 @@ impl Permit {
     /// In the order in which they stand.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
 
-    /// Its words, as a row of the texts.
+    /// Returns the id of its text.
     pub const fn word(self) -> &'static str {
         match self {
             Permit::OtherDevice => "review.allow_other",

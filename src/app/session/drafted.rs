@@ -72,7 +72,7 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Takes what a task comes back with.
+    /// Takes the result of a task.
     fn take_draft(&mut self, done: DraftDone, services: &mut Services) {
         let (key, name, dirty) = (self.draft_key(), self.session().name(), !self.edited().is_nothing());
         if let Some(edits) = self.session_mut().drafting.take(done, key.as_ref(), dirty, &name, services) {
@@ -99,12 +99,12 @@ pub trait Drafted: HasSession {
         self.session_mut().drafting.keep(key, edits, services);
     }
 
-    /// Its edits come back after it was closed.
+    /// Returns whether its edits come back after it is closed.
     fn keeps_edits(&self) -> bool {
         self.session().drafting.has_looked() && self.draft_key().is_some()
     }
 
-    /// Another device comes, or none: what is edited for this one stays on disk.
+    /// Leaves the edits of the previous device on disk: another device comes, or none.
     fn leave_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
         self.session_mut().drafting.leave(key, edits, services);

@@ -142,8 +142,8 @@ impl<E: DraftEdits> Drafting<E> {
         });
     }
 
-    /// Takes what a task comes back with: the edits of an earlier time, where there are some. What is said of another
-    /// device's or profile's draft than `own` is old by now; edits that were made meanwhile (`dirty`) are newer.
+    /// Takes the result of a task: the edits of an earlier session, if any. A result about another draft than `own` is
+    /// out of date; edits made meanwhile (`dirty`) are newer.
     pub(in crate::app) fn take(
         &mut self,
         done: DraftDone,
@@ -248,12 +248,12 @@ impl<E: DraftEdits> Drafting<E> {
         self.looked
     }
 
-    /// Every edit is on disk, as far as the disk takes it.
+    /// Returns whether every edit is on disk, as far as the disk accepts it.
     pub(in crate::app) fn is_kept(&self) -> bool {
         !self.busy
     }
 
-    /// Another device comes, or none: what is edited for this one stays on disk.
+    /// Leaves the edits of the previous device on disk: another device comes, or none.
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key

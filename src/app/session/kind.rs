@@ -24,7 +24,7 @@ pub trait Kind: Device + Sized {
     /// A write on its way: the [`Review`](crate::app::review::Review) of a kind with a memory.
     type Review;
 
-    /// Takes that before the session goes to its thread.
+    /// Returns the handle of a session before the session moves to its thread.
     fn session_handle(session: &Session<Self>) -> Self::SessionHandle;
 
     /// Opens links to such devices.

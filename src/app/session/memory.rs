@@ -161,8 +161,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Another device answers than the one that was read before: what was edited for that one stays on disk, where it has a
-    /// serial number to be kept under.
+    /// Handles the exchange of the device: the edits for the previous one stay on disk, if it has a serial number.
     fn replaced_by(&mut self, serial: &str, services: &mut Services) {
         if self.pending().is_dirty() {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());

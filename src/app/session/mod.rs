@@ -168,7 +168,7 @@ impl<D: Kind> Session<D> {
         self.line.as_ref().is_some_and(|line| line.running().is_some())
     }
 
-    /// Its memory is being changed.
+    /// Returns whether its memory is being changed.
     pub fn is_writing(&self) -> bool {
         self.line.as_ref().and_then(LiveSession::running).is_some_and(|running| running.writes)
     }
@@ -198,7 +198,7 @@ impl<D: Kind> Session<D> {
         self.is_ready() || self.phase == Phase::Offline
     }
 
-    /// Its link is open.
+    /// Takes over the opened line.
     pub fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
         self.opening = None;
         self.trace.begin(opened.began.clone());

@@ -109,7 +109,7 @@ pub trait Saved: WithMemory {
 /// Most remarks of one kind that are said one by one.
 const SAID: usize = 3;
 
-/// Some things in words, the first of many with how many more there are.
+/// Returns some items in words: the first of many, with the number of the others.
 pub(crate) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));

@@ -80,7 +80,7 @@ pub trait SessionEvents: HasSession {
         self.try_submit(job, services);
     }
 
-    /// Takes what has come over the line since the last time.
+    /// Takes the events of the line since the last call.
     fn pump(&mut self, services: &mut Services) {
         self.poll_line(services);
     }
@@ -97,7 +97,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Takes what was sampled and what has passed since the last time.
+    /// Takes the samples and frames since the last call.
     fn take_samples_and_frames(&mut self) {
         let Some(line) = &mut self.session_mut().line else { return };
         let (samples, dropped) = line.samples();
@@ -112,7 +112,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// Takes one thing that the line tells.
+    /// Handles an event of the line.
     fn take(&mut self, event: Event<Self::Device>, services: &mut Services) {
         match event {
             Event::Started(_) => {}

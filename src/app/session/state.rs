@@ -80,7 +80,7 @@ impl SessionState {
         }
     }
 
-    /// Tells the log who has answered for the first time since the link was opened, and what is to be known of it.
+    /// Logs the first answer since the link was opened, with facts about the device.
     pub fn log_answer(&self, facts: Vec<Text>, services: &mut Services) {
         let Source::Link(url) = &self.source else { return };
         let texts = std::iter::once(Text::new("log.answers").with("link", without_secrets(url))).chain(facts).collect();
@@ -101,7 +101,7 @@ impl SessionState {
         services.note(Severity::Error, why, Some(&self.name()));
     }
 
-    /// Tells of this device; in the log alone what stands where it was asked for.
+    /// Reports something about this device; only in the log if it is already shown where it was requested.
     pub(crate) fn say(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
         match stands_there {
             true => services.note(severity, texts, Some(&self.name())),

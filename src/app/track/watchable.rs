@@ -9,7 +9,7 @@ use crate::units::Moment;
 
 /// A value that can be watched.
 pub trait Watchable: Clone + PartialEq {
-    /// Its values are whole numbers.
+    /// Returns whether its values are whole numbers.
     fn is_whole(&self) -> bool;
 
     /// Returns its name and units.

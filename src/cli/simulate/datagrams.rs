@@ -19,7 +19,7 @@ const TRIES: usize = 50;
 /// More than any packet has.
 const ROOM: usize = 2048;
 
-/// Both of a port, of IP version 4. Where the port is 0, one that is free for both.
+/// Binds a TCP and a UDP socket to the same port of IPv4. Port 0 selects one that is free for both.
 pub(super) fn bind(address: &str) -> std::io::Result<(TcpListener, UdpSocket, SocketAddrV4)> {
     let mut last = std::io::Error::from(ErrorKind::AddrNotAvailable);
     for place in address.to_socket_addrs()? {
@@ -56,10 +56,10 @@ impl Served {
         Served { socket, device: Mutex::new(device), clock }
     }
 
-    /// Takes and sends packets until the program is interrupted.
+    /// Receives and sends packets until the program is interrupted.
     ///
     /// # Errors
-    /// Where there are no threads.
+    /// No thread could be started.
     pub(super) fn start<'scope>(
         &'scope self,
         scope: &'scope Scope<'scope, '_>,
@@ -96,7 +96,7 @@ impl Served {
         }
     }
 
-    /// Does something to the device, sends what is due, and says how long nothing more is.
+    /// Calls `work` with the device, sends what is due, and returns how long nothing more is.
     fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);

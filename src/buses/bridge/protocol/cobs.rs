@@ -41,7 +41,7 @@ pub fn encode(bytes: &[u8]) -> Vec<u8> {
     stuffed
 }
 
-/// Takes the stuffing out. The 00 that ends a packet is not among the bytes.
+/// Removes the stuffing. The 00 that ends a packet is not among the bytes.
 ///
 /// # Errors
 /// [`CobsError`].

@@ -53,7 +53,7 @@ impl Receiver {
         }
     }
 
-    /// Takes the bytes of the broken packet that was dropped last; `None` where none was since.
+    /// Takes the bytes of the broken packet that was dropped last; `None` if there was none since.
     pub const fn take_broken(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }

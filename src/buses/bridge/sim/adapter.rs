@@ -143,7 +143,7 @@ impl Adapter {
         }
     }
 
-    /// Other faults from now on; requests and stores are counted on.
+    /// Replaces the faults; requests and stores keep their counts.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.faults = faults.clone();
         if let Some(device) = &mut self.bus.biss {

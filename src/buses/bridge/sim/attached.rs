@@ -9,7 +9,7 @@ use crate::units::Moment;
 /// A position and registers on BiSS. Its motor turns the shaft that all encoders at an adapter share, and its supply is
 /// theirs.
 pub trait BissDevice: Any + Send {
-    /// Another one like it.
+    /// Returns another device like it.
     fn another(&self) -> Box<dyn BissDevice>;
 
     /// The bits behind the control bit of the frame taken at a moment, and how many; `None` while it does not acknowledge.
@@ -24,10 +24,10 @@ pub trait BissDevice: Any + Send {
     /// Turns it at another speed from `now` on.
     fn set_rpm(&mut self, now: Moment, rpm: f64);
 
-    /// Other faults from now on.
+    /// Replaces the faults.
     fn set_faults(&mut self, faults: &Faults);
 
-    /// Takes the supply away.
+    /// Removes the supply.
     fn disconnect(&mut self);
 
     /// Gives the supply back to a device that has lost it.
@@ -36,7 +36,7 @@ pub trait BissDevice: Any + Send {
     /// Returns whether it has power; it may still be starting.
     fn has_power(&self) -> bool;
 
-    /// Its registers can be asked at `now`.
+    /// Returns whether its registers can be read at `now`.
     fn answers(&mut self, now: Moment) -> bool;
 
     /// A control frame can have this address.
@@ -51,7 +51,7 @@ pub trait BissDevice: Any + Send {
 
 /// An encoder whose words are clocked out of it.
 pub trait SsiDevice: Send {
-    /// Another one like it.
+    /// Returns another device like it.
     fn another(&self) -> Box<dyn SsiDevice>;
 
     /// The word taken at a moment and how many bits it has, with its shaft at a place of so many a revolution.
@@ -60,10 +60,10 @@ pub trait SsiDevice: Send {
 
 /// The device at the end of the serial line.
 pub trait SerialDevice: ByteDevice {
-    /// Another one like it.
+    /// Returns another device like it.
     fn another(&self) -> Box<dyn SerialDevice>;
 
-    /// Its shaft turns at another speed from `now` on.
+    /// Sets the speed of the shaft from `now` on.
     fn turn(&mut self, now: Moment, rpm: f64);
 }
 

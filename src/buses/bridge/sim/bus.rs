@@ -98,7 +98,7 @@ impl Bus {
         }
     }
 
-    /// One bit is inverted in some frames.
+    /// Inverts one bit in some frames.
     fn damaged(&mut self, frame: u64, bits: u8) -> u64 {
         if bits > 0 && self.rng.f64() < self.noise { frame ^ 1 << self.rng.u8(..bits) } else { frame }
     }

@@ -99,8 +99,7 @@ impl Clocked {
         self.pace.due()
     }
 
-    /// Takes the samples up to a moment, so that they are not changed by what happens then, and gives the packets that
-    /// are complete, each with its moment.
+    /// Takes the samples up to a time, before later changes, and returns the complete packets with their times.
     pub(super) fn run(&mut self, to: Moment, mut take: impl FnMut(Moment) -> (BissStatus, u64)) -> Vec<(Moment, Data)> {
         let mut packets = Vec::new();
         let before = self.pace.first;
@@ -155,7 +154,7 @@ impl Analog {
         self.pace.due()
     }
 
-    /// Other settings from a moment on.
+    /// Changes the settings from a time on.
     pub(super) fn change(&mut self, now: Moment, settings: Checked) {
         let elapsed = now.since(self.pace.start).as_nanos();
         let index = elapsed.div_ceil(self.pace.period.as_nanos().max(1));

@@ -173,7 +173,7 @@ impl ConnectionTimeout {
     /// The largest number: 512 intervals.
     const MOST: u8 = 7;
 
-    /// `None` beyond 7.
+    /// Returns the slot with this number; `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if number <= ConnectionTimeout::MOST { Some(ConnectionTimeout(number)) } else { None }
     }

@@ -78,7 +78,7 @@ impl Items {
         fields.end(Items(items))
     }
 
-    /// Its bytes. Of an item what is beyond 65535 bytes is cut.
+    /// Returns the bytes. An item is cut at 65535 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let most = usize::from(u16::MAX);
         // A frame holds fewer than that many.

@@ -81,7 +81,7 @@ impl Service {
 
     const REPLY_BIT: u8 = 0x80;
 
-    /// `None` from 80h on, where replies begin.
+    /// Returns the service; `None` from 80h on, where replies begin.
     pub const fn new(code: u8) -> Option<Self> {
         if code < Service::REPLY_BIT { Some(Service(code)) } else { None }
     }
@@ -177,7 +177,7 @@ impl Reply {
         Ok(Reply { service: Service(service), status, extended, data: fields.tail().to_vec() })
     }
 
-    /// Its bytes. Nothing of extended status beyond 255 words.
+    /// Returns the bytes, with at most 255 words of extended status.
     pub fn emit(&self) -> Vec<u8> {
         let extended = self.extended.get(..usize::from(u8::MAX)).unwrap_or(&self.extended);
         // At most 255.

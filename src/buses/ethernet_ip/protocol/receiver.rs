@@ -35,7 +35,7 @@ impl Receiver {
         })
     }
 
-    /// Takes the bytes that were no frame, or that are none yet.
+    /// Takes the bytes that did not form a frame.
     pub fn take_rest(&mut self) -> Vec<u8> {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }

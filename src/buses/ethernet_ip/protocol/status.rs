@@ -153,7 +153,7 @@ impl EncapsulationStatus {
         self.0
     }
 
-    /// Its row; `None` for what is not known.
+    /// Returns the row; `None` for an unknown status.
     pub fn row(self) -> Option<&'static StatusRow<EncapsulationStatus>> {
         ENCAPSULATION_STATUS.iter().find(|row| row.code == self)
     }
@@ -191,7 +191,7 @@ impl GeneralStatus {
         self.0
     }
 
-    /// Its row; `None` for what is not known.
+    /// Returns the row; `None` for an unknown status.
     pub fn row(self) -> Option<&'static StatusRow<GeneralStatus>> {
         GENERAL_STATUS.iter().find(|row| row.code == self)
     }

@@ -46,8 +46,8 @@ impl<'a> Frame<'a> {
     /// Bytes around the payload: five before it, one behind it.
     pub const OVERHEAD: usize = 6;
 
-    /// Takes a frame apart. The whole slice is the frame; its length is that of the header, whatever examples in the
-    /// manual print.
+    /// Parses a frame. The whole slice is the frame; its length is that of the header, whatever examples in the manual
+    /// print.
     ///
     /// # Errors
     /// [`FrameError`].

@@ -43,7 +43,7 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// Two letters, as all manufacturers have; else their bytes.
+/// Returns the two letters that all manufacturers have, else the bytes.
 fn manufacturer(identity: &Identity) -> String {
     let bytes = &identity.kind.manufacturer;
     let text = std::str::from_utf8(bytes).ok().filter(|text| text.chars().all(|c| c.is_ascii_graphic()));

@@ -41,7 +41,7 @@ impl Runs for Biss {
         }
     }
 
-    /// Every step of an operation, and what a person is to do.
+    /// Returns the text of each step of an operation, and of each task of the user.
     fn announce(doing: &JobStep) -> Option<String> {
         match doing {
             JobStep::Operation { item, news } => Some(format!("{item}: {}", words::step(news.step).terminal())),

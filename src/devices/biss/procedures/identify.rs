@@ -248,7 +248,7 @@ fn read_data_sheet(
     Ok(Some(DataSheet { common, encoder, layout }))
 }
 
-/// `None` where there is no such bank.
+/// Reads a data sheet; `None` if there is no such bank.
 fn read_sheet(
     master: &mut Master<'_>,
     which: EdsBank,

@@ -89,7 +89,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    /// Runs `work`, which returns the device to a safe state; a request to end is ignored meanwhile.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.shield(true);
         let result = work(self);
@@ -102,7 +102,7 @@ impl<'a> Master<'a> {
         self.line.shield(shielded)
     }
 
-    /// Does what an encoder may leave without an answer for so long: in it, reading is repeated until then, however often.
+    /// Runs `work`, which an encoder may leave unanswered for this long; reading is repeated until then.
     pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -110,7 +110,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Does what reads something that is to be kept: in it, every register has to come twice.
+    /// Runs `work`, which reads something that is kept; every register has to come twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);

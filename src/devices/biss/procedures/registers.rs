@@ -47,7 +47,7 @@ impl Registers {
         self.0.iter().map(|(address, value)| (*address, *value))
     }
 
-    /// Takes a run as it was read.
+    /// Takes a run of bytes that was read.
     pub(super) fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
         let places = (start.global()..).map_while(RegisterAddress::from_global);
         self.0.extend(places.zip(bytes.iter().copied()));

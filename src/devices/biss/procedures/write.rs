@@ -95,7 +95,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type Left = EndState;
 
-    /// Two new encoders have the same memory: it has to be the one for which the plan was made.
+    /// Checks that this is the encoder for which the plan was made, by its memory too: two new encoders have the same.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });

@@ -38,7 +38,7 @@ pub struct MountingRun {
 }
 
 impl MountingRun {
-    /// Some of it needs a motor.
+    /// Returns whether some of it needs a motor.
     pub fn needs_motor(&self) -> bool {
         self.calibrate || self.wiegand.is_some()
     }

@@ -42,7 +42,7 @@ impl Width {
         Width { multiturn: identity.multiturn_bits, singleturn: identity.singleturn_bits }
     }
 
-    /// One of both parts is known on both sides, and differs.
+    /// Returns whether a part is known on both sides and differs.
     fn differs(self, other: Self) -> bool {
         let parts = [(self.multiturn, other.multiturn), (self.singleturn, other.singleturn)];
         parts.into_iter().any(|(one, other)| one.zip(other).is_some_and(|(one, other)| one != other))

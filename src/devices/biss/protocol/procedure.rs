@@ -310,7 +310,7 @@ impl WiegandResult {
         [self.average_cw, self.lowest_cw, self.average_ccw, self.lowest_ccw].map(PulseVoltage::byte)
     }
 
-    /// Both directions lie above the limit.
+    /// Returns whether both directions are above the limit.
     pub fn passes(&self) -> bool {
         self.lowest_cw > PulseVoltage::LIMIT && self.lowest_ccw > PulseVoltage::LIMIT
     }

@@ -138,10 +138,10 @@ impl Layout {
         self.data_bits() + self.crc_bits()
     }
 
-    /// Takes a frame apart: its bits right-justified, the last one received in bit 0.
+    /// Parses a frame: its bits right-justified, the last one received in bit 0.
     ///
     /// # Errors
-    /// [`FrameError`]; a line that does not move is told from a wrong checksum.
+    /// [`FrameError`]; a line that does not change is told apart from a wrong checksum.
     pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
         let whole = ones(self.bits());
         if raw & !whole != 0 {

@@ -143,12 +143,12 @@ impl Encoder {
         self.watch_temperature();
     }
 
-    /// Other faults of its flash from now on; stores are counted on.
+    /// Replaces the faults of its flash; stores keep their count.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.die_in_store = faults.die_in_store();
     }
 
-    /// Its monitoring finds something, or no longer.
+    /// Sets the errors of its monitoring.
     pub fn set_errors(&mut self, errors: ErrorRegister) {
         self.errors = errors;
     }
@@ -160,7 +160,7 @@ impl Encoder {
         self.start(now);
     }
 
-    /// Takes the power away.
+    /// Removes the power.
     pub fn disconnect(&mut self) {
         self.abandon();
         self.power = Power::Off;

@@ -80,7 +80,7 @@ impl Port {
         &mut self.encoder
     }
 
-    /// Other faults from now on: a cable that was mended, or one that breaks only now. Frames and stores are counted on.
+    /// Replaces the faults, for a cable that is repaired or breaks later. Frames and stores keep their counts.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.wires.faults = faults.clone();
         self.encoder.set_faults(faults);

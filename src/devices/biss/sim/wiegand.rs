@@ -68,8 +68,7 @@ impl Wiegand {
         matches!(self.status, WiegandStatus::Clockwise | WiegandStatus::Counterclockwise)
     }
 
-    /// Takes the revolutions since the last call, and ends a run that has enough of them. The speed did not change in
-    /// between.
+    /// Takes the revolutions since the last call at constant speed, and ends a run that has enough of them.
     pub(super) fn settle(&mut self, now: Moment, rpm: f64, pulses: Pulses) {
         if !self.is_running() {
             return;

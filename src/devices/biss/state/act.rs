@@ -21,7 +21,7 @@ use crate::devices::biss::state::explain as explained;
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    /// Does what is asked.
+    /// Carries out an action.
     pub(crate) fn act(&mut self, action: BissAction, context: &mut ActContext<'_>) {
         let services = &mut *context.services;
         match action {
@@ -73,7 +73,7 @@ impl Encoder {
         self.wish_watched();
     }
 
-    /// Tells the session what is watched.
+    /// Passes the watched values to the session.
     pub(super) fn wish_watched(&mut self) {
         let ranges = self.record.watched().into_iter().filter_map(|own| RegisterRange::new(own.address, own.width));
         if let Some(line) = &self.session.line {

@@ -127,7 +127,7 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Its serial number; empty where it does not tell, `None` where nothing has been read.
+    /// Returns the serial number; empty if the encoder has none, `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -138,7 +138,7 @@ impl Encoder {
         self.memory.is_dirty()
     }
 
-    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
         // Without a serial number, it may be any of its type.
@@ -185,7 +185,7 @@ impl Encoder {
         Some(words::unsaved(mode))
     }
 
-    /// Another encoder than the one that was read before.
+    /// Returns whether this is another encoder than the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.kind.clone(), identity.serial_number.clone());
         self.identity().is_some_and(|known| who(known) != who(identity))

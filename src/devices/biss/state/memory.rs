@@ -106,7 +106,7 @@ impl Memory {
         best.map(|(first, last)| Area { first, last, ..area.clone() })
     }
 
-    /// Another value was read than the time before.
+    /// Returns whether the value differs from the previous reading.
     pub fn has_changed(&self, at: RegisterAddress) -> bool {
         self.base().changed.contains(&at)
     }
@@ -134,7 +134,7 @@ impl Memory {
         Ok(())
     }
 
-    /// Takes the edits of `count` bytes back.
+    /// Discards the edits of `count` bytes.
     pub fn revert_range(&mut self, start: RegisterAddress, count: usize) {
         let range = start.global()..start.global().saturating_add(u16::try_from(count).unwrap_or(u16::MAX));
         self.take_back(|at| range.contains(&at.global()));
@@ -162,7 +162,7 @@ impl Memory {
         self.iter().map(|(at, byte)| (at.global(), byte)).collect()
     }
 
-    /// Takes edits from a draft. Those that are as the encoder has them fall away when it is read.
+    /// Takes edits from a draft. Those equal to the encoder's values are dropped when it is read.
     pub fn take_draft(&mut self, draft: Vec<(u16, u8)>) {
         let places = draft.into_iter().filter_map(|(at, byte)| Some((RegisterAddress::from_global(at)?, byte)));
         self.set(places);

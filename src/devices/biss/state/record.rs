@@ -206,7 +206,7 @@ impl Record {
         self.track.positions()
     }
 
-    /// Another encoder: nothing of what was recorded is about it.
+    /// Forgets the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         (self.last, self.crc_errors, self.lost, self.stream) = (None, 0, 0, None);

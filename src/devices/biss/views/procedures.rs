@@ -160,7 +160,7 @@ fn mounting_ui(
     });
 }
 
-/// Draws an optional part with its inputs.
+/// Draws an optional part with its description.
 fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &Text) {
     ui.checkbox(on, say(theme, id));
     ui.horizontal_top(|ui| {

@@ -42,7 +42,8 @@ impl Planned for Prepared {
         self.cycles_seen
     }
 
-    /// No limit is known (`U`): saves are counted and told, and refused only where they cannot be.
+    /// Returns no limit, since none is known (`U`): saves are counted and reported, and refused only where they cannot
+    /// be counted.
     fn wear_limit(&self) -> u64 {
         u64::MAX
     }

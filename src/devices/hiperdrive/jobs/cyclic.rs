@@ -126,7 +126,7 @@ impl Pump {
         self.wishes.end.store(true, Ordering::SeqCst);
     }
 
-    /// Takes what comes until the next packet is due, and sends it. False: it is over.
+    /// Receives until the next packet is due, and sends it. False: the connection is over.
     pub fn turn(&mut self) -> bool {
         let due = self.drives.poll_at();
         let mut late = 0;

@@ -291,7 +291,7 @@ impl Motion {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// No drive was sent a word with which it moves: a stop that was asked for is on the wire.
+    /// Returns whether no drive was sent a word with which it moves: a requested stop is on the wire.
     pub fn is_standing(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())

@@ -218,7 +218,7 @@ pub fn survey(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Sur
     Ok(Survey { identity, network, values, wrong_lengths })
 }
 
-/// Every parameter that can be read of a device and its drives.
+/// Returns every readable parameter of a device and its drives.
 fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
     let rows = || PARAMETERS.iter().filter(|row| row.access != Access::Write);
     let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));

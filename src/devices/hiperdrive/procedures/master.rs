@@ -98,7 +98,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Does what leads to a safe end: in it, a wish to end is not heard.
+    /// Runs `work`, which leads to a safe end; a request to end is ignored meanwhile.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);

@@ -118,7 +118,7 @@ impl Drive {
         self.load = load;
     }
 
-    /// Its spindle is turned by hand, by so many steps of 65536 a turn.
+    /// Turns the spindle by hand, by this many steps of 65536 a turn.
     pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
         self.advance(now);
         self.axis = Axis::at(self.axis.place() + steps);
@@ -198,7 +198,7 @@ impl Drive {
         ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
     }
 
-    /// Its turns, in steps as scaled.
+    /// Returns the travel in scaled steps.
     pub(super) fn travel(&self) -> Travel {
         Travel { family: self.variant.row().map(|row| row.family), scale: Some(self.scale()) }
     }

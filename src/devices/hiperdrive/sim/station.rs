@@ -258,7 +258,7 @@ impl Station {
         }
     }
 
-    /// Returns when the last write is answered if that is delayed, once.
+    /// Takes the time of the delayed reply to the last write, if it is delayed.
     pub const fn answers_at(&mut self) -> Option<Moment> {
         self.answers_at.take()
     }

@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
 
 impl Unit {
-    /// Does what is asked.
+    /// Carries out an action.
     pub(crate) fn act(&mut self, action: HiperdriveAction, services: &mut Services) {
         match action {
             HiperdriveAction::ReadStatus => {

@@ -183,7 +183,7 @@ impl AxisStep {
         matches!(self, AxisStep::Reference | AxisStep::PowerCycle)
     }
 
-    /// Its place, from 0.
+    /// Returns the index, from 0.
     pub const fn index(self) -> usize {
         // In the order of `ALL`.
         self as usize
@@ -241,7 +241,7 @@ impl Axis {
         self.over.as_ref().map(|over| over.end)
     }
 
-    /// Its end, with the time.
+    /// Returns the end, with its time.
     pub const fn over(&self) -> Option<&Over> {
         self.over.as_ref()
     }

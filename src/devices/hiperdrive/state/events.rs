@@ -144,7 +144,7 @@ impl Unit {
         self.tell_of(drive, weight, vec![words], services);
     }
 
-    /// Takes the position of a drive; it is recorded for the one that is shown.
+    /// Takes the position of a drive; it is recorded for the drive shown.
     fn see(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
@@ -176,7 +176,7 @@ impl SessionEvents for Unit {
         super::trace::meaning(frame)
     }
 
-    /// Takes what has come over the line since the last time, and keeps alive what pictures keep alive.
+    /// Takes the events of the line since the last call, and renews what the window has to keep alive.
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.beat();
@@ -295,7 +295,7 @@ impl SessionEvents for Unit {
         self.moves.stop();
     }
 
-    /// Every motion ends first.
+    /// Ends every motion first.
     fn line_ends(&mut self) {
         self.moves.end();
     }

@@ -82,7 +82,7 @@ impl Leds {
         }
     }
 
-    /// Another device, or another setting of S3. An LED whose state is then impossible is off.
+    /// Sets the device and the setting of S3. An LED whose state is then impossible is off.
     pub fn look_at(&mut self, hub: bool, s3: u8) {
         (self.hub, self.s3) = (hub, s3.min(8));
         if self.subject().row(self.drives).is_none() {

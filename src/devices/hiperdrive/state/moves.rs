@@ -102,7 +102,7 @@ impl Moves {
         (self.view, self.act) = (MotionSnapshot::default(), None);
     }
 
-    /// Another device: its limits are others.
+    /// Forgets the limits of the previous device.
     pub(super) fn forget(&mut self) {
         self.stop();
         self.limits.clear();
@@ -369,7 +369,7 @@ impl Moves {
         self.view.open && link.interval.saturating_mul(packets) >= HEARD
     }
 
-    /// Some drive moves, is about to, or is led to where it may.
+    /// Returns whether a drive moves, is about to, or is being prepared for it.
     pub fn is_moving(&self) -> bool {
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }

@@ -39,7 +39,7 @@ impl Record {
         self.track.lose(dropped);
     }
 
-    /// Takes a reading, with where the drive is sent at that time.
+    /// Takes a reading, with the drive's target at that time.
     pub(super) fn add(&mut self, reading: DriveReading, ruler: Ruler, speed: SpeedScale, target: Option<i32>) {
         let (at, actual) = (reading.at, reading.actual);
         let status = actual.status;
@@ -73,7 +73,7 @@ impl Record {
         self.track.gap();
     }
 
-    /// Another device: nothing of what was recorded is about it.
+    /// Forgets the recording of the previous device.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;

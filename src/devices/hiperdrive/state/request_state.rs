@@ -138,7 +138,7 @@ impl Unit {
         }
     }
 
-    /// Tells something about a drive, which is named where there are others.
+    /// Reports something about a drive, which is named if there are others.
     pub(super) fn tell_of(&self, drive: DriveNumber, severity: Severity, texts: Vec<Text>, services: &mut Services) {
         services.tell_of_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
     }

@@ -101,7 +101,7 @@ impl Unit {
         host.parse().ok()
     }
 
-    /// Does what is asked in the set-up of the drive that is shown.
+    /// Carries out an action in the set-up of the drive shown.
     pub(super) fn act_axis(&mut self, action: AxisAction, services: &mut Services) {
         let drive = self.drive();
         let seen = self.seen(drive);

@@ -97,7 +97,7 @@ impl Staged {
         self.take_draft(edits);
     }
 
-    /// Takes what was read from the device: all of it. Edits stay, and so does the way back through them.
+    /// Takes a full reading of the device. Edits and their undo steps stay.
     pub fn refresh(&mut self, now: Image) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| rebase(own, before, &now)),
@@ -108,7 +108,7 @@ impl Staged {
         self.take_draft(waiting);
     }
 
-    /// Some parameters were read, and all else is as it was. Nothing happens before everything was read.
+    /// Takes a reading of some parameters; the others stay. Does nothing before a full reading.
     pub fn refresh_some(&mut self, read: &Image) {
         if let Some(base) = &self.base {
             self.refresh(base.with(read));
@@ -193,8 +193,7 @@ impl Staged {
         edited.chain(self.waiting.iter().copied()).collect()
     }
 
-    /// Takes edits from a draft, as one step. Those whose parameter was not read wait for it; those that are none fall
-    /// away.
+    /// Takes edits from a draft, as one step. Those whose parameter was not read wait for it; invalid ones are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);

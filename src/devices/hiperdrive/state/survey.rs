@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
 impl Unit {
-    /// Takes over what was read from the device; edits stay, unless they are another device's.
+    /// Takes over a reading of the device; edits stay, unless they are for another device.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -147,7 +147,7 @@ impl Unit {
         }
     }
 
-    /// Another device than the one that was read before.
+    /// Returns whether this is another device than the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| {
             (&known.category, &known.serial_number) != (&identity.category, &identity.serial_number)

@@ -131,7 +131,7 @@ impl Unit {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Its serial number; `None` where nothing has been read.
+    /// Returns the serial number; `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -225,7 +225,7 @@ impl Unit {
         self.actual(drive).map(|own| own.status.state())
     }
 
-    /// Some drive moves, as far as is known here, or is about to.
+    /// Returns whether a drive is known to move, or is about to.
     pub fn is_moving(&self) -> bool {
         self.moves.is_moving() || self.drives().into_iter().any(|drive| self.state_now(drive) == Some(State::Moving))
     }

@@ -48,7 +48,7 @@ impl WithMemory for Unit {
         HiperdriveJob::Prepare(change)
     }
 
-    /// Returns the job that writes. Nothing moves meanwhile. No wear limit of such a device is known.
+    /// Stops all motion and returns the job that writes. No wear limit of such a device is known.
     fn commit(&mut self, agreed: ApprovedPlanOf<Hiperdrive>) -> HiperdriveJob {
         self.moves.stop();
         self.unsaved.begin(&agreed.prepared.plan);

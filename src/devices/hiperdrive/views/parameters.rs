@@ -136,7 +136,7 @@ impl DriveParametersUiState {
         }
     }
 
-    /// Other lines are shown: what is selected and what is typed stay with their parameter.
+    /// Follows a change of the rows: selection and typed text stay with their parameter.
     fn follow(&mut self, rows: &[Vec<Row>]) {
         let lines: Vec<Vec<_>> = rows.iter().map(|rows| rows.iter().map(|row| row.number).collect()).collect();
         if lines == self.lines {

@@ -33,7 +33,7 @@ impl Runs for Hiperface {
         session.station().format
     }
 
-    /// Every code that the encoder announced, on a line of its own.
+    /// Prints every code that the encoder announced, one a line.
     fn print_message(remark: &DeviceMessage) {
         if let DeviceMessage::CodesUnheard(count) = remark {
             say(&format!("{}\n", words::codes_unheard(*count).terminal()));

@@ -162,8 +162,8 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// One byte, with a neighbour: the reply to a transfer of one byte can equal its request, access code and all, so that an
-/// adapter's echo would pass for it. A field has sixteen bytes at least.
+/// Reads one byte with a neighbour: the reply to a transfer of one byte can equal its request, access code and all, so
+/// that an adapter's echo would pass for it. A field has at least sixteen bytes.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

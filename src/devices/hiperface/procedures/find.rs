@@ -191,7 +191,7 @@ fn catch_default_window(master: &mut Master<'_>, patience: Duration, broadcast: 
     Ok(None)
 }
 
-/// One question without repetition. A broken reply is asked for once more: something is there.
+/// Sends one request without repetition. After a broken reply it asks once more: a device is there.
 fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<Found>, Error> {
     master.station().address = address;
     for _ in 0..2 {

@@ -151,7 +151,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     Ok(master.station().take_codes())
 }
 
-/// `None` for a command that the encoder does not have.
+/// Returns `None` for a command that the encoder does not have.
 fn have<T>(result: Result<T, Error>) -> Result<Option<T>, Error> {
     match result {
         Ok(value) => Ok(Some(value)),

@@ -47,7 +47,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    /// Runs `work`, which returns the encoder to a safe state; a request to end is ignored meanwhile.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);
@@ -94,7 +94,7 @@ impl<'a> Master<'a> {
         self.ask_timed(request).map(|timed| timed.reply)
     }
 
-    /// Does what reads something that is to be kept: in it, every answer has to come twice.
+    /// Runs `work`, which reads something that is kept; every reply has to come twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);

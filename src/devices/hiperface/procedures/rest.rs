@@ -38,7 +38,7 @@ impl Signals {
         Signals { sine_v: volts(sine), cosine_v: volts(cosine) }
     }
 
-    /// One count, as a part of a period, at this amplitude.
+    /// Returns one count as a part of a period, at this amplitude.
     pub fn resolution_periods(&self) -> f64 {
         let amplitude = self.sine_v.hypot(self.cosine_v).max(Self::VOLTS_PER_COUNT);
         Self::VOLTS_PER_COUNT / amplitude / std::f64::consts::TAU

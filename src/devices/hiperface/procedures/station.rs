@@ -148,7 +148,7 @@ impl Station {
         self.thorough || self.line.damaged > 0
     }
 
-    /// Takes in status codes that the encoder has given away.
+    /// Takes status codes that were read from the encoder.
     pub(super) fn meet_codes(&mut self, codes: impl IntoIterator<Item = StatusCode>) {
         let codes: Vec<StatusCode> = codes.into_iter().filter(|code| *code != StatusCode::OK).collect();
         self.codes_read.extend(&codes);
@@ -160,12 +160,13 @@ impl Station {
         std::mem::take(&mut self.codes_read)
     }
 
-    /// Takes how many status codes may have been lost since the last time: replies to 50h that did not come, or were damaged.
+    /// Takes the number of status codes that may have been lost since the last call: replies to 50h that were missing
+    /// or damaged.
     pub fn take_codes_unheard(&mut self) -> u32 {
         std::mem::take(&mut self.codes_unheard)
     }
 
-    /// Takes the status codes met since the last time.
+    /// Takes the status codes read since the last call.
     pub fn take_codes(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_met)
     }

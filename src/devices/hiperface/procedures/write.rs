@@ -49,7 +49,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type Left = EndState;
 
-    /// Two new encoders have the same memory: it has to be the one for which the plan was made.
+    /// Checks that this is the encoder for which the plan was made, by its memory too: two new encoders have the same.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
@@ -156,7 +156,7 @@ fn lock_again(
     Ok(())
 }
 
-/// One operation, of an encoder with so many different positions. Gives how often it was sent.
+/// Carries out one operation on an encoder with this many different positions. Returns how often it was sent.
 fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     match op {

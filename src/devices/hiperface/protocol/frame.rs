@@ -39,10 +39,10 @@ impl<'a> Frame<'a> {
     /// The error bit of a reply's command byte.
     pub const ERROR_BIT: u8 = 0x80;
 
-    /// Takes a frame apart. The whole slice is the frame: where it ends is told by silence on the line.
+    /// Parses a frame. The whole slice is the frame: its end is shown by silence on the line.
     ///
     /// # Errors
-    /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] when the last byte does not fit.
+    /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] if the last byte does not fit.
     pub fn parse(bytes: &'a [u8]) -> Result<Self, FrameError> {
         let [address, command, payload @ .., got] = bytes else {
             return Err(FrameError::Short { got: bytes.len() });

@@ -93,7 +93,7 @@ impl LineSettings {
         self.0 & Self::STANDARD == 0
     }
 
-    /// No reserved value in it: it may be sent to an encoder.
+    /// Returns whether there is no reserved value, so that it may be sent to an encoder.
     pub fn is_valid(self) -> bool {
         self.format().is_some() && self.0 & 0x08 == 0
     }

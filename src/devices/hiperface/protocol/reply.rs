@@ -155,7 +155,7 @@ impl Request {
         }
     }
 
-    /// `None` when the payload's length does not fit.
+    /// Parses the payload; `None` if its length does not fit.
     fn parse_payload(&self, payload: &[u8]) -> Result<Option<Reply>, ReplyError> {
         let echoed = |same: bool, reply: Reply| if same { Ok(Some(reply)) } else { Err(ReplyError::Argument) };
         match (self, payload) {

@@ -184,7 +184,7 @@ impl Encoder {
         self.electronics.set_temperature(celsius);
     }
 
-    /// Its monitoring finds something: a code for the queue. Lost when four wait already.
+    /// Adds a code of the monitoring to the queue; lost if four are waiting.
     pub fn report(&mut self, code: StatusCode) {
         self.electronics.queue.push(code);
     }
@@ -282,7 +282,7 @@ impl Encoder {
         }
     }
 
-    /// Does what is due at `at`, the moment given by [`acts_at`](Self::acts_at).
+    /// Does what is due at `at`, the time returned by [`acts_at`](Self::acts_at).
     pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {

@@ -18,7 +18,7 @@ use crate::devices::hiperface::state::explain as words;
 const WATCHED_EVERY: Duration = Duration::from_millis(500);
 
 impl Encoder {
-    /// Does what is asked.
+    /// Carries out an action.
     pub(crate) fn act(&mut self, action: HiperfaceAction, services: &mut Services) {
         match action {
             HiperfaceAction::ReadStatus => self.submit(HiperfaceJob::Status, services),
@@ -69,7 +69,7 @@ impl Encoder {
         self.wish_watched();
     }
 
-    /// Tells the session what is watched.
+    /// Passes the watched values to the session.
     pub(super) fn wish_watched(&mut self) {
         if let Some(line) = &self.session.line {
             line.watch(self.record.watched().into_iter().map(|what| (what, WATCHED_EVERY)).collect());

@@ -183,7 +183,7 @@ impl Asked {
     }
 }
 
-/// Absolute position and phase brought together; a residual beyond 14/32 is no agreement.
+/// Combines absolute position and phase; a residual beyond 14/32 is no agreement.
 fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
     // An unknown range does not wrap.

@@ -86,7 +86,7 @@ impl Encoder {
         self.identity = Some(identity);
     }
 
-    /// Tells the log who has answered.
+    /// Logs the encoder that has answered.
     fn log_answer(&self, services: &mut Services) {
         let Some(identity) = &self.identity else { return };
         let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
@@ -120,7 +120,7 @@ impl Encoder {
         Some(profile)
     }
 
-    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
@@ -149,7 +149,7 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Says which data fields could not be read, and why.
+    /// Reports which data fields could not be read, and why.
     fn take_unreadable(&mut self, fields: &[UnreadableField], services: &mut Services) {
         let why = |own: &UnreadableField| {
             let text = Text::new("session.field_unreadable").with("field", own.number);
@@ -192,7 +192,7 @@ impl Encoder {
         services.tell(severity, vec![text.with("number", number)], Some(&self.session.name()));
     }
 
-    /// Another encoder than the one that was read before.
+    /// Returns whether this is another encoder than the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         let who = |identity: &Identity| (identity.label.encoder_type, identity.serial.serial_number.clone());
         self.identity.as_ref().is_some_and(|known| who(known) != who(identity))

@@ -78,7 +78,7 @@ pub(super) fn keeps_edits(staged: &Staged, plan: &HiperfacePlan) -> Allowed {
     })
 }
 
-/// No edit of the field is beyond its first `bytes`.
+/// Checks that no edit of the field is beyond its first `bytes`.
 fn edits_stay(staged: &Staged, field: u8, bytes: usize) -> Allowed {
     match staged.edits().filter(|(own, address, _)| *own == field && *address >= bytes).count() {
         0 => Ok(()),

@@ -52,7 +52,7 @@ pub enum StagedError {
 }
 
 impl Staged {
-    /// Takes what was read from the encoder; edits stay, unless the byte they are for is gone or is as wanted now.
+    /// Takes over a reading of the encoder; edits stay, unless their byte is gone or already has the wanted value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.read_again(|own| *own = device);
     }
@@ -128,7 +128,7 @@ impl Staged {
         Ok(())
     }
 
-    /// Takes the edits of one range back.
+    /// Discards the edits of a range.
     pub fn revert_range(&mut self, range: FieldRange) {
         self.take_back(|(field, address)| range.contains(field, address));
     }
@@ -138,7 +138,7 @@ impl Staged {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
 
-    /// Takes edits from a draft. Those for bytes that are not there, or that are as wanted, fall away.
+    /// Takes edits from a draft. Those for bytes that do not exist, or already have the value, are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = (u8, usize, u8)>) {
         self.set(draft.into_iter().map(|(field, address, byte)| ((field, address), byte)));
     }

@@ -186,7 +186,7 @@ fn second(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut Form, action
     });
 }
 
-/// One position: as it was read or taken, and both ways to get it.
+/// Draws one position, read or entered, and both ways to get it.
 fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut String, actions: &mut Vec<Action>) {
     let commutation = &encoder.commutation;
     let (read, take) = match slot {

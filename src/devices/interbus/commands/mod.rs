@@ -133,8 +133,8 @@ enum Disturbs {
 }
 
 impl Disturbs {
-    /// Says it before it happens. What switches live outputs is asked for on a terminal, where nothing has consented to a
-    /// write and the encoder is no virtual one; without a terminal it goes on.
+    /// Announces the disturbance before it happens. Switching live outputs needs an answer on a terminal, unless a
+    /// write was consented to or the encoder is virtual; without a terminal it goes on.
     fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
         self.say(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);
@@ -148,7 +148,7 @@ impl Disturbs {
         Err(Failure::Failed(vec!["Not confirmed; no cam program was selected.".to_owned()]))
     }
 
-    /// Says it before it happens.
+    /// Announces the disturbance before it happens.
     fn say(self, output: &Output) {
         let id = match self {
             Disturbs::Reading => "ib_disturbs.reading",

@@ -47,7 +47,7 @@ impl Notes {
     }
 }
 
-/// Tells what could not be noted: nothing is stopped by it.
+/// Reports what could not be noted, without stopping anything.
 fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }

@@ -14,7 +14,7 @@ pub struct Excursion {
 
 /// Records facts that outlast a job, by serial number. A failure to record does not stop a read.
 pub trait Journal {
-    /// Some encoder was not led back.
+    /// Returns whether an encoder was not returned to operation.
     fn has_excursions(&self) -> bool;
 
     /// Returns the recorded excursion of an encoder that was not led back; `None` if there is none.

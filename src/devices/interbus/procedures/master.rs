@@ -92,7 +92,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Tells each step of the handshake to `tell`.
+    /// Reports each step of the handshake to `tell`.
     #[must_use]
     pub fn telling(mut self, tell: impl FnMut(Handshake) + 'a) -> Self {
         self.tell = Some(Box::new(tell));
@@ -143,7 +143,7 @@ impl<'a> Master<'a> {
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
-    /// Does what leads back to a safe state: in it, a wish to end is not heard.
+    /// Runs `work`, which returns the encoder to a safe state; a request to end is ignored meanwhile.
     pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.data.shield(true);
         let result = work(self);

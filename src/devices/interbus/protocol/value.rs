@@ -24,7 +24,7 @@ impl Value {
         self.0
     }
 
-    /// Its number with a sign in bit 24, as a speed is taken for (`U`, reference 6.13).
+    /// Returns the number with a sign in bit 24, as for a speed (`U`, reference 6.13).
     pub const fn signed(self) -> i32 {
         let above = u32::BITS - Value::BITS;
         (self.0 << above) as i32 >> above

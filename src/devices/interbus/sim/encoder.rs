@@ -205,7 +205,7 @@ impl Encoder {
         self.identity.temperature = tenths;
     }
 
-    /// Other faults of its EEPROM from now on; stores are counted on.
+    /// Replaces the faults of its EEPROM; stores keep their count.
     pub(super) fn set_faults(&mut self, faults: &Faults) {
         self.eeprom.set_die_in_store(faults.die_in_store());
     }
@@ -215,7 +215,7 @@ impl Encoder {
         self.power
     }
 
-    /// Takes the power away: what was not stored is forgotten.
+    /// Removes the power: values that were not stored are lost.
     pub fn disconnect(&mut self) {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
@@ -232,7 +232,7 @@ impl Encoder {
         }
     }
 
-    /// Its master says this from `now` on.
+    /// Sets the OUT word from `now` on.
     pub fn write(&mut self, now: Moment, word: u32) {
         self.settle(now);
         let before = std::mem::replace(&mut self.out, word);
@@ -246,7 +246,7 @@ impl Encoder {
         }
     }
 
-    /// Its IN word at `now`; `None` without power.
+    /// Returns the IN word at `now`; `None` without power.
     pub fn read(&mut self, now: Moment) -> Option<u32> {
         self.settle(now);
         if !self.power {

@@ -30,8 +30,8 @@ const PREFIX: usize = 6;
 /// A frame's length counts from the unit on: unit and function at least, and a PDU of 253 bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
-/// Takes a whole frame off what was received; `None`: it is not whole yet. What is no Modbus at all is thrown away, as
-/// nothing in the stream says where the next frame begins.
+/// Takes a complete frame from the received bytes; `None` if it is not complete. Bytes that are not Modbus are dropped,
+/// since the stream does not show where the next frame begins.
 pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     let [_, _, protocol_high, protocol_low, high, low, ..] = *received.as_slice() else { return None };
     let length = usize::from(u16::from_be_bytes([high, low]));

@@ -55,7 +55,7 @@ impl Gateway {
         Gateway { shared: Arc::new(Mutex::new(shared)), received: Vec::new(), to_host: Queue::default() }
     }
 
-    /// Another client's connection to the same gateway and the same encoders.
+    /// Returns another client's connection to the same gateway and encoders.
     pub fn connection(&self) -> Self {
         Gateway { shared: self.shared.clone(), received: Vec::new(), to_host: Queue::default() }
     }
@@ -70,7 +70,7 @@ impl Gateway {
         work(&mut self.lock().encoders.first)
     }
 
-    /// Other faults from now on: a cable that was mended, or one that breaks only now. Requests and stores are counted on.
+    /// Replaces the faults, for a cable that is repaired or breaks later. Requests and stores keep their counts.
     pub fn set_faults(&self, faults: &Faults) {
         let mut shared = self.lock();
         shared.faults = faults.clone();

@@ -115,7 +115,7 @@ impl Encoder {
         self.profile().map(|profile| &profile.identity)
     }
 
-    /// Its serial number; `None` where nothing has been read.
+    /// Returns the serial number; `None` if nothing was read.
     pub fn serial_number(&self) -> Option<&str> {
         let profile = || self.profile_identity().map(|own| own.serial_number.as_str());
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
@@ -191,7 +191,7 @@ impl Encoder {
         self.session.cycles
     }
 
-    /// Some parameter is edited.
+    /// Returns whether a parameter is edited.
     pub fn edits_parameters(&self) -> bool {
         self.staged.differences().iter().any(|own| matches!(own.place, ValueId::Parameter(_)))
     }
@@ -206,7 +206,7 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
-    /// Takes over what was read from the encoder; edits stay, unless they are another encoder's.
+    /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         if self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -227,7 +227,7 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// Another encoder than the one that was read before.
+    /// Returns whether this is another encoder than the one read before.
     pub(super) fn is_another(&self, identity: &Identity) -> bool {
         self.identity().is_some_and(|known| known.serial_number != identity.serial_number)
     }

@@ -35,7 +35,7 @@ impl Record {
         self.track.begin(began);
     }
 
-    /// Takes what has come; `dropped` were not taken in time.
+    /// Takes new readings; `dropped` were not taken in time.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
         self.track.lose(dropped);
         for reading in readings {
@@ -92,7 +92,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Another encoder: nothing of what was recorded is about it.
+    /// Forgets the recording of the previous encoder.
     pub(super) fn forget(&mut self) {
         self.track.forget();
         self.last = None;

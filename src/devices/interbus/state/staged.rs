@@ -106,8 +106,7 @@ impl Staged {
         self.take_draft(edits);
     }
 
-    /// Takes what was read from the encoder. What it does not have stays as it was known; edits stay, and so does the way
-    /// back through them.
+    /// Takes a reading of the encoder. Values missing in it stay, and so do edits and their undo steps.
     pub fn refresh(&mut self, read: Image) {
         let known = self.base.take();
         let (names, image) = match &known {

@@ -52,8 +52,8 @@ impl Encoder {
         }
     }
 
-    /// Takes the table that was read into the edits, or leaves it. One that cannot be taken stays, with why: a line that
-    /// is left out would switch its cam off.
+    /// Takes the imported table into the edits, or drops it. One that cannot be taken stays, with the reason: a line
+    /// left out would switch its cam off.
     pub(super) fn take_table(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

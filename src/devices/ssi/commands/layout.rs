@@ -62,7 +62,7 @@ fn is_file(spec: &str, families: &Families) -> bool {
     is_path || ends || (families.named(&key.to_ascii_lowercase()).is_none() && Path::new(spec).is_file())
 }
 
-/// Any frame in one word.
+/// Returns any frame in one word.
 fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Result<Chosen> {
     let frame = frame.map_err(|error| Failure::Usage(format!("--layout: {error}")))?;
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;

@@ -97,7 +97,7 @@ impl Session<Ssi> {
         Session::with(Ssi { wire, station, motor, streamed_us: None }, clock, store, is_virtual)
     }
 
-    /// Words are taken like this from the beginning.
+    /// Changes how words are read, from the beginning.
     pub fn ask_like(&mut self, asking: Asking) {
         self.device.station.asking = asking;
     }

@@ -83,10 +83,10 @@ pub enum CheckFinding {
     },
 }
 
-/// Takes words and looks at them.
+/// Reads words and checks them.
 ///
 /// # Errors
-/// Why no words come.
+/// No words arrive.
 pub fn check(
     master: &mut Master<'_>,
     layout: &Layout,

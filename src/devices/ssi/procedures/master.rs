@@ -48,10 +48,10 @@ impl<'a> Master<'a> {
         Ok(Identity { hello, asking: self.station.asking, clock_hz, supply: self.station.supply })
     }
 
-    /// Takes words like this from now on.
+    /// Sets how words are read.
     ///
     /// # Errors
-    /// As [`hello`](Self::hello); then words are taken as before.
+    /// As [`hello`](Self::hello); words are then read as before.
     pub fn set(&mut self, asking: Asking) -> Result<Identity, Error> {
         let before = std::mem::replace(&mut self.station.asking, asking);
         if before != asking {
@@ -60,7 +60,7 @@ impl<'a> Master<'a> {
         self.hello().inspect_err(|_| self.station.asking = before)
     }
 
-    /// Takes one word, by itself.
+    /// Reads a single word.
     ///
     /// # Errors
     /// As [`hello`](Self::hello).
@@ -76,7 +76,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Takes the next of many words that are asked for one by one.
+    /// Reads the next of many words that are requested one by one.
     ///
     /// # Errors
     /// As [`hello`](Self::hello).
@@ -213,7 +213,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Does what may be done twice until it is answered.
+    /// Repeats `once`, which may be done twice, until it is answered.
     fn repeated<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;

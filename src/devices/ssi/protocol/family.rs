@@ -214,7 +214,7 @@ impl Family {
         }
     }
 
-    /// Its source or a note in German; in English where the file has no German for it.
+    /// Returns the German of its source or a note; the English if the file has none.
     pub fn german<'f>(&'f self, english: &'f str) -> &'f str {
         self.german.get(english).map_or(english, String::as_str)
     }

@@ -226,7 +226,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::classes(&words, groups))
 }
 
-/// Two ways see the same motion: forwards or backwards, in the same steps or in halved ones.
+/// Returns whether two layouts see the same motion: forwards or backwards, in the same steps or in halved ones.
 fn same(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =

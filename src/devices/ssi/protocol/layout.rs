@@ -238,7 +238,7 @@ impl Layout {
         }
     }
 
-    /// Does something to the bits of a word that are Gray as a whole.
+    /// Applies `what` to the bits of a word that are Gray coded as a whole.
     fn over(&self, word: u64, what: impl Fn(u64) -> u64) -> u64 {
         let (bits, behind) = self.gray;
         what(word >> behind & ones(bits)) << behind | word & !(ones(bits) << behind)

@@ -19,7 +19,7 @@ use crate::devices::ssi::state::TEXTS;
 use crate::store::write_atomically;
 
 impl Encoder {
-    /// Does what is asked.
+    /// Carries out an action.
     pub(crate) fn act(&mut self, action: SsiAction, context: &mut ActContext<'_>) {
         let services = &mut *context.services;
         match action {

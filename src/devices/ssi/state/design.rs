@@ -133,7 +133,7 @@ impl Designer {
         of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
 
-    /// Another layout, as it is saved.
+    /// Replaces the layout with a saved one.
     pub(super) fn open(&mut self, profile: SsiProfile) {
         *self = Designer::with(profile, self.families.clone());
     }

@@ -96,7 +96,7 @@ impl Encoder {
         self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
     }
 
-    /// Other clocks than those of the layout are tried.
+    /// Returns whether other clocks than those of the layout are tried.
     pub fn has_own_clocks(&self) -> bool {
         self.clocks.is_some_and(|clocks| clocks != self.designer.layout().clocks())
     }

@@ -39,7 +39,7 @@ impl Format {
         Format::Timing,
     ];
 
-    /// Its name, as a row of the texts.
+    /// Returns the id of its text.
     pub const fn word(self) -> &'static str {
         match self {
             Format::C => "ssi_export.c",

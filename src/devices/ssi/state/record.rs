@@ -62,7 +62,7 @@ impl Streamed {
         1e9 / self.period_ns.max(1) as f64
     }
 
-    /// Words cannot come as close to each other as was wished.
+    /// Returns whether words cannot follow each other as closely as requested.
     pub const fn is_limited(&self) -> bool {
         self.is_limited
     }
@@ -91,7 +91,7 @@ impl Record {
         (self.held, self.stream, self.last, self.forgotten) = (0, None, None, None);
     }
 
-    /// Takes what has come; `dropped` were not taken in time.
+    /// Takes new words; `dropped` were not taken in time.
     pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
             // Whatever was dropped, the numbers of the words show how many there were.
@@ -152,8 +152,8 @@ impl Record {
         }
     }
 
-    /// Another layout: the words that are kept are read with it, what was recorded before them cannot be. Where only names
-    /// are others, everything stays.
+    /// Changes the layout: stored words are read with it, earlier recordings are dropped. If only names differ,
+    /// everything stays.
     pub(super) fn read_as(&mut self, layout: &Layout) {
         if self.layout == *layout {
             return;

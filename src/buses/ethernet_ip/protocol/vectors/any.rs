@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::super::*;
 use super::{OWNER, SESSION, open};
 
-/// Every parser, on anything.
+/// Runs every parser on arbitrary bytes.
 fn read_all(bytes: &[u8]) {
     let _ = Frame::parse(bytes).map(|frame| frame.body().map(|body| body.emit()));
     let _ = Items::parse(bytes).map(|items| items.emit());

@@ -15,7 +15,7 @@ pub(super) const BYTES: usize = 6;
 /// Hexadecimal digits of a position word as `position` and the window write it: 33 bits.
 pub(super) const WORD_DIGITS: usize = 9;
 
-/// Explains the bytes of one frame; `None` if they are more than a frame has, or have other bits set.
+/// Explains the bytes of one frame; `None` if their number does not fit, or other bits are set.
 pub(super) fn of_bytes(bytes: &[u8]) -> Option<Explained> {
     let raw = bytes.iter().fold(0, |raw: u64, byte| raw << 8 | u64::from(*byte));
     let fits = bytes.len() == BYTES && raw >> Layout::default().bits() == 0;

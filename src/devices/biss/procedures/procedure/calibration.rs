@@ -57,7 +57,7 @@ impl Guide<'_, '_> {
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
-    /// One run. The second is not given up half-way when the user wishes an end: that would lose the table.
+    /// Calibrates in one run. A request to end does not stop the second one half-way: that would lose the table.
     fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;

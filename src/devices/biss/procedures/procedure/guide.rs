@@ -220,7 +220,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Does something in which a wish to end is not heard.
+    /// Runs `work`; a request to end is ignored meanwhile.
     pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.master.shield(true);
         let result = work(self);

@@ -246,7 +246,7 @@ pub enum Answer {
 
 /// The person beside the motor.
 pub trait Operator {
-    /// Begins a question: earlier answers belong to another one.
+    /// Called when something is asked for the first time: earlier answers belong to another question.
     fn begins(&mut self) {}
 
     /// Asked again and again, a few times a second, each time with a new measurement.

@@ -97,7 +97,7 @@ impl SpeedMonitor {
     }
 }
 
-/// Least squares: how fast the second number rises with the first. `None` for fewer than two moments.
+/// Returns the slope of the second number over the first by least squares. `None` for fewer than two points.
 fn slope(places: &[(f64, f64)]) -> Option<f64> {
     let count = places.len() as f64;
     let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count;

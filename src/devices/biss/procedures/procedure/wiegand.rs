@@ -49,7 +49,7 @@ impl Guide<'_, '_> {
         Ok(Outcome::Tested(WiegandReport { result, saved: save, clockwise, counterclockwise }))
     }
 
-    /// One direction.
+    /// Measures one direction.
     fn collect(&mut self, run: Run, procedure: &Procedure, motion: Option<Motion>) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;

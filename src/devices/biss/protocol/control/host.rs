@@ -95,7 +95,7 @@ impl Host {
         self.rest();
     }
 
-    /// One cycle: takes the CDS that came in it and gives the CDM to end it with.
+    /// Runs one cycle: takes the CDS received in it and returns the CDM to end it with.
     pub fn cycle(&mut self, cds: bool) -> Step {
         let step = match std::mem::replace(&mut self.state, State::Rest) {
             State::Rest => self.begin(),

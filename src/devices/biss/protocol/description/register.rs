@@ -157,7 +157,7 @@ impl Register {
         (first..first + u16::from(self.width)).contains(&address.global())
     }
 
-    /// Its bytes as a number; `None` unless there are as many as it is wide.
+    /// Returns the bytes as a number; `None` unless there are as many as the register has.
     pub fn number(&self, bytes: &[u8]) -> Option<u64> {
         let join = |number: u64, byte: &u8| number << 8 | u64::from(*byte);
         (bytes.len() == usize::from(self.width)).then(|| match self.order {

@@ -331,7 +331,7 @@ impl Effort {
     /// the torque that an axis may need.
     pub const MOVE: Effort = Effort { speed: percent(25), torque: Percent::FULL };
 
-    /// No faster and no stronger than another one.
+    /// Limits the effort to another one.
     pub fn at_most(self, other: Effort) -> Self {
         Effort { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
     }

@@ -147,7 +147,7 @@ impl DeadMan {
         }
     }
 
-    /// Sends a word from which a motion can begin; nothing begins yet.
+    /// Enters the stage whose word allows a motion to begin; nothing begins yet.
     fn arm(&mut self, now: Moment, actual: Actual, motive: Motive) {
         let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
         self.after_run |= matches!(motive, Motive::Run { .. });

@@ -42,7 +42,7 @@ impl Master<'_> {
         Ok(Error::Refused { asked, refusal })
     }
 
-    /// Another parameter of a drive is known to be 0.
+    /// Returns whether another parameter of a drive is known to be 0.
     fn is_zero(&mut self, refused: ParameterNumber, base: u16, drive: DriveNumber) -> Result<bool, Error> {
         let Some(number) = ParameterNumber::of_drive(base, drive).filter(|own| *own != refused) else {
             return Ok(false);

@@ -94,7 +94,7 @@ impl Target {
         (plant.listens, plant.udp) = (at, at.port());
     }
 
-    /// Other faults from now on: a cable that was mended, or one that breaks only now. Frames and saves are counted on.
+    /// Replaces the faults, for a cable that is repaired or breaks later. Frames and saves keep their counts.
     pub fn set_faults(&self, faults: &Faults) {
         self.lock().set_faults(faults);
     }

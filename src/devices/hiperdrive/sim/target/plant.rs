@@ -110,7 +110,7 @@ impl Plant {
         frame.command != Command::UNREGISTER_SESSION
     }
 
-    /// Its TCP connection is gone, and with it its session and what lives in that.
+    /// Ends the TCP connection of an originator, with its session and what belongs to it.
     pub(super) fn leave(&mut self, originator: Originator) {
         let own: Vec<u32> = self.sessions.iter().filter(|(_, whose)| **whose == originator).map(|(s, _)| *s).collect();
         own.into_iter().for_each(|session| self.end(session));

@@ -110,7 +110,7 @@ impl Axis {
         }
     }
 
-    /// Both limits as they were taught, and where the axis stands between them.
+    /// Returns both limits as taught, and checks that the axis is between them.
     fn taught(&self, seen: &Seen) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);

@@ -56,7 +56,7 @@ impl Standstill {
         *self = Standstill::default();
     }
 
-    /// Takes a reading. Returns what changed since the one before, where no motion explains it.
+    /// Takes a reading. Returns the change since the previous one if no motion explains it.
     pub(super) fn note(&mut self, seen: &Seen, origin: Origin) -> Option<Shift> {
         let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
         if at.is_none() && !self.interrupted {

@@ -90,7 +90,8 @@ impl Power {
         }
     }
 
-    /// Its parameters were read again. As long as nothing says that the supply was off, each reading may.
+    /// Notes that the parameters were read again. Unless something shows that the supply was off, any reading may be
+    /// the one after it.
     pub(super) fn back(self, seen: &Seen, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,

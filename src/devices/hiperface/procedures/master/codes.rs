@@ -37,7 +37,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Takes the next codes out of the queue; true where more wait behind them. `seen`: the codes of each reply so far.
+    /// Takes the next codes out of the queue; true if more follow. `seen`: the codes of each reply so far.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.learn_echo()?;
         let mut tries = 0;
@@ -76,8 +76,8 @@ impl Master<'_> {
         }
     }
 
-    /// Takes in a reply to 50h. One that came before in the same queue may be an old one that came again: what it says is
-    /// known, and the reply to the request that it came for may be missing.
+    /// Takes a reply to 50h. One equal to an earlier one in the same queue may be a late duplicate: its codes are
+    /// known, and the reply to the present request may be missing.
     fn meet_reply(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;

@@ -45,7 +45,7 @@ struct Heard {
 }
 
 impl Master<'_> {
-    /// One exchange. The outer error ends everything; the inner one may be tried again.
+    /// Makes one exchange. The outer error ends everything; the inner one may be retried.
     pub(in super::super) fn attempt(&mut self, request: &Request) -> Result<Result<Answered, Trouble>, Error> {
         if request.command() != Command::ReadTypeLabel {
             self.learn_echo()?;

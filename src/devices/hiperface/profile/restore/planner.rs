@@ -59,7 +59,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Names the values of the mounting in fields that are left alone.
+    /// Names the values of the mounting in fields that are left unchanged.
     fn name_mounting_left(&mut self) {
         let profile = self.profile;
         for target in &profile.fields {

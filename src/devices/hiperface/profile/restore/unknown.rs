@@ -17,12 +17,12 @@ pub struct UnknownField {
 }
 
 impl UnknownField {
-    /// Its bytes go onto the other encoder.
+    /// Returns whether its bytes are copied to the other encoder.
     pub fn is_copied(&self) -> bool {
         self.answer == Some(true)
     }
 
-    /// Its name, as `--copy` and `--leave` take it.
+    /// Returns the item as `--copy` and `--leave` take it.
     pub fn item(&self) -> FieldRange {
         FieldRange { field: self.field, start: 0, count: None }
     }

@@ -64,7 +64,7 @@ pub fn kind_words(reading: &RestReading) -> Text {
 }
 
 impl Slot {
-    /// Its name in the table of texts.
+    /// Returns the id of its text.
     pub fn word(self) -> &'static str {
         match self {
             Slot::OneSide => "commutation.one_side",
@@ -78,7 +78,7 @@ impl Vector {
     /// All of them.
     pub const ALL: [Vector; 4] = [Vector::UAgainstBoth, Vector::UAgainstV, Vector::UAgainstW, Vector::Other];
 
-    /// Its name in the table of texts.
+    /// Returns the id of its text.
     pub fn word(self) -> &'static str {
         match self {
             Vector::UAgainstBoth => "commutation.u_both",

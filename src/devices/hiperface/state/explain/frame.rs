@@ -10,7 +10,7 @@ use crate::devices::hiperface::protocol::{
 };
 use crate::devices::hiperface::state::TEXTS;
 
-/// One thing that a frame says.
+/// Returns the text of a fact about a frame.
 pub fn frame(said: &FrameFact) -> Text {
     match said {
         FrameFact::Heading { address, command } => heading(*address, *command),

@@ -18,7 +18,7 @@ const LOOK: Duration = Duration::from_millis(10);
 const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Does something with the encoder, and leads it back to what it did before, whatever happens.
+    /// Runs `work` and returns the encoder to its previous mode, whatever happens.
     ///
     /// # Errors
     /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
@@ -292,7 +292,7 @@ impl Master<'_> {
     }
 }
 
-/// Both give the position, or they are the same.
+/// Returns whether both give the position, or they are the same.
 pub(super) fn does_the_same(is: StartupMode, wanted: StartupMode) -> bool {
     let is_plain = |mode| matches!(mode, StartupMode::K2 | StartupMode::K3);
     is == wanted || is_plain(is) && is_plain(wanted)

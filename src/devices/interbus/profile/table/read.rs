@@ -122,7 +122,7 @@ impl CamTable {
         self.rows = placed.collect();
     }
 
-    /// Says where several pulses of one track take a cam each.
+    /// Notes that several pulses of one track take one cam each.
     fn note_pulses(&mut self) {
         for program in ProgramNumber::all() {
             let mut tracks: Vec<(String, String, Vec<CamNumber>)> = Vec::new();
@@ -215,7 +215,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     Ok(Draft { line: line.number, column, program, cam, name, start, stop })
 }
 
-/// Both edges on steps. A pulse that goes once around ends right before it begins.
+/// Returns both edges in steps. A pulse around the whole range ends right before it begins.
 fn edges(
     options: &TableOptions,
     start: f64,

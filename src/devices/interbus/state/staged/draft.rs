@@ -45,8 +45,7 @@ impl Staged {
         kept
     }
 
-    /// Takes edits from a draft, as one step. Those whose program was not read wait for it; those that are none
-    /// fall away.
+    /// Takes edits from a draft, as one step. Those whose program was not read wait for it; invalid ones are dropped.
     pub fn take_draft(&mut self, draft: impl IntoIterator<Item = SavedEdit>) {
         let Some(mut wanted) = self.wanted.clone() else {
             self.waiting.extend(draft);

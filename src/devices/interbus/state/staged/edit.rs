@@ -247,7 +247,7 @@ pub(super) fn program_mut(
     }
 }
 
-/// Every cam of a program somewhere else.
+/// Moves every cam of a program.
 fn move_cams(after: &mut Wanted, program: ProgramNumber, to: impl Fn(Cam) -> Cam) -> Result<(), EditError> {
     let last = last(after);
     let own = after.image.program_mut(program).and_then(Option::as_mut).ok_or(EditError::NotRead(program))?;

@@ -91,7 +91,7 @@ impl Wanted {
     }
 }
 
-/// Names of one track: a person does not see how they are spelled in capitals.
+/// Returns whether two names mean one track, ignoring case.
 pub(super) fn is_one_track(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }

@@ -18,7 +18,7 @@ const SPOKE_PERMILLE: usize = 5;
 const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
 
-/// Takes encoders of no family that send so many clocks.
+/// Tries encoders of no family that send this many clocks.
 pub(super) fn any_other(
     take: &mut Take<'_>,
     read: &Read,

@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::range::Range;
 /// Weight of a setting that was changed.
 const CHANGED: f64 = 0.8;
 
-/// Takes every frame that the family can send, with its place among the families.
+/// Tries every frame that the family can send, with its place among the families.
 pub(super) fn of_family(
     take: &mut Take<'_>,
     read: &Read,

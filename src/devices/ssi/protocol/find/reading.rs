@@ -254,7 +254,7 @@ fn leaves_out_highest(seen: &Seen, read: &Read) -> bool {
     at_end * 2 >= changes && near * 4 < round
 }
 
-/// Every way that could be: from each clock that moved first to each that could be the lowest bit.
+/// Returns every possible layout: from each clock that moved first to each that could be the lowest bit.
 fn ways(seen: &Seen) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;

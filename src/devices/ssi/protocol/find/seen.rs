@@ -111,7 +111,7 @@ impl Seen {
         (word >> (self.clocks - parity.clock)).count_ones().is_multiple_of(2) == parity.even
     }
 
-    /// Two clocks carry the same in nearly all frames.
+    /// Returns whether two clocks carry the same in nearly all frames.
     fn same(&self, one: u8, other: u8) -> bool {
         let differs = |word: &&u64| (*word >> (self.clocks - one) ^ *word >> (self.clocks - other)) & 1 == 1;
         self.words.iter().filter(differs).count() * 100 <= REPEAT_PERCENT * self.words.len()

@@ -115,7 +115,7 @@ pub(super) fn entered(designer: &Designer, field: Field, input: &Input) -> Optio
     Some(Edit::Frame(Box::new(next)))
 }
 
-/// Other positions.
+/// Returns the range with other positions.
 fn range_entered(range: &Range, field: Field, input: &Input) -> Option<Range> {
     if let (Field::Range, Input::Choice(kind)) = (field, input) {
         let bits = range.bits().unwrap_or(12);

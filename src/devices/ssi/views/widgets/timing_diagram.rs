@@ -151,7 +151,7 @@ impl Picture<'_> {
         self.theme.palette.muted.into()
     }
 
-    /// Words of moments and of what is left out, each moment with its line through all.
+    /// Draws the labels of moments and of breaks, each moment with a line through all rows.
     fn guides(&self, flags: &[(f32, Arc<Galley>, bool)], put: &[Put]) {
         for ((x, galley, is_moment), put) in flags.iter().zip(put) {
             let top = self.rows.flags - (put.level + 1) as f32 * WORDS;
@@ -256,7 +256,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Both lines end and begin again.
+    /// Draws the breaks of both lines.
     fn breaks(&self, breaks: &[Rangef]) {
         for gap in breaks {
             let middle = self.left + gap.center();

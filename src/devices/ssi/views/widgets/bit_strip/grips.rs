@@ -52,7 +52,7 @@ pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<Strip
     event
 }
 
-/// One handle, whatever it is called while zeros between turns and steps come and go.
+/// Returns the id of a handle, which stays the same while zeros between turns and steps come and go.
 fn id(base: Id, handle: Handle) -> Id {
     let handle = if handle == Handle::TurnsEnd { Handle::Split } else { handle };
     base.with("handle").with(handle)

@@ -72,14 +72,14 @@ impl Narrow {
         Tag { field: self.index, line: self.line, level, left, leader, galley: self.galley }
     }
 
-    /// No other name is there.
+    /// Returns whether there is no other name.
     fn is_apart(&self, tags: &[Tag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let own = tags.iter().filter(|tag| tag.line == self.line && tag.level == level);
         own.map(Tag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
     }
 
-    /// No other name is there, nor a line that leads to one further down, nor is one in the way of its own line.
+    /// Returns whether there is no other name, no line to a name further down, and nothing in the way of its own line.
     fn is_free(&self, tags: &[Tag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
