@@ -56,8 +56,8 @@ where
         .map_err(|refused| JobFailure::<D>::Job(Box::new(refused.into())).into_failure())
 }
 
-/// A file that is to be written may stand there already: on a terminal that is asked, before any device is. Without one it is
-/// replaced, as other tools do, which [`Replaces::said`] tells.
+/// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal it is replaced,
+/// as other tools do, and [`Replaces::report`] says so.
 pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
     // A pipe or a device is written to, and keeps nothing.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());

@@ -34,9 +34,9 @@ pub enum ConnectAction {
     ListPorts,
     /// Another kind of device.
     Device(Tab),
-    /// The form of a kind of device was edited; see [`Action::edit`].
+    /// The form of a kind of device was edited; see [`ConnectAction::edit`].
     Edit(Payload),
-    /// A request to the search for devices; see [`Action::find`].
+    /// A request to the search for devices; see [`ConnectAction::find`].
     Find(Payload),
     /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
     Use(String),

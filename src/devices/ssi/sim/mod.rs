@@ -1,10 +1,10 @@
-//! The virtual SSI encoder: the words that it sends with its shaft at a place, and what goes wrong with it. What clocks
-//! them out and what turns the shaft are an adapter's matter.
+//! The virtual SSI encoder: the words it sends at a position of its shaft, and its injected faults. The adapter clocks them
+//! out and turns the shaft.
 //!
 //! | file | what it is |
 //! |---|---|
 //! | `encoder` | a frame with the encoder's position in it |
-//! | `trouble` | error bits that speak, and words that stand for a fault |
+//! | `injected_fault` | error bits, and words that stand for a fault |
 //! | `at_adapter` | the settings of a `sim:` link |
 
 mod at_adapter;

@@ -1,14 +1,14 @@
 //! The guided procedures (manual 6.3 to 6.7), each straight-line code from entering its device mode to operation again.
-//! They address the person at the motor through an [`Operator`], report every [`Step`], and always end in operation
-//! mode with the password cleared; if the encoder can no longer be reached, the known [`LeftState`] is reported
+//! They address the person at the motor through an [`Operator`], report every [`ProcedureStep`], and always end in
+//! operation mode with the password cleared; if the encoder can no longer be reached, the known [`LeftState`] is reported
 //! instead, and [`lead_back`] does the rest later.
 //!
 //! | file | what it is |
 //! |---|---|
 //! | `guide` | what all share: modes, commands, statuses, restarts, the person, the way back |
-//! | `gauge` | how the shaft turns |
+//! | `speed_monitor` | direction and speed of the shaft |
 //! | `operator` | who stands at the motor: what is asked, why a start is not possible |
-//! | `standing` | what an encoder may be in |
+//! | `left_state` | the state that an encoder may be left in |
 //! | `steps` | the steps of each operation |
 //! | `data`, `filter`, `preset`, `wiegand`, `calibration` | the five of the manual |
 
