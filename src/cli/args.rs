@@ -18,32 +18,36 @@ use super::commands::{Commands, OwnOptions};
 use crate::app::Given;
 use crate::link::LinkUrl;
 
-/// Configure position encoders at a desk: read, compare, write, verify, save and restore. Without a command it opens the
-/// window.
+/// Heading in the help of the options that every command has.
+const COMMON_HEADING: &str = "Common options";
+
+/// Configure position encoders and small drives: read, compare, write, verify, save and restore. Without a command, the
+/// window opens.
 #[derive(Parser)]
 #[command(name = "encoder-studio", version)]
 struct Front {
-    #[command(flatten)]
-    common: Common,
-    /// A profile to open in the window.
+    /// Open this profile in the window.
     #[arg(long, value_name = "FILE")]
     profile: Option<PathBuf>,
+    #[command(flatten)]
+    common: Common,
 }
 
 #[derive(Args)]
+#[command(next_help_heading = COMMON_HEADING)]
 pub struct Common {
-    /// The link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH,
-    /// bridge:tcp:HOST:PORT or replay:FILE, with ?name=value&…
+    /// Link to the device: sim:, serial:PATH, tcp:HOST:PORT, modbus:HOST:PORT, enip:HOST, bridge:PATH, bridge:tcp:HOST:PORT
+    /// or replay:FILE, followed by ?name=value&… for parameters.
     #[arg(long, global = true, value_name = "URL")]
     pub(crate) link: Option<LinkUrl>,
     /// Print JSON.
     #[arg(long, global = true)]
     pub(super) json: bool,
-    /// On a serial line with one master: no drive or controller is connected to it or powered. Without this it is asked on
-    /// a terminal; find needs it elsewhere.
+    /// Confirm that no drive or controller on the serial line is powered. Without this option a terminal asks; find
+    /// requires it without a terminal.
     #[arg(long, global = true)]
     pub(crate) only_master: bool,
-    /// Record every frame into a file that replay: plays back; access codes are masked.
+    /// Record every frame to a file that replay: can play back. Access codes are masked.
     #[arg(long, global = true, value_name = "FILE")]
     pub(super) trace: Option<PathBuf>,
     #[command(flatten)]
@@ -60,42 +64,42 @@ impl Common {
     }
 }
 
-/// A command that is the same word for every kind of device.
+// A command that every kind of device has. No doc comment: clap would take it for the program's description.
 #[derive(Subcommand)]
 pub enum Command {
-    /// Serial ports on this machine.
+    /// List the serial ports of this computer.
     Ports,
-    /// The devices that answer.
+    /// Search for devices.
     Find(Find),
-    /// Reads the identity of the device
+    /// Read the identity of a device.
     Identify(Device),
-    /// Errors and warnings, decoded.
+    /// Read and explain errors and warnings.
     Status(Status),
-    /// The position.
+    /// Read the position, once or repeatedly.
     Position(Position),
-    /// One value: a data field, a register, a setting.
+    /// Read one value: a data field, a register or a parameter.
     Read(Read),
-    /// Read everything that can be restored, and what identifies the device.
+    /// Save everything that can be restored to a profile.
     Save(Save),
-    /// Compares field by field
+    /// Compare two profiles, or a profile with a device.
     Diff(Diff),
-    /// Read back and compare; changes nothing.
+    /// Compare a device with a profile; exit status 3 if they differ.
     Verify(Verify),
-    /// Make the device as the profile says.
+    /// Write a profile to a device: only the values that differ.
     Restore(Restore),
-    /// Write one value.
+    /// Write one value, after showing old and new.
     Write(Write),
-    /// An action of a kind of device (help do lists them).
+    /// Carry out a device-specific action (listed by help do).
     Do(Do),
-    /// Explain captured bytes, offline.
+    /// Explain captured bytes without a device.
     Decode(Decode),
-    /// Be a device, on a pseudo-terminal or a TCP port.
+    /// Serve a virtual device on a pseudo-terminal or a TCP port.
     Simulate(Simulate),
 }
 
 #[derive(Args)]
 pub struct Device {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
     #[command(flatten)]
     pub(super) own: OwnOptions,
@@ -103,7 +107,7 @@ pub struct Device {
 
 #[derive(Args)]
 pub struct Find {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
     #[command(flatten)]
     pub(crate) own: OwnOptions,
@@ -111,7 +115,7 @@ pub struct Find {
 
 #[derive(Args)]
 pub struct Status {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
     #[command(flatten)]
     pub(crate) own: OwnOptions,
@@ -119,15 +123,15 @@ pub struct Status {
 
 #[derive(Args)]
 pub struct Position {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
-    /// Number of lines; without it one, and with --csv as many as come until Ctrl-C.
+    /// Number of readings. Default: 1, or with --csv until Ctrl-C.
     #[arg(long, allow_negative_numbers = true)]
     pub(super) count: Option<u64>,
-    /// Print a table (CSV): a header once, then a line a reading.
+    /// Print CSV: a header, then one line per reading.
     #[arg(long, conflicts_with = "json")]
     pub csv: bool,
-    /// Time between two readings in milliseconds; 0: as fast as the line allows.
+    /// Time between two readings in milliseconds; 0 reads as fast as the link allows.
     #[arg(long, default_value_t = 100, value_name = "MS", allow_negative_numbers = true)]
     pub(super) interval: u64,
     #[command(flatten)]
@@ -136,7 +140,7 @@ pub struct Position {
 
 #[derive(Args)]
 pub struct Read {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
     /// Name of the value to read
     pub(crate) item: String,
@@ -146,15 +150,15 @@ pub struct Read {
 
 #[derive(Args)]
 pub struct Save {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
-    /// The profile to write.
+    /// Profile to write.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     pub file: PathBuf,
-    /// Replace a file that exists without asking.
+    /// Replace an existing file without asking.
     #[arg(long)]
     pub(super) force: bool,
-    /// Fail when a data field cannot be read because its access code is not known.
+    /// Fail if a data field cannot be read because its access code is unknown.
     #[arg(long)]
     pub(crate) complete: bool,
     #[command(flatten)]
@@ -163,43 +167,43 @@ pub struct Save {
 
 #[derive(Args)]
 pub struct Diff {
-    /// A profile.
+    /// Profile to compare.
     pub(super) left: PathBuf,
-    /// Another profile; without it, --link.
+    /// Second profile. Default: the device at --link.
     pub(super) right: Option<PathBuf>,
 }
 
 #[derive(Args)]
 pub struct Verify {
-    /// The profile.
+    /// Profile to read.
     pub file: PathBuf,
 }
 
 #[derive(Args)]
 pub struct Restore {
-    /// The profile.
+    /// Profile to read.
     pub file: PathBuf,
-    /// Print exactly the operations that would be carried out; write nothing.
+    /// Print the operations that would be carried out, and write nothing.
     #[arg(long)]
     pub dry_run: bool,
     #[command(flatten)]
     pub consent: Consenting,
-    /// The profile may be of another serial number of the same type.
+    /// Accept a profile from another serial number of the same type.
     #[arg(long)]
     pub(crate) allow_other_device: bool,
-    /// The profile may be of another type of device (--help says what that is).
+    /// Accept a profile from another type of device (defined in --help).
     #[arg(long)]
     pub(crate) allow_other_type: bool,
-    /// Copy the bytes of unknown meaning of this data field onto another serial number; repeatable.
+    /// Copy this data field, whose meaning is unknown, to another serial number; repeatable.
     #[arg(long, value_name = "field:N")]
     pub(crate) copy: Vec<String>,
-    /// Leave the bytes of unknown meaning of this data field as the device has them; repeatable.
+    /// Keep the device's bytes of this data field, whose meaning is unknown; repeatable.
     #[arg(long, value_name = "field:N")]
     pub(crate) leave: Vec<String>,
-    /// Also restore values of the mounting onto another serial number.
+    /// Also restore values of the mounting to another serial number.
     #[arg(long)]
     pub(crate) with_mounting: bool,
-    /// Delete and create again where a field has another size and is not the last.
+    /// Delete and create again a field whose size differs and that is not the last one.
     #[arg(long)]
     pub(crate) recreate: bool,
 }
@@ -209,19 +213,19 @@ pub struct Consenting {
     /// Write without asking.
     #[arg(long)]
     pub yes: bool,
-    /// Write although the device counts as worn, or the logbook cannot tell its write cycles.
+    /// Write even if the device is worn or its write cycles are unknown.
     #[arg(long)]
     pub force_wear: bool,
 }
 
 #[derive(Args)]
 pub struct Write {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
     /// Name of the value to write
     pub(crate) item: String,
-    /// A number (decimal or 0x); hex bytes for a data field and for a run of registers (+COUNT); a word or a range where the
-    /// item takes one.
+    /// Number (decimal or 0x), hexadecimal bytes for a data field or consecutive registers (+COUNT), or a word or a range
+    /// where the item takes one.
     #[arg(allow_hyphen_values = true)]
     pub(crate) value: String,
     #[command(flatten)]
@@ -232,25 +236,24 @@ pub struct Write {
 
 #[derive(Args)]
 pub struct Simulate {
-    /// The kind of device.
+    /// Kind of device.
     pub(super) device: String,
-    /// Make a pseudo-terminal and a symbolic link to it here.
+    /// Serve on a pseudo-terminal, with a symbolic link to it at PATH.
     #[arg(long, value_name = "PATH", conflicts_with = "listen")]
     pub(crate) pty: Option<PathBuf>,
-    /// Listen at HOST:PORT, over TCP, and over UDP where the device takes datagrams.
+    /// Listen on HOST:PORT, over TCP and, if the device uses it, UDP.
     #[arg(long, value_name = "ADDR")]
     pub(super) listen: Option<String>,
-    /// Be an adapter in front of the encoder, which speaks the bridge protocol, instead of the line of the encoder.
+    /// Serve the encoder behind an adapter that speaks the bridge protocol.
     #[arg(long)]
     pub(crate) bridge: bool,
-    /// Seed of the faults.
+    /// Seed of the random faults.
     #[arg(long)]
     pub(super) seed: Option<u64>,
-    /// drop:P, flip:P, garbage:P, delay:MS, silent-after:N, die-in-store:N; comma separated.
+    /// Faults to inject, separated by commas: drop:P, flip:P, garbage:P, delay:MS, silent-after:N, die-in-store:N.
     #[arg(long, value_name = "SPEC")]
     pub(super) fault: Option<String>,
-    /// A property of the virtual device, as after sim:? (rpm=60, echo=on …); repeatable. One that there is not is answered
-    /// with all that there are.
+    /// Setting of the virtual device, as in sim:?rpm=60&echo=on; repeatable. An unknown name lists all of them.
     #[arg(long = "set", value_name = "NAME=VALUE")]
     pub(super) settings: Vec<String>,
     #[command(flatten)]

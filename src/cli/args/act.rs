@@ -8,7 +8,7 @@ use crate::cli::{Failure, Result};
 
 #[derive(Args)]
 pub struct Do {
-    /// The kind of device.
+    /// Kind of device.
     pub(in crate::cli) device: String,
     /// Action to carry out
     pub(crate) action: String,

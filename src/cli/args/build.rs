@@ -6,11 +6,11 @@ use std::path::PathBuf;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Subcommand};
 
-use super::{Command, Common, Front};
+use super::{COMMON_HEADING, Command, Common, Front};
 use crate::cli::commands::{CommandId, Commands, DeviceCommands, OwnCommand};
 
-/// The place in the help of an option that a kind of device adds.
-const BEHIND_THE_SHARED: usize = 200;
+/// Display order of options that a kind of device adds: after the shared ones.
+const AFTER_SHARED: usize = 200;
 
 /// The arguments of a process.
 pub(in crate::cli) struct Arguments {
@@ -55,7 +55,7 @@ pub(crate) fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Front::command(), |front, option| {
         // Several kinds of device may have it.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
-        if is_new { front.arg(option.display_order(BEHIND_THE_SHARED)) } else { front }
+        if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(AFTER_SHARED)) } else { front }
     });
     let shared = Command::augment_subcommands(front).after_help(summary(commands));
     let extended = CommandId::ALL
@@ -79,7 +79,7 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
         for option in own.chain(settings) {
             // Several kinds of device may have it.
             if command.get_arguments().all(|other| other.get_id() != option.get_id()) {
-                command = command.arg(option.display_order(BEHIND_THE_SHARED));
+                command = command.arg(option.display_order(AFTER_SHARED));
             }
         }
     }
@@ -134,8 +134,8 @@ fn summary(commands: Commands) -> String {
     let notes: String = devices.iter().filter_map(|device| device.note()).map(|note| format!("{note}\n")).collect();
     let example = devices.first().map(|device| device.name()).unwrap_or_default();
     format!(
-        "Kinds of device: {all}.\ndiff, verify and restore find the kind in the profile. find is for {searchable}. do has \
-         other actions for each kind (help do).\n{notes}\nWithout hardware: --link sim:, as in\n\n  encoder-studio identify \
-         {example} --link sim:\n\nAn address or a register is hexadecimal with 0x in front, else decimal."
+        "Kinds of device: {all}.\ndiff, verify and restore take the kind from the profile. find supports {searchable}. The \
+         actions of do differ by kind (help do).\n{notes}\nTo try a command without hardware, use --link sim:\n\n  \
+         encoder-studio identify {example} --link sim:\n\nAddresses and registers are decimal, or hexadecimal with 0x."
     )
 }

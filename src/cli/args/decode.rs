@@ -6,9 +6,9 @@ use crate::cli::commands::OwnOptions;
 
 #[derive(Args)]
 pub struct Decode {
-    /// The kind of device that the bytes came from or went to, or a protocol.
+    /// Kind of device that sent or received the bytes, or a protocol.
     pub(in crate::cli) protocol: String,
-    /// A frame as hex bytes; several frames as one argument each.
+    /// Frame as hexadecimal bytes; one argument per frame.
     #[arg(required = true)]
     pub(crate) hex: Vec<String>,
     #[command(flatten)]
@@ -18,7 +18,7 @@ pub struct Decode {
 /// The way that a word went, for the devices whose words have one meaning each way.
 #[derive(Args)]
 pub(crate) struct DirectionOption {
-    /// From the device (in) or to it (out); both are told without it, where both fit.
+    /// Direction: from the device (in) or to it (out). Default: explain every direction that fits.
     #[arg(long, value_enum)]
     pub(crate) direction: Option<Direction>,
 }

@@ -9,20 +9,20 @@ use crate::analysis::quality::Family;
 
 #[derive(Args)]
 pub(super) struct Analyse {
-    /// A table of time, sine and cosine in seconds and volts; delimiter, decimal sign, header and units are found out.
+    /// Table of time, sine and cosine in seconds and volts. Delimiter, decimal sign, header and units are detected.
     #[arg(value_name = "FILE.csv")]
     pub(super) file: PathBuf,
-    /// Numbers of the columns, from 1: time, sine, cosine; or time, SIN, REFSIN, COS, REFCOS. Then, where there are such
-    /// columns, reference=N (mechanical degrees) and absolute=N (steps of 1/32 period).
+    /// Column numbers from 1: time, sine, cosine, or time, SIN, REFSIN, COS, REFCOS; optionally reference=N (mechanical
+    /// degrees) and absolute=N (steps of 1/32 period).
     #[arg(long, value_name = "1,2,3", value_parser = parse_columns)]
     pub(super) columns: Option<Columns>,
-    /// Volts in one unit of the sine and cosine columns.
+    /// Volts per unit of the sine and cosine columns.
     #[arg(long, value_name = "X", value_parser = parse_factor, allow_negative_numbers = true)]
     pub(super) volts_per_unit: Option<f64>,
-    /// The encoders by whose limits the signal is judged.
+    /// Encoder family whose limits apply.
     #[arg(long, value_enum, default_value_t = Limits::Hiperface)]
     pub(super) limits: Limits,
-    /// Signal periods in a revolution: for the speed, for what repeats with the revolution, and with a reference for DNL
+    /// Signal periods per revolution: for the speed, for errors that repeat each revolution, and, with a reference, for DNL
     /// and INL.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000), allow_negative_numbers = true)]
     pub(super) periods: Option<u32>,
@@ -58,7 +58,7 @@ fn parse_columns(text: &str) -> Result<Columns, String> {
             None => &mut None,
             Some(("reference", _)) => &mut reference_angle,
             Some(("absolute", _)) => &mut absolute,
-            Some((name, _)) => return Err(format!("{name} is no column; there are reference= and absolute=")),
+            Some((name, _)) => return Err(format!("{name} is not a column; use reference= or absolute=")),
         };
         let column = number(word.split_once('=').map_or(word, |(_, number)| number));
         *place = Some(column.ok_or("columns are numbers from 1, as in 1,2,3 or 1,2,3,reference=4")?);

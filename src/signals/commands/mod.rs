@@ -30,7 +30,7 @@ pub(crate) struct AnalyseCommand;
 impl OwnCommand for AnalyseCommand {
     fn command(&self) -> clap::Command {
         Analyse::augment_args(clap::Command::new("analyse"))
-            .about("Quality of a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error")
+            .about("Analyse a recorded sine/cosine signal: amplitude, offsets, gain, phase, position error")
     }
 
     fn run(&self, _: &Common, output: &Output, matches: &ArgMatches) -> Result {

@@ -49,7 +49,7 @@ impl ProtocolDecoder for EthernetIpDecoder {
     }
 
     fn help(&self) -> &'static str {
-        "frames of a TCP stream, one or several behind each other, cyclic packets (UDP), CIP messages alone"
+        "consecutive frames of a TCP stream, cyclic packets (UDP) or single CIP messages"
     }
 
     fn decode(&self, output: &Output, arguments: &Decode) -> Result {

@@ -5,8 +5,7 @@ use clap::{Args, ValueEnum};
 /// Options of `do`.
 #[derive(Args)]
 pub(super) struct DoOptions {
-    /// biss: how long the motor may take to turn, or the shaft to rest, as an action needs it; 30 without a terminal, 300
-    /// on one.
+    /// biss: how long to wait for the motor to turn or the shaft to stop. Default: 300 on a terminal, otherwise 30.
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u16).range(1..=3600))]
     pub(super) timeout: Option<u16>,
 }
@@ -14,26 +13,26 @@ pub(super) struct DoOptions {
 /// The actions of BiSS encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum BissAction {
-    /// identity, errors, position, data sheet, limits, wear with a verdict a line
+    /// rate identity, errors, position, data sheet, limits and wear
     Check,
-    /// calibrate the singleturn; the motor turns counterclockwise, then clockwise, at 500 ± 2 rpm
+    /// calibrate the singleturn while the motor turns at 500 ± 2 rpm, first counterclockwise, then clockwise
     Calibrate,
     // Brackets in what rustdoc reads would be links.
     #[value(
-        help = "[save], test the Wiegand sensor; the motor turns clockwise, then counterclockwise, at 500 to 2000 rpm"
+        help = "[save]: test the Wiegand sensor while the motor turns at 500 to 2000 rpm, first clockwise, then counterclockwise"
     )]
     WiegandTest,
-    /// balanced|dynamic
+    /// balanced|dynamic: choose the position filter
     Filter,
     #[value(
-        help = "[ST [MT]] [singleturn|multiturn]: store a value (MT 0 if left out), then make the shaft's place that value; without a value the stored one"
+        help = "[ST [MT]] [singleturn|multiturn]: store a preset value (MT default 0) and set the present position to it; without a value, use the stored one"
     )]
     Preset,
-    /// back to operation and the password cleared, after a procedure was cut off; values that were entered and not saved are
-    /// lost, which a terminal asks for (--yes)
+    /// return to operation and clear the password after an interrupted procedure; values not yet saved are lost (asks, or
+    /// --yes)
     LeadBack,
     #[value(
-        help = "[calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE] in one run; without the first two both are meant"
+        help = "[calibrate] [wiegand-test] [save] [preset=ST,MT] [data=FILE]: run these after mounting; by default calibrate and wiegand-test"
     )]
     Mounting,
 }

@@ -44,28 +44,28 @@ impl DeviceCommands for BissCommands {
     }
 
     fn about(&self) -> &'static str {
-        "POSITAL kit encoder, or another with BiSS C; over UBICOM (serial:, tcp:) or an adapter (bridge:)"
+        "POSITAL kit encoder or other BiSS C encoder, over UBICOM (serial:, tcp:) or an adapter (bridge:)"
     }
 
     fn help(&self, command: CommandId) -> Option<String> {
         let help = match command {
             CommandId::Read => {
-                "0x66 (a direct register, 0x40 to 0x7F), 0x24:0x10 (bank 24h, offset 10h); with +COUNT a run of them, as \
-                 0x24:0x10+4"
+                "items: 0x66 (direct register, 0x40 to 0x7F), 0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (four consecutive \
+                 registers)"
             }
             CommandId::Write => {
-                "0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (a run of four), 0x40 to 0x7F (direct). Registers that a \
-                 procedure writes (filter, preset, calibration) are changed with \"do biss …\"."
+                "items: 0x24:0x10 (bank 24h, offset 10h), 0x24:0x10+4 (four consecutive registers), 0x40 to 0x7F (direct). To \
+                 change filter, preset or calibration, use \"do biss …\"."
             }
             CommandId::Restore => {
-                "another type is another profile ID, manufacturer or device ID, or another number of bits of turns or steps"
+                "another type means another profile ID, manufacturer or device ID, or another number of bits of turns or steps"
             }
             CommandId::Decode => {
-                "UBICOM frames, bridge packets (up to their 00), position frames of the kit encoder (41 bits right-justified: \
+                "UBICOM frames, bridge packets (to the final 00), position frames of the kit encoder (41 bits right-justified: \
                  16 turns, 17 steps, error, warning, CRC-6; one word of 11 hex digits or with 0x), and position words as \
                  \"position\" prints them (0x024698000, or raw=610893824 from JSON or a table)"
             }
-            CommandId::Simulate => "the line is UBICOM; --set firmware=1.2.0 and others",
+            CommandId::Simulate => "serves UBICOM; for example --set firmware=1.2.0",
             _ => return None,
         };
         Some(help.to_owned())

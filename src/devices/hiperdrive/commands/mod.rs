@@ -38,29 +38,29 @@ impl DeviceCommands for HiperdriveCommands {
     }
 
     fn about(&self) -> &'static str {
-        "HIPERDRIVE with EtherNet/IP (enip:), one behind an adapter or up to eight behind a hub"
+        "HIPERDRIVE with EtherNet/IP (enip:): one drive behind an adapter, or up to eight behind a hub"
     }
 
     fn help(&self, command: CommandId) -> Option<String> {
         let help = match command {
-            CommandId::Find => "every adapter and hub in the network",
+            CommandId::Find => "searches the network for adapters and hubs",
             CommandId::Read => {
-                let items = "a parameter's number: 17, 158; of another drive of a hub 158 with --drive 2, or 258";
+                let items =
+                    "items: parameter numbers, such as 17 or 158; for drive 2 of a hub, 258, or 158 with --drive 2";
                 return Some(format!("{items}.\n\n{}", listed_parameters()));
             }
             CommandId::Write => {
-                "a parameter that can be written, as read has it; it is saved where it can be. 101 to 104 move a drive and are \
-                 never written; 47 and 198 are \"do hiperdrive save\", \"set-position\" and others."
+                "items: writable parameters, numbered as for read; the value is saved if the drive can store it. 101 to 104 move \
+                 a drive and are never written; for 47, 198 and 199 use \"do hiperdrive …\"."
             }
             CommandId::Restore => {
-                "another type is an adapter, a hub with four or with eight places instead of another one, or another variant of \
-                 drive at a place"
+                "another type means another category (adapter, 4-port hub, 8-port hub), or another drive variant at a port"
             }
             CommandId::Decode => {
                 "control and status words, 4 hex digits each (0439); process data as they are sent (8, 16, 32, 40, 64 or 72 \
-                 bytes); parameter words (8 bytes); EtherNet/IP packets with the parameters that they are about"
+                 bytes); parameter words (8 bytes); EtherNet/IP packets with their parameters"
             }
-            CommandId::Simulate => "--listen is over TCP and over UDP",
+            CommandId::Simulate => "--listen serves TCP and UDP",
             _ => return None,
         };
         Some(help.to_owned())
@@ -129,7 +129,7 @@ struct MoveCommand;
 impl OwnCommand for MoveCommand {
     fn command(&self) -> clap::Command {
         Move::augment_args(clap::Command::new("move"))
-            .about("hiperdrive: a drive goes to a position. Ctrl-C stops it; it is off afterwards")
+            .about("hiperdrive: move a drive to a position. Ctrl-C stops it; afterwards the drive is switched off")
     }
 
     fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result {
@@ -140,7 +140,7 @@ impl OwnCommand for MoveCommand {
 /// All parameters with their numbers, a line each: for the help, since a number alone says nothing.
 fn listed_parameters() -> String {
     let mut text = "\
-Parameters of HIPERDRIVE, of the device below 100, of drive 1 from 101 on (drive 2 from 201 on, and so on to drive 8):
+Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201 of drive 2, up to drive 8):
 "
     .to_owned();
     for row in PARAMETERS {

@@ -5,10 +5,10 @@ use clap::{Args, ValueEnum};
 /// Options of `find`.
 #[derive(Args)]
 pub(super) struct FindOptions {
-    /// hiperface: exactly one encoder is connected: also ask by broadcast.
+    /// hiperface: only one encoder is connected, so the broadcast address may be used as well.
     #[arg(long)]
     pub(super) one_encoder: bool,
-    /// hiperface: wait so long for the encoder to be switched off and on, and ask within its default window.
+    /// hiperface: wait this long for a power cycle, and search within the encoder's default window after it.
     #[arg(long, value_name = "SECONDS")]
     pub(super) power_cycle: Option<u64>,
 }
@@ -16,10 +16,10 @@ pub(super) struct FindOptions {
 /// Options of `do`.
 #[derive(Args)]
 pub(super) struct DoOptions {
-    /// hiperface set-position: exactly this value, also when it breaks the phase to the sine signal.
+    /// hiperface set-position: set exactly this value, even if it breaks the phase to the sine signal.
     #[arg(long)]
     pub(super) exact: bool,
-    /// hiperface synchronise: the encoder is a kit, where its type does not tell.
+    /// hiperface synchronise: the encoder is a kit encoder, if its type does not show that.
     #[arg(long)]
     pub(super) kit: bool,
 }
@@ -29,29 +29,29 @@ pub(super) struct DoOptions {
 pub(super) enum HiperfaceAction {
     /// restart the encoder and read its status
     Reset,
-    /// the start-up sequence with a verdict a line, with restart behind it after a restart
+    /// run the start-up sequence and rate each step; with the argument restart, restart the encoder first
     Check,
-    /// POSITION, the nearest value that keeps the phase to the sine signal
+    /// POSITION: set the nearest value that keeps the phase to the sine signal
     SetPosition,
-    /// POSITION, for kit encoders, aligns the code tracks as well
+    /// POSITION: set the position of a kit encoder and align its code tracks
     Synchronise,
     // Brackets in what rustdoc reads would be links.
-    #[value(help = "NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1]")]
+    #[value(help = "NUMBER SIZE|STATUS [code=N] [ce=0|1] [we=0|1]: create a data field")]
     CreateField,
-    /// NUMBER SIZE, the last field only
+    /// NUMBER SIZE: change the size of the last field
     ResizeField,
-    /// NUMBER, write protect
+    /// NUMBER: write-protect a field
     LockField,
-    /// NUMBER, make writable
+    /// NUMBER: make a field writable
     UnlockField,
-    /// NUMBER, the last field only
+    /// NUMBER: delete the last field
     DeleteField,
-    /// NUMBER HEX, the present code is given with --code
+    /// NUMBER HEX: change an access code; --code gives the present one
     ChangeCode,
-    /// counter + 1
+    /// increment the counter
     IncrementCounter,
-    /// counter to 0
+    /// clear the counter
     ClearCounter,
-    /// SETTINGS, interface settings until the next restart
+    /// SETTINGS: change the interface settings until the next restart
     ConfigureForNow,
 }

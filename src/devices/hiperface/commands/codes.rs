@@ -12,7 +12,7 @@ use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 /// The option of every command.
 #[derive(Args)]
 pub(super) struct CodeOption {
-    /// An access code other than 55h, of a device that has them, as N=HEX; repeatable. Also in ENCODER_STUDIO_CODES="0=66,2=1A".
+    /// Access code N, if it is not 55h; repeatable. Also read from ENCODER_STUDIO_CODES="0=66,2=1A".
     #[arg(long = "code", global = true, value_name = "N=HEX")]
     // Taken as text: a message about a wrong argument repeats it, and this may be a code.
     pub(super) codes: Vec<String>,

@@ -41,18 +41,17 @@ impl DeviceCommands for HiperfaceCommands {
 
     fn help(&self, command: CommandId) -> Option<String> {
         let help = match command {
-            CommandId::Find => "every address, speed and parity that answers",
-            CommandId::Status => "the whole error queue",
+            CommandId::Find => "tries every address, baud rate and parity",
+            CommandId::Status => "reads the whole error queue",
             CommandId::Read => {
-                "field:N, field:N@ADDR+COUNT (without +COUNT the rest of the field), status:N, analogue:CH, counter, address, \
-                 settings"
+                "items: field:N, field:N@ADDR+COUNT (without +COUNT: to the end of the field), status:N, analogue:CH, counter, \
+                 address, settings"
             }
             CommandId::Write => {
-                "field:N, field:N@ADDR+COUNT (without +COUNT as many bytes as are given), status:N, counter (to 0), address, \
-                 settings"
+                "items: field:N, field:N@ADDR+COUNT (+COUNT may be left out), status:N, counter (0 clears it), address, settings"
             }
-            CommandId::Restore => "another type is another type byte",
-            CommandId::Simulate => "--set model=sel37 and others",
+            CommandId::Restore => "another type means another type byte",
+            CommandId::Simulate => "for example --set model=sel37",
             _ => return None,
         };
         Some(help.to_owned())

@@ -10,13 +10,13 @@ use crate::devices::interbus::protocol::Mode;
 pub(super) struct WordOptions {
     #[command(flatten)]
     pub(super) way: DirectionOption,
-    /// interbus: the mode that the encoder was in; with --direction out, a word that is not legal in it is an error.
+    /// interbus: mode of the encoder. With --direction out, a word not allowed in this mode is an error.
     #[arg(long, value_enum)]
     pub(super) mode: Option<WordMode>,
-    /// interbus: what was read out, by name (temperature, operating-time …) or number (0x5D: chip register 5).
+    /// interbus: value that was read out, by name (temperature, operating-time …) or number (0x5D: chip register 5).
     #[arg(long = "read-out", value_name = "NAME|N")]
     pub(super) read_out: Option<String>,
-    /// interbus: shift_iw, how far the position is shifted under the window of a cam output word.
+    /// interbus: window shift (shift_iw) of a cam output word.
     #[arg(long, value_name = "0..25", value_parser = clap::value_parser!(u8).range(0..=25))]
     pub(super) shift: Option<u8>,
 }
@@ -24,15 +24,15 @@ pub(super) struct WordOptions {
 /// The modes of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum WordMode {
-    /// It runs.
+    /// Operation.
     Position,
-    /// Parameters are being set.
+    /// Parameterisation.
     Parameterisation,
-    /// Something is read out.
+    /// Read-out.
     ReadOut,
-    /// It sends its speed.
+    /// Velocity output.
     Velocity,
-    /// A cam program is selected.
+    /// Selection of a cam program.
     Cam,
 }
 
@@ -51,15 +51,15 @@ impl From<WordMode> for Mode {
 /// The actions of INTERBUS encoders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum InterbusAction {
-    /// gateway, word order, handshake, identity with a verdict a line
+    /// rate gateway, word order, handshake and identity
     Check,
     // Brackets in what rustdoc reads would be links.
     #[value(
-        help = "[POSITION]: store a value, then make the place that value, at standstill; without a value the stored one"
+        help = "[POSITION]: store a preset value and set the present position to it, at standstill; without a value, use the stored one"
     )]
     Preset,
-    /// out of a parameterisation that was left, to run
+    /// leave an unfinished parameterisation and return to operation
     LeadBack,
-    /// back to what was delivered; experimental, since only the manual's appendix has it
+    /// load the factory settings; experimental, since only the manual's appendix describes it
     Default,
 }

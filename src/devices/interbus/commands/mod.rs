@@ -33,8 +33,9 @@ use crate::profile::Body;
 pub(crate) struct InterbusCommands;
 
 /// Warning about the effect of reading cam programs on a machine.
-const SWITCHES: &str = "cam programs are selected one after the other to be read, which switches its live outputs. On a \
-                        terminal it asks first whether the machine stands still; without one it says so and goes on.";
+const SWITCHES: &str = "reading cam programs selects them one after the other, which switches the encoder's live outputs. \
+                        A terminal asks first whether the machine is at standstill; without one, a note goes to stderr \
+                        and the command continues.";
 
 impl DeviceCommands for InterbusCommands {
     fn name(&self) -> &'static str {
@@ -42,29 +43,31 @@ impl DeviceCommands for InterbusCommands {
     }
 
     fn about(&self) -> &'static str {
-        "INTERBUS encoder (K3) behind a Modbus/TCP gateway (modbus:); words of K1 and K2 are explained offline (decode)"
+        "INTERBUS encoder (K3) behind a Modbus/TCP gateway (modbus:); decode also explains words of K1 and K2"
     }
 
     fn note(&self) -> Option<&'static str> {
-        Some("Reading an INTERBUS encoder replaces its position for a moment.")
+        Some("Reading a value of an INTERBUS encoder briefly replaces its position in the process data.")
     }
 
     fn help(&self, command: CommandId) -> Option<String> {
         let help = match command {
             CommandId::Read => {
-                let items = "steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
+                let items = "items: steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
                              cam-mask:P, temperature, operating-time";
                 return Some(format!("{items}; {SWITCHES}"));
             }
             CommandId::Save | CommandId::Diff | CommandId::Verify => SWITCHES,
             CommandId::Write => {
-                "what read has but for what is measured; cw or ccw for the direction, START..STOP for a cam; a preset is stored \
-                 and not fired"
+                "items: as for read, except measured values; the direction is cw or ccw, a cam START..STOP. A preset is stored \
+                 and not activated."
             }
-            CommandId::Restore => "another type is single turn instead of multiturn, or steps counted less one",
+            CommandId::Restore => {
+                "another type means singleturn instead of multiturn, or a number of steps coded as N - 1"
+            }
             CommandId::Decode => {
-                "words of the process data, 8 hex digits each (a K2 word as a K3 position), or 4 for a K1 encoder. All that a \
-                 word may mean is told; --direction and --mode say which it is."
+                "words of the process data, 8 hex digits each (a K2 word as a K3 position), or 4 for K1. Every possible meaning \
+                 is printed; --direction and --mode select one."
             }
             _ => return None,
         };

@@ -6,15 +6,15 @@ use clap::{Args, Subcommand, ValueEnum};
 
 #[derive(Subcommand)]
 pub(crate) enum Ssi {
-    /// Decodes frames
+    /// Decode frames.
     Decode(SsiDecode),
-    /// The frame of a position.
+    /// Encode a position as a frame.
     Encode(SsiEncode),
-    /// Layouts that fit recorded frames, the best first.
+    /// Find layouts that fit recorded frames, best first.
     ///
-    /// The shaft has to turn while they are recorded. Each layout has a SPEC for --layout.
+    /// The shaft has to turn during the recording. Each layout is printed as a SPEC for --layout.
     Find(SsiFind),
-    /// A decoder or table for other programs, or a profile.
+    /// Export a decoder or a table for other programs, a picture, or a profile.
     #[command(after_long_help = PROFILE)]
     Export(SsiExport),
 }
@@ -48,18 +48,18 @@ Beside the frame: name, family (whose times count), direction: \"ccw\", preset: 
 pub(crate) struct SsiDecode {
     #[command(flatten)]
     pub(crate) layout: SsiLayout,
-    /// Bits in the order of the clocks (0b1010… or 1010…), or 0x… right-justified; repeatable.
+    /// Frame as bits in clock order (0b1010… or 1010…), or as 0x…, right-justified; repeatable.
     #[arg(required = true, value_name = "FRAME")]
     pub(crate) frames: Vec<String>,
 }
 
 #[derive(Args)]
 pub(crate) struct SsiFind {
-    /// A file with a frame a line, in the order of reading: bits in the order of the clocks, or 0x… right-justified. Further
-    /// columns are not looked at.
+    /// File with one frame per line, in the order of reading: bits in clock order, or 0x…, right-justified. Further columns
+    /// are ignored.
     #[arg(value_name = "FRAMES.txt")]
     pub(crate) file: PathBuf,
-    /// Bits of a frame that is written in hex.
+    /// Number of bits of a frame given in hex.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     pub(crate) clocks: Option<u8>,
 }
@@ -68,16 +68,16 @@ pub(crate) struct SsiFind {
 pub(crate) struct SsiEncode {
     #[command(flatten)]
     pub(crate) layout: SsiLayout,
-    /// Turns and steps as one number; where it is given with them, they have to be the same.
+    /// Turns and steps as one number. If given together with --turns and --steps, they have to agree.
     #[arg(long, value_name = "N", required_unless_present = "steps", allow_negative_numbers = true)]
     pub(crate) position: Option<String>,
-    /// Whole turns; 0 if left out.
+    /// Whole turns. Default: 0.
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(crate) turns: Option<String>,
     /// Steps within the turn.
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) steps: Option<String>,
-    /// An error bit that speaks, by its name; repeatable.
+    /// Name of an error bit to set; repeatable.
     #[arg(long = "error", value_name = "NAME")]
     pub(crate) errors: Vec<String>,
 }
@@ -86,22 +86,22 @@ pub(crate) struct SsiEncode {
 pub(crate) struct SsiExport {
     #[command(flatten)]
     pub(crate) layout: SsiLayout,
-    /// Format to write
+    /// Format to write.
     #[arg(long, value_enum)]
     pub(crate) format: SsiFormat,
-    /// timing: the clock in hertz; as in the profile, else 400000.
+    /// timing: clock in hertz. Default: as in the profile, else 400000.
     #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1_000..=20_000_000))]
     pub(crate) clock: Option<u32>,
-    /// timing: the pause behind a burst, in microseconds; as in the profile, else 250.
+    /// timing: pause after a burst in microseconds. Default: as in the profile, else 250.
     #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub(crate) pause: Option<u32>,
-    /// timing: the cable in metres.
+    /// timing: cable length in metres.
     #[arg(long, value_name = "M")]
     pub(crate) cable: Option<u16>,
-    /// timing: positions are made when the host clocks.
+    /// timing: synchronous mode, in which the position is sampled at the host's clock.
     #[arg(long)]
     pub(crate) synchronous: bool,
-    /// The file to write; without it, it is printed.
+    /// File to write. Default: standard output.
     #[arg(short = 'o', long = "output", value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
 }
@@ -115,14 +115,14 @@ pub(super) struct LayoutOption {
 
 #[derive(Args)]
 pub(crate) struct SsiLayout {
-    /// A profile of an SSI encoder, or a family with its settings, as ahm36,code=gray,st=12. What is left out is as
-    /// delivered, with the largest resolution.
+    /// Profile of an SSI encoder, or a family with settings, such as ahm36,code=gray,st=12. Settings that are left out have
+    /// the factory value and the largest resolution.
     ///
     /// Families: ahs36 ahm36 afs60 afm60 afs60s afm60s atm60 atm90 ars60 ttk70 kh53. Settings: code=binary|gray|gray-excess|bcd,
     /// over=position|padded|errors (what Gray goes over), mt= and st= (bits), steps= with turns= or revolutions=25/2,
     /// clocks=, align=left|right24|right25|tree12_13|tree13_12, shift=0|1, err=none|fix|following, step= (nanometres),
-    /// direction=cw|ccw and preset= (which do not change how a frame is read). Or linuxcnc: with a format string of LinuxCNC
-    /// behind it. Or any frame, as ssi find gives it: frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1 with clocks=, mt= and
+    /// direction=cw|ccw and preset= (which do not change how a frame is read). Or linuxcnc: followed by a format string of
+    /// LinuxCNC. Or any frame, as printed by ssi find: frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1 with clocks=, mt= and
     /// st= (or steps= with turns= or revolutions=, or bits= with step=), code=, over=, area=, lead=, between=, shift=,
     /// inverted=0|1, parity=even@27|odd@27, repeat=25+1, and clocks of further bits: ones= (always 1), err=, unknown=.
     #[arg(long = "layout", value_name = "FILE|SPEC")]
@@ -138,14 +138,14 @@ pub(crate) enum SsiFormat {
     St,
     /// The format string of LinuxCNC's ssi_chan.
     Linuxcnc,
-    /// A row for each clock.
+    /// A table with a row per clock.
     Csv,
-    /// Settings for common SSI modules of controls
+    /// Settings for common SSI modules of PLCs.
     Sheet,
-    /// A profile: a text that a person can read and change, for --layout and the window.
+    /// A profile for --layout and the window.
     Profile,
     /// A picture of the frame.
     Svg,
-    /// A picture of a burst in time, with what does not fit said on stderr.
+    /// A timing diagram of a burst; violated limits are named on stderr.
     Timing,
 }

@@ -32,30 +32,29 @@ impl DeviceCommands for SsiCommands {
     }
 
     fn about(&self) -> &'static str {
-        "SSI encoder; it sends its position and nothing else: --layout says how its frame is made"
+        "SSI encoder, which sends only its position; --layout defines the frame"
     }
 
     fn note(&self) -> Option<&'static str> {
         Some(
-            "An SSI encoder sends its position and nothing else: --layout says how its frame is made, and ssi explains frames \
-             offline.",
+            "An SSI encoder sends only its position: --layout defines the frame, and ssi works with frames without a device.",
         )
     }
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         let help = match command {
-            CommandId::Status | CommandId::Position => "ssi: how its frame is made",
-            CommandId::Save => "ssi: the layout to save",
-            CommandId::Simulate => "ssi: the encoder behind the adapter, without it atm60,code=gray",
+            CommandId::Status | CommandId::Position => "ssi: layout of the frame",
+            CommandId::Save => "ssi: layout to save",
+            CommandId::Simulate => "ssi: layout of the encoder behind the adapter (default atm60,code=gray)",
             _ => return Vec::new(),
         };
-        let help = format!("{help}; a profile or a family with its settings (help ssi decode says which)");
+        let help = format!("{help}, as a profile or a family with settings (listed by help ssi decode)");
         options_of::<LayoutOption>().into_iter().map(|option| option.help(help.clone())).collect()
     }
 
     fn refused_option(&self, option: &str) -> Option<String> {
         let is_own = option == "--layout";
-        is_own.then(|| format!("{option} is for {KIND} devices; others tell that themselves"))
+        is_own.then(|| format!("{option} is for {KIND} devices; other devices report their own"))
     }
 
     fn own_commands(&self) -> &'static [&'static dyn OwnCommand] {
@@ -64,10 +63,10 @@ impl DeviceCommands for SsiCommands {
 
     fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
-            Command::Identify(_) => refuse("identify", "its type label says who it is"),
+            Command::Identify(_) => refuse("identify", "its type label has the identity"),
             Command::Status(status) => live::status(common, output, status),
             Command::Position(position) => live::position(common, output, position),
-            Command::Read(_) => refuse("read", "there are no registers in it"),
+            Command::Read(_) => refuse("read", "it has no registers"),
             Command::Save(save) => profiles::save(common, output, save),
             Command::Write(_) => refuse("write", SET),
             Command::Do(_) => refuse("do", SET),
@@ -90,7 +89,7 @@ impl DeviceCommands for SsiCommands {
 }
 
 /// How an encoder is configured.
-const SET: &str = "it is set with its maker's own tool";
+const SET: &str = "configure it with the manufacturer's tool";
 
 /// `ssi`: frames without an encoder.
 struct SsiCommand;
@@ -98,7 +97,7 @@ struct SsiCommand;
 impl OwnCommand for SsiCommand {
     fn command(&self) -> clap::Command {
         Ssi::augment_subcommands(clap::Command::new(KIND))
-            .about("Frames of SSI encoders: what they say, how they are made, decoders for other programs")
+            .about("Decode, encode and analyse SSI frames, and export decoders")
             .subcommand_required(true)
             .arg_required_else_help(true)
     }
