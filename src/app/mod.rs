@@ -24,6 +24,7 @@ mod motion;
 mod notices;
 pub(crate) mod number;
 mod opening;
+pub(crate) mod palette;
 mod payload;
 mod pending;
 mod picture;

@@ -110,8 +110,8 @@ fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// A time of the logbook, where this computer is.
-fn time(at: Timestamp) -> String {
+/// Formats a time of the logbook in the local time zone.
+pub(super) fn time(at: Timestamp) -> String {
     at.to_zoned(TimeZone::system()).strftime("%Y-%m-%d  %H:%M:%S").to_string()
 }
 

@@ -4,6 +4,7 @@
 
 use egui::Ui;
 
+use super::commands::NamedAction;
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, workspace};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
@@ -111,6 +112,11 @@ pub trait TypedDeviceView: Sync + 'static {
         None
     }
 
+    /// Returns the actions of this kind for the command palette. None of them moves anything.
+    fn named_actions(_theme: &Theme, _device: &Self::Device) -> Vec<NamedAction> {
+        Vec::new()
+    }
+
     /// Draws what the tab offers without a device, below the buttons of every kind.
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
@@ -128,6 +134,9 @@ pub trait DeviceView: Sync {
 
     /// Returns what the header says while the device moves; `None` while it does not.
     fn motion(&self, device: &AnyDevice) -> Option<Text>;
+
+    /// Returns the actions of this kind for the command palette. None of them moves anything.
+    fn named_actions(&self, theme: &Theme, device: &AnyDevice) -> Vec<NamedAction>;
 
     /// Draws the position large, in this ink, and the numbers beside it.
     fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb);
@@ -178,6 +187,10 @@ impl<V: TypedDeviceView> DeviceView for V {
 
     fn motion(&self, device: &AnyDevice) -> Option<Text> {
         device.get::<V::Device>().and_then(V::motion)
+    }
+
+    fn named_actions(&self, theme: &Theme, device: &AnyDevice) -> Vec<NamedAction> {
+        device.get::<V::Device>().map(|device| V::named_actions(theme, device)).unwrap_or_default()
     }
 
     fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb) {

@@ -3,6 +3,7 @@
 
 pub mod backups;
 pub(crate) mod check;
+mod commands;
 pub mod controls;
 pub(crate) mod device_view;
 pub(crate) mod dialogs;
@@ -28,6 +29,7 @@ mod window;
 pub(crate) mod wiring;
 pub(crate) mod workspace;
 
+pub use commands::NamedAction;
 pub use device_view::{DeviceView, PageInfo, SessionView, TabPage, TabViews, ToolPages, ToolView, TypedDeviceView};
 pub use dialogs::connect::{ConnectForm, TypedConnectForm};
 pub use run::run;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
-use super::dialogs::{ConnectView, FileView};
+use super::dialogs::{ConnectView, FileView, PaletteUiState};
 use super::plot;
 use crate::app::{AnyDevice, SessionId, Studio, Tab};
 
@@ -16,6 +16,8 @@ pub struct Views {
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
+    /// The command palette, while it is open.
+    pub(super) palette: Option<PaletteUiState>,
     /// The plot of the encoder that is shown.
     pub(super) plot: plot::PlotUiState,
     /// Microseconds from one reading of the position to the next.
@@ -33,6 +35,7 @@ impl Views {
             file: None,
             about: false,
             help: false,
+            palette: None,
             plot: plot::PlotUiState::in_panel(),
             rate: 50_000,
         }

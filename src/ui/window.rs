@@ -4,15 +4,16 @@ use std::time::Duration;
 
 use egui::{Key, Modifiers, Panel, Ui};
 
-use super::device_view::{DeviceView, TabViews};
-use super::dialogs::{self, FileView};
+use super::commands::{self, Effect};
+use super::device_view::TabViews;
+use super::dialogs::{self, FileView, PaletteUiState};
 use super::docks::Docks;
 use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
 use super::{Theme, Views, header, review, stop_debounce};
-use crate::app::{Action, AnyDevice, DeviceCommand, Studio, ThemeData};
+use crate::app::{Action, AnyDevice, Studio, ThemeData};
 
 pub struct Window {
     studio: Studio,
@@ -26,10 +27,6 @@ pub struct Window {
     /// The notice that is shown, and since when, on the window's clock.
     notice_since: Option<(jiff::Zoned, f64)>,
 }
-
-/// The keys of the tabs with Ctrl, in the tabs' order.
-const TAB_KEYS: [Key; 9] =
-    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Window {
     /// A window on a studio, with these tabs.
@@ -49,9 +46,9 @@ impl Window {
         let ctx = ui.ctx().clone();
         self.studio.poll();
         let mut actions = Vec::new();
-        self.take_input(&ctx, &mut actions);
-        let in_use = egui::Popup::is_any_open(&ctx) || ctx.dragged_id().is_some();
         let theme = Theme::new(self.look, self.studio.settings.theme, self.studio.settings.language);
+        self.take_input(&ctx, &theme, &mut actions);
+        let in_use = egui::Popup::is_any_open(&ctx) || ctx.dragged_id().is_some();
         if self.dressed.replace(self.studio.settings.theme) != Some(self.studio.settings.theme) {
             theme.dress(&ctx);
         }
@@ -125,6 +122,13 @@ impl Window {
         {
             self.views.help = false;
         }
+        if let Some(mut palette) = self.views.palette.take() {
+            let commands = commands::all(theme, &self.studio, &self.views);
+            match dialogs::palette_ui(ctx, theme, &mut palette, commands) {
+                Some(effect) => self.carry_out(effect, actions),
+                None => self.views.palette = Some(palette),
+            }
+        }
         dialogs::diverged_ui(ctx, theme, &self.studio, actions);
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
@@ -192,7 +196,7 @@ impl Window {
     }
 
     /// The keyboard, and files that are dropped on the window.
-    fn take_input(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
+    fn take_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
             self.hear_close(ctx);
         }
@@ -203,7 +207,7 @@ impl Window {
             actions.push(Action::StopMotion);
         }
         let pressed = |modifiers, key| ctx.input_mut(|input| input.consume_key(modifiers, key));
-        if pressed(Modifiers::NONE, Key::F1) {
+        if pressed(Modifiers::NONE, commands::HELP_KEY) {
             self.views.help = !self.views.help;
         }
         let covered = self.is_covered() || self.views.help;
@@ -216,33 +220,56 @@ impl Window {
         if self.is_covered() {
             return;
         }
-        let mut keys = vec![(Modifiers::COMMAND, Key::O, Action::AskOpen)];
-        let tabs = TAB_KEYS.into_iter().zip(self.views.tabs.tabs());
-        keys.extend(tabs.map(|(key, tab)| (Modifiers::COMMAND, key, Action::ShowTab(tab))));
-        if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
-            keys.push((Modifiers::NONE, Key::F5, device.command(DeviceCommand::Read)));
-            // The one with more keys first: it would be taken for the other.
-            keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::S, device.command(DeviceCommand::AskSave)));
-            keys.push((Modifiers::COMMAND, Key::S, Action::Save(device.id())));
-            keys.push((Modifiers::COMMAND, Key::Enter, device.command(DeviceCommand::Review)));
-            // A text that is typed has steps of its own, and so has the hex editor. A boundary that was just moved has none.
-            let view = self.views.tabs.device(device.tab());
-            if view.is_some_and(DeviceView::has_undo_keys) && !ctx.text_edit_focused() {
-                keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::Z, device.command(DeviceCommand::Redo)));
-                keys.push((Modifiers::COMMAND, Key::Z, device.command(DeviceCommand::Undo)));
-                keys.push((Modifiers::COMMAND, Key::Y, device.command(DeviceCommand::Redo)));
+        if pressed(Modifiers::COMMAND, Key::K) {
+            self.views.palette = Some(PaletteUiState::default());
+            return;
+        }
+        if !ctx.input(|input| input.events.iter().any(|event| matches!(event, egui::Event::Key { pressed: true, .. })))
+        {
+            return;
+        }
+        let typing = ctx.text_edit_focused();
+        for command in commands::with_keys(theme, &self.studio, &self.views) {
+            let keys = command.shortcut.filter(|_| !typing || !command.yields_to_typing);
+            if keys.is_some_and(|keys| pressed(keys.modifiers, keys.logical_key)) {
+                self.carry_out(command.effect, actions);
             }
         }
-        for (modifiers, key, action) in keys {
-            if pressed(modifiers, key) {
+    }
+
+    /// Carries out a command that was chosen by its key or in the command palette.
+    fn carry_out(&mut self, effect: Effect, actions: &mut Vec<Action>) {
+        let Window { studio, views, docks, .. } = self;
+        match effect {
+            Effect::Act(action) => {
+                if matches!(action, Action::ShowTab(_)) {
+                    views.plot.make_small();
+                }
                 actions.push(action);
             }
+            Effect::Page(session, page) => {
+                if let Some(view) = studio.device(session).and_then(|device| views.session(device)) {
+                    view.open(page);
+                    views.plot.make_small();
+                    actions.push(Action::Select(session));
+                }
+            }
+            Effect::ToolPage(tab, page) => {
+                if let Some(tool) = views.tool(tab) {
+                    tool.open(page);
+                    views.plot.make_small();
+                    actions.push(Action::ShowTab(tab));
+                }
+            }
+            Effect::ToggleHelp => views.help = !views.help,
+            Effect::About => views.about = true,
+            Effect::ResetLayout => docks.reset(),
         }
     }
 
     /// Returns whether a dialog covers the window and has the keyboard.
     fn is_covered(&self) -> bool {
-        let dialog = self.views.file.is_some() || self.views.about;
+        let dialog = self.views.file.is_some() || self.views.about || self.views.palette.is_some();
         self.studio.connect.is_some() || self.asks() || dialog
     }
 
@@ -277,7 +304,8 @@ impl Window {
         let views = &mut self.views;
         if !moves
             && !self.studio.works()
-            && (views.file.take().is_some()
+            && (views.palette.take().is_some()
+                || views.file.take().is_some()
                 || std::mem::take(&mut views.about)
                 || std::mem::take(&mut views.help)
                 || views.plot.make_small())

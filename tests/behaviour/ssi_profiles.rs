@@ -217,9 +217,9 @@ fn what_ssi_encoders_do_not_have_is_said_with_what_there_is() {
     let cases: [(&[&str], &str); 11] = [
         (&["identify", "ssi", sim], "type label"),
         (&["read", "ssi", "0x10", sim], "registers"),
-        (&["write", "ssi", "0x10", "1", "--yes", sim], "its maker's own tool"),
-        (&["do", "ssi", "preset", sim], "its maker's own tool"),
-        (&["restore", &file, "--yes", sim], "its maker's own tool"),
+        (&["write", "ssi", "0x10", "1", "--yes", sim], "the manufacturer's tool"),
+        (&["do", "ssi", "preset", sim], "the manufacturer's tool"),
+        (&["restore", &file, "--yes", sim], "the manufacturer's tool"),
         (&["verify", &file, sim], "diff FILE FILE"),
         (&["diff", &file, sim], "diff FILE FILE"),
         (&["decode", "ssi", "00"], "ssi decode --layout"),

@@ -31,6 +31,7 @@ mod losing;
 mod monkey;
 #[path = "../new_kind/novo/mod.rs"]
 mod novo;
+mod palette;
 mod pressing;
 mod profiles;
 mod recording;

@@ -1,13 +1,15 @@
-//! Dialogs over the window: connecting, a question, a path to type, what this program is, help.
+//! Dialogs over the window: connecting, a question, a path to type, what this program is, help, the command palette.
 
 mod about;
 pub(crate) mod connect;
 mod diverged;
 mod file;
+mod palette;
 mod question;
 
 pub(super) use about::{about_ui, help_ui};
 pub(super) use connect::{ConnectView, connect_ui};
 pub(super) use diverged::diverged_ui;
 pub(super) use file::{FileView, ask, file_ui};
+pub(super) use palette::{PaletteUiState, palette_ui};
 pub(super) use question::question_ui;

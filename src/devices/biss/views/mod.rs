@@ -18,7 +18,7 @@ use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Theme, backups, icons, page, workspace};
+use crate::ui::{NamedAction, Theme, backups, icons, page, workspace};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -105,6 +105,13 @@ impl TypedDeviceView for BissView {
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.serial_number()
+    }
+
+    fn named_actions(theme: &Theme, encoder: &Encoder) -> Vec<NamedAction> {
+        let own = |word, action| {
+            NamedAction::new(theme, word, encoder.session.is_ready(), Action::device(encoder.session.id, action))
+        };
+        vec![own("check_card.run", Biss::Check), own("palette.read_status", Biss::ReadStatus)]
     }
 
     fn is_edited(encoder: &Encoder, page: Page) -> bool {

@@ -25,9 +25,9 @@ use egui::{ScrollArea, Ui};
 
 use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
-use crate::devices::hiperdrive::state::Unit;
+use crate::devices::hiperdrive::state::{HiperdriveAction, Unit};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Theme, backups, edit_bar, icons, workspace};
+use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, workspace};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,6 +94,13 @@ impl TypedDeviceView for HiperdriveView {
 
     fn serial_number(unit: &Unit) -> Option<&str> {
         unit.serial_number()
+    }
+
+    fn named_actions(theme: &Theme, unit: &Unit) -> Vec<NamedAction> {
+        let own = |word, action| {
+            NamedAction::new(theme, word, unit.session.is_ready(), Action::device(unit.session.id, action))
+        };
+        vec![own("check_card.run", HiperdriveAction::Check), own("palette.read_status", HiperdriveAction::ReadStatus)]
     }
 
     fn is_edited(unit: &Unit, page: Page) -> bool {

@@ -12,9 +12,9 @@ mod wiring;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, PendingEdits, Rgb, Studio};
-use crate::devices::hiperface::state::{Encoder, TEXTS};
+use crate::devices::hiperface::state::{Encoder, HiperfaceAction, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Theme, backups, icons, page};
+use crate::ui::{NamedAction, Theme, backups, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,6 +68,16 @@ impl TypedDeviceView for HiperfaceView {
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.identity.as_ref().map(|identity| identity.serial.serial_number.as_str())
+    }
+
+    fn named_actions(theme: &Theme, encoder: &Encoder) -> Vec<NamedAction> {
+        let own = |word, action| {
+            NamedAction::new(theme, word, encoder.session.is_ready(), Action::device(encoder.session.id, action))
+        };
+        vec![
+            own("check_card.run", HiperfaceAction::Check { restart: false }),
+            own("palette.read_status", HiperfaceAction::ReadStatus),
+        ]
     }
 
     fn is_edited(encoder: &Encoder, page: Page) -> bool {

@@ -15,9 +15,9 @@ mod widgets;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, Rgb, Studio};
-use crate::devices::interbus::state::{Encoder, TEXTS};
+use crate::devices::interbus::state::{Encoder, InterbusAction, TEXTS};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Theme, backups, edit_bar, icons, page};
+use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -74,6 +74,18 @@ impl TypedDeviceView for InterbusView {
 
     fn serial_number(encoder: &Encoder) -> Option<&str> {
         encoder.serial_number()
+    }
+
+    fn named_actions(theme: &Theme, encoder: &Encoder) -> Vec<NamedAction> {
+        let own = |word, action| {
+            NamedAction::new(
+                theme,
+                word,
+                encoder.session.is_ready() && encoder.is_stopped(),
+                Action::device(encoder.session.id, action),
+            )
+        };
+        vec![own("check_card.run", InterbusAction::Check)]
     }
 
     fn is_edited(encoder: &Encoder, page: Page) -> bool {

@@ -15,10 +15,10 @@ mod wiring;
 use egui::Ui;
 
 use crate::app::{Action, AnyDevice, DeviceModel, Rgb, Studio};
-use crate::devices::ssi::state::{Encoder, TEXTS};
+use crate::devices::ssi::state::{Encoder, SsiAction, TEXTS};
 use crate::ui::controls::button;
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{Theme, icons, page};
+use crate::ui::{NamedAction, Theme, icons, page};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -66,6 +66,13 @@ impl TypedDeviceView for SsiView {
     type ConnectForm = connect_form::SsiConnectForm;
 
     const HAS_UNDO_KEYS: bool = true;
+
+    fn named_actions(theme: &Theme, encoder: &Encoder) -> Vec<NamedAction> {
+        let own = |word, action| {
+            NamedAction::new(theme, word, encoder.session.is_ready(), Action::device(encoder.session.id, action))
+        };
+        vec![own("check_card.run", SsiAction::Check)]
+    }
 
     fn is_edited(encoder: &Encoder, page: Page) -> bool {
         page == Page::Frame && encoder.is_dirty()

@@ -1,0 +1,42 @@
+//! The command palette: which names of actions fit a typed text, and which of them fits best.
+
+/// Returns how well a name fits a typed text, 0 being best; `None` if one of the typed words is not in it. Case does not
+/// matter, nor does the order of the words.
+pub(crate) fn fit(typed: &str, name: &str) -> Option<usize> {
+    let (typed, name) = (typed.to_lowercase(), name.to_lowercase());
+    typed.split_whitespace().map(|word| word_fit(word, &name)).sum()
+}
+
+/// Returns 0 for a word at the beginning of a name, 1 at the beginning of one of its words, 2 within a word.
+fn word_fit(word: &str, name: &str) -> Option<usize> {
+    name.match_indices(word)
+        .map(|(at, _)| match name.get(..at).and_then(|before| before.chars().next_back()) {
+            None => 0,
+            Some(before) if !before.is_alphanumeric() => 1,
+            Some(_) => 2,
+        })
+        .min()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_typed_word_has_to_occur() {
+        let cases = [
+            ("", "Save", Some(0)),
+            ("sa", "Save", Some(0)),
+            ("AS", "Save as…", Some(1)),
+            ("as", "Last backup", Some(2)),
+            ("mem sk", "SKM36: Memory", Some(1)),
+            ("memory x", "SKM36: Memory", None),
+            ("prüfen", "Gerät prüfen", Some(1)),
+            ("ÄNDERUNG", "Alle Änderungen verwerfen", Some(1)),
+            ("  ", "Save", Some(0)),
+        ];
+        for (typed, name, expected) in cases {
+            assert_eq!(fit(typed, name), expected, "{typed:?} in {name:?}");
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The actions of the window by name: for the keyboard and for the command palette. Each is listed once, with its text, its
+//! key and whether it can be carried out now. Motion is not among them: it needs a held button.
+
+use std::time::Duration;
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use super::backups::time;
+use super::device_view::DeviceView;
+use super::{Theme, Views};
+use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, SessionId, Studio, Tab, Text, connect};
+use crate::store::Backup;
+
+const COMMAND: Modifiers = Modifiers::COMMAND;
+const COMMAND_SHIFT: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
+
+/// Shows and hides the help, over a dialog too.
+pub(super) const HELP_KEY: Key = Key::F1;
+
+/// The keys of the tabs with Ctrl, in the tabs' order.
+const TAB_KEYS: [Key; 9] =
+    [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
+
+/// An action with a name.
+pub(super) struct Command {
+    /// The device or the tab that it is about; empty for the program.
+    pub(super) about: String,
+    pub(super) name: String,
+    pub(super) shortcut: Option<KeyboardShortcut>,
+    /// While text is being typed, its key belongs to the text.
+    pub(super) yields_to_typing: bool,
+    pub(super) is_enabled: bool,
+    pub(super) effect: Effect,
+}
+
+/// What a command does.
+pub(super) enum Effect {
+    Act(Action),
+    /// Open a page of a device.
+    Page(SessionId, usize),
+    /// Open a page of a tab without devices.
+    ToolPage(Tab, usize),
+    ToggleHelp,
+    About,
+    ResetLayout,
+}
+
+/// A named action of one kind of device, for the command palette.
+pub struct NamedAction {
+    /// The text of its button.
+    pub name: String,
+    pub is_enabled: bool,
+    pub action: Action,
+}
+
+/// Returns the commands that have a key, those with more modifiers first: with fewer, they would be taken for the others.
+pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+    let mut commands = of_program(theme, studio, views);
+    if let Some(device) = studio.shown().filter(|device| device.tab() == studio.settings.tab) {
+        let has_undo_keys = views.tabs.device(device.tab()).is_some_and(DeviceView::has_undo_keys);
+        let of_device = of_every_device(theme, device, views).into_iter();
+        commands.extend(of_device.filter(|command| has_undo_keys || !command.yields_to_typing));
+    }
+    commands.retain(|command| command.shortcut.is_some());
+    commands.sort_by_key(|command| command.shortcut.is_some_and(|keys| !keys.modifiers.shift));
+    commands
+}
+
+/// Returns all commands, those of the device that is shown first.
+pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+    let mut commands = Vec::new();
+    if let Some(device) = studio.shown() {
+        commands.extend(of_every_device(theme, device, views));
+        if let Some(view) = views.tabs.device(device.tab()) {
+            let own = view.named_actions(theme, device).into_iter();
+            commands.extend(own.map(|NamedAction { name, is_enabled, action }| Command {
+                is_enabled,
+                ..Command::new(device.name(), name, Effect::Act(action))
+            }));
+        }
+        commands.extend(backups(theme, device));
+        commands.extend(targets(theme, studio, device));
+    }
+    for device in studio.devices() {
+        let pages = views.tabs.pages(device.tab()).into_iter().enumerate();
+        commands.extend(
+            pages.map(|(at, page)| Command::new(device.name(), theme.say(page.word), Effect::Page(device.id(), at))),
+        );
+    }
+    for tool in views.tabs.tools() {
+        let (tab, title) = (tool.kind().tab(), theme.say(tool.title()));
+        let pages = tool.pages().into_iter().enumerate();
+        commands.extend(pages.map(|(at, page)| Command::new(&title, theme.say(page.word), Effect::ToolPage(tab, at))));
+    }
+    commands.extend(of_program(theme, studio, views));
+    commands
+}
+
+/// Returns what can be asked for without a device.
+fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
+    let command = |word: &'static str, effect| Command::new("", theme.say(word), effect);
+    let act = |word: &'static str, action| command(word, Effect::Act(action));
+    let mut commands = vec![
+        act("shell.open", Action::AskOpen).by(COMMAND, Key::O),
+        act("shell.connect", Action::Connect(connect::ConnectAction::Open)),
+        act("shell.virtual_device", Action::OpenVirtual),
+        act("shell.stop", Action::Stop).only_if(studio.moves() || studio.can_stop() || studio.is_in_control()),
+    ];
+    let keys = TAB_KEYS.into_iter().map(Some).chain(std::iter::repeat_with(|| None));
+    commands.extend(views.tabs.tabs().zip(keys).map(|(tab, key)| {
+        let shown = Command::new("", views.tabs.title(theme, tab), Effect::Act(Action::ShowTab(tab)));
+        Command { shortcut: key.map(|key| KeyboardShortcut::new(COMMAND, key)), ..shown }
+    }));
+    let settings = &studio.settings;
+    commands.push(match settings.theme {
+        ColorScheme::Dark => act("shell.light", Action::SetTheme(ColorScheme::Light)),
+        ColorScheme::Light => act("shell.dark", Action::SetTheme(ColorScheme::Dark)),
+    });
+    commands.push(match settings.language {
+        Language::English => act("shell.language", Action::SetLanguage(Language::German)),
+        Language::German => act("shell.language", Action::SetLanguage(Language::English)),
+    });
+    commands.push(command("shell.help", Effect::ToggleHelp).by(Modifiers::NONE, HELP_KEY));
+    commands.push(command("shell.about", Effect::About));
+    commands.push(command("shell.reset_layout", Effect::ResetLayout));
+    commands
+}
+
+/// Returns what every device can be asked for.
+fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Command> {
+    let act = |word: &'static str, action| Command::new(device.name(), theme.say(word), Effect::Act(action));
+    let ask = |word: &'static str, command| act(word, device.command(command));
+    let is_offline = *device.phase() == Phase::Offline;
+    let live = if device.is_polling() {
+        ask("palette.live_pause", DeviceCommand::Poll(None))
+    } else {
+        let every = Duration::from_micros(views.rate);
+        ask("palette.live_start", DeviceCommand::Poll(Some(every))).only_if(device.is_ready())
+    };
+    vec![
+        ask("palette.read_again", DeviceCommand::Read).by(Modifiers::NONE, Key::F5).only_if(device.is_readable()),
+        ask("memory.review", DeviceCommand::Review).by(COMMAND, Key::Enter).only_if(!is_offline && device.is_dirty()),
+        act("shell.save", Action::Save(device.id())).by(COMMAND, Key::S).only_if(device.is_savable()),
+        ask("profile_card.save_as", DeviceCommand::AskSave).by(COMMAND_SHIFT, Key::S).only_if(device.is_savable()),
+        ask("memory.undo", DeviceCommand::Undo).by(COMMAND, Key::Z).beside_text().only_if(device.can_undo()),
+        ask("memory.redo", DeviceCommand::Redo).by(COMMAND_SHIFT, Key::Z).beside_text().only_if(device.can_redo()),
+        ask("memory.redo", DeviceCommand::Redo).by(COMMAND, Key::Y).beside_text().only_if(device.can_redo()),
+        ask("memory.revert", DeviceCommand::RevertAll).only_if(device.is_dirty()),
+        ask("live.once", DeviceCommand::ReadPosition).only_if(device.is_ready()),
+        live,
+        ask("shell.reconnect", DeviceCommand::Reconnect).only_if(!is_offline && !device.is_writing()),
+        act("shell.close_session", Action::CloseSession(device.id())),
+    ]
+}
+
+/// Returns the commands that restore a backup of the device.
+fn backups(theme: &Theme, device: &AnyDevice) -> Vec<Command> {
+    let Some(Ok(backups)) = device.backups() else { return Vec::new() };
+    let restore = |backup: &Backup| {
+        let text = Text::new("palette.restore_backup").with("time", time(backup.taken));
+        let action = device.command(DeviceCommand::Restore(backup.path.clone()));
+        Command::new(device.name(), theme.words(&text), Effect::Act(action)).only_if(device.is_ready())
+    };
+    backups.iter().map(restore).collect()
+}
+
+/// Returns the commands that write an open profile to a connected device of its kind.
+fn targets(theme: &Theme, studio: &Studio, device: &AnyDevice) -> Vec<Command> {
+    let is_target = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
+    let write = |target: &AnyDevice| {
+        let text = Text::new("palette.write_into").with("device", target.name());
+        let action = device.command(DeviceCommand::WriteInto(target.id()));
+        Command::new(device.name(), theme.words(&text), Effect::Act(action)).only_if(target.is_ready())
+    };
+    let is_profile = *device.phase() == Phase::Offline;
+    studio.devices().iter().map(Box::as_ref).filter(is_target).filter(|_| is_profile).map(write).collect()
+}
+
+impl NamedAction {
+    /// An action whose button has this text in the catalogue of common texts.
+    pub fn new(theme: &Theme, word: &'static str, is_enabled: bool, action: Action) -> Self {
+        NamedAction { name: theme.say(word), is_enabled, action }
+    }
+}
+
+impl Command {
+    fn new(about: impl Into<String>, name: String, effect: Effect) -> Self {
+        let about = about.into();
+        Command { about, name, shortcut: None, yields_to_typing: false, is_enabled: true, effect }
+    }
+
+    fn by(self, modifiers: Modifiers, key: Key) -> Self {
+        Command { shortcut: Some(KeyboardShortcut::new(modifiers, key)), ..self }
+    }
+
+    fn beside_text(self) -> Self {
+        Command { yields_to_typing: true, ..self }
+    }
+
+    fn only_if(self, is_enabled: bool) -> Self {
+        Command { is_enabled, ..self }
+    }
+}

@@ -1,0 +1,116 @@
+//! The command palette: finds an action or a page by its name.
+
+use egui::{Align, Key, Layout, Modifiers, Rect, RichText, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+
+use crate::app::palette::fit;
+use crate::ui::Theme;
+use crate::ui::commands::{Command, Effect};
+use crate::ui::controls::{modal, paragraph};
+use crate::ui::entries::text_entry;
+
+const WIDTH: f32 = 560.0;
+const ROW: f32 = 28.0;
+/// Rows that are visible at a time.
+const ROWS: usize = 11;
+
+/// The text that is being typed, and the row that Enter chooses.
+#[derive(Default)]
+pub(in crate::ui) struct PaletteUiState {
+    typed: String,
+    selected: usize,
+}
+
+/// Draws the palette. Returns the effect of the command that was chosen.
+pub(in crate::ui) fn palette_ui(
+    ctx: &egui::Context,
+    theme: &Theme,
+    state: &mut PaletteUiState,
+    commands: Vec<Command>,
+) -> Option<Effect> {
+    let pressed = |key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+    let steps =
+        [(Key::ArrowDown, 1), (Key::ArrowUp, -1), (Key::PageDown, ROWS as isize), (Key::PageUp, -(ROWS as isize))];
+    let step: isize = steps.into_iter().filter(|(key, _)| pressed(*key)).map(|(_, step)| step).sum();
+    let enter = pressed(Key::Enter);
+    modal(ctx, theme, "palette", WIDTH, |ui| {
+        let hint = theme.say("palette.hint");
+        let entry = text_entry(ui, &mut state.typed, WIDTH, &hint, &hint);
+        entry.request_focus();
+        if entry.changed() {
+            state.selected = 0;
+        }
+        let mut found = matching(&state.typed, commands);
+        state.selected = state.selected.saturating_add_signed(step).min(found.len().saturating_sub(1));
+        ui.add_space(theme.space.between);
+        let clicked = ui
+            .allocate_ui(vec2(WIDTH, ROW * ROWS as f32), |ui| {
+                ui.set_min_height(ROW * ROWS as f32);
+                rows_ui(ui, theme, &found, state, step != 0)
+            })
+            .inner;
+        let chosen = clicked.or(enter.then_some(state.selected)).filter(|at| *at < found.len())?;
+        let command = found.swap_remove(chosen);
+        command.is_enabled.then_some(command.effect)
+    })
+}
+
+/// The commands that fit the typed text, best first; those that cannot be carried out now come last.
+fn matching(typed: &str, commands: Vec<Command>) -> Vec<Command> {
+    let fitting = commands.into_iter().filter_map(|command| {
+        let fit = fit(typed, &command.name)
+            .or_else(|| Some(10 + fit(typed, &format!("{} {}", command.about, command.name))?))?;
+        Some((!command.is_enabled, fit, command))
+    });
+    let mut fitting: Vec<(bool, usize, Command)> = fitting.collect();
+    fitting.sort_by_key(|(disabled, fit, _)| (*disabled, *fit));
+    fitting.into_iter().map(|(_, _, command)| command).collect()
+}
+
+/// Draws the commands. Returns the place of the one that was clicked.
+fn rows_ui(ui: &mut Ui, theme: &Theme, commands: &[Command], state: &PaletteUiState, scroll: bool) -> Option<usize> {
+    if commands.is_empty() {
+        paragraph(ui, theme.label(theme.say("palette.none")));
+        return None;
+    }
+    let mut clicked = None;
+    ui.spacing_mut().item_spacing.y = 0.0;
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        for (at, command) in commands.iter().enumerate() {
+            let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), ROW), Sense::click());
+            let is_selected = at == state.selected;
+            if is_selected && scroll {
+                ui.scroll_to_rect(rect, None);
+            }
+            row_ui(ui, theme, rect, command, is_selected || response.hovered());
+            let name = if command.about.is_empty() {
+                command.name.clone()
+            } else {
+                format!("{}: {}", command.about, command.name)
+            };
+            response.widget_info(|| WidgetInfo::selected(egui::Role::Button, command.is_enabled, is_selected, &name));
+            if response.clicked() {
+                clicked = Some(at);
+            }
+        }
+    });
+    clicked
+}
+
+fn row_ui(ui: &mut Ui, theme: &Theme, rect: Rect, command: &Command, is_lit: bool) {
+    let palette = theme.palette;
+    if is_lit {
+        ui.painter().rect_filled(rect, 4.0, ui.visuals().widgets.hovered.weak_bg_fill);
+    }
+    let inner = rect.shrink2(vec2(theme.space.between, 0.0));
+    ui.scope_builder(egui::UiBuilder::new().max_rect(inner).layout(Layout::right_to_left(Align::Center)), |ui| {
+        ui.spacing_mut().item_spacing.x = theme.space.between;
+        if let Some(keys) = command.shortcut {
+            ui.label(theme.mono(ui.ctx().format_shortcut(&keys)).color(palette.muted));
+        }
+        ui.label(theme.caption(&command.about));
+        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+            let ink = if command.is_enabled { palette.text } else { palette.muted };
+            ui.add(egui::Label::new(RichText::new(&command.name).color(ink)).truncate().selectable(false));
+        });
+    });
+}
