@@ -73,6 +73,8 @@ pub enum Action {
     Typed(FileQuestion, PathBuf),
     /// A file was chosen, and what is there may be replaced.
     Chosen(FileQuestion, PathBuf),
+    /// Close the comparison on display.
+    CloseComparison,
     /// Something with the recorder of a desk.
     Recorder(RecorderOwner, recorder::RecorderAction),
     /// Forget what a recorder has recorded; asks first when that is much.
@@ -141,6 +143,8 @@ pub enum Done {
         /// Puts it on the desk, with the tables that its kind needs; `None` of a kind that the window does not show.
         open: Option<OpenProfile>,
     },
+    /// A profile was read to be compared with a session, or not.
+    Compare { session: SessionId, path: PathBuf, result: Result<Box<Document>, ReadError> },
     /// A profile was written.
     Written {
         saving: Box<Saving>,

@@ -3,6 +3,7 @@
 use super::action::ReadError;
 use super::devices::{ActContext, DeviceCommand};
 use super::documents::read_error;
+use super::file_question::FileQuestion;
 use super::payload::{Payload, WrongKind};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
@@ -13,6 +14,9 @@ impl Studio {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
             DeviceCommand::WriteInto(target) => self.write_into(id, target),
+            DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
+            DeviceCommand::AskCompare => self.services.file_question = Some(FileQuestion::Compare(id)),
+            DeviceCommand::Compare(path) => self.compare_with(id, path),
             command => self.with_device(id, |device, services| device.obey(command, services)),
         }
     }

@@ -14,6 +14,10 @@ use super::{DeviceAction, Language, Picture, Text};
 pub enum FileQuestion {
     /// Opens a profile.
     Open,
+    /// A profile to restore to this session's device.
+    Restore(SessionId),
+    /// A profile to compare with this session.
+    Compare(SessionId),
     OpenCapture,
     /// Opens a recorded trace to connect to.
     Recording,
@@ -119,7 +123,9 @@ impl FileQuestion {
     /// Returns the extensions of such files.
     pub fn endings(&self) -> &'static [&'static str] {
         match self {
-            FileQuestion::Open | FileQuestion::Save { .. } => &["ron"],
+            FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {
+                &["ron"]
+            }
             FileQuestion::OpenCapture => &["csv", "txt", "tsv", "dat"],
             FileQuestion::Recording => &["trace", "txt"],
             FileQuestion::Table { .. } => &["csv"],
@@ -131,7 +137,11 @@ impl FileQuestion {
     /// A name to begin with, where a file is to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
-            FileQuestion::Open | FileQuestion::OpenCapture | FileQuestion::Recording => None,
+            FileQuestion::Open
+            | FileQuestion::Restore(_)
+            | FileQuestion::Compare(_)
+            | FileQuestion::OpenCapture
+            | FileQuestion::Recording => None,
             FileQuestion::Save { suggested, .. }
             | FileQuestion::Table { suggested, .. }
             | FileQuestion::Picture { suggested, .. } => Some(suggested),

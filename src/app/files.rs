@@ -8,7 +8,7 @@ use super::file_question::FileQuestion;
 use super::question::{Question, Then};
 use super::recorder::{self, Exported, Recorder};
 use super::studio::{SessionId, Studio};
-use super::{Picture, Severity, Text, connect, explain};
+use super::{DeviceCommand, Picture, Severity, Text, connect, explain};
 use crate::link::{LinkUrl, Scheme};
 use crate::store::{FileError, Folders};
 
@@ -53,6 +53,8 @@ impl Studio {
     pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
+            FileQuestion::Restore(session) => self.act(Action::Command(session, DeviceCommand::Restore(path))),
+            FileQuestion::Compare(session) => self.act(Action::Command(session, DeviceCommand::Compare(path))),
             FileQuestion::OpenCapture => self.open_capture(path),
             FileQuestion::Recording => self.act(Action::Connect(connect::ConnectAction::Recording(path))),
             FileQuestion::Save { session, .. } => self.save(session, path),

@@ -6,6 +6,7 @@ mod brakes;
 pub mod check;
 mod closing;
 mod commanding;
+mod comparison;
 pub mod connect;
 mod devices;
 pub mod diverged;
@@ -54,6 +55,7 @@ pub mod track;
 
 pub use action::{Action, Done, Opened, RecorderOwner, ReviewAction};
 pub use brakes::{Brake, Brakes};
+pub use comparison::ProfileComparison;
 pub(crate) use devices::Prepare;
 pub use devices::{ActContext, DeviceMemory, DeviceModel, MotionControl};
 pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};

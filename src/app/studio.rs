@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::action::{Action, Done, Waited};
+use super::comparison::ProfileComparison;
 use super::connect::Connect;
 use super::devices::{AnyDevice, DeviceType, Selection};
 use super::diverged::Diverged;
@@ -42,6 +43,7 @@ pub struct Studio {
     pub(super) closing: bool,
     pub(super) waited: Option<Waited>,
     path_question: Option<FileQuestion>,
+    pub(super) comparison: Option<ProfileComparison>,
 }
 
 impl Studio {
@@ -65,6 +67,7 @@ impl Studio {
             closing: false,
             waited: None,
             path_question: None,
+            comparison: None,
         }
     }
 
@@ -130,6 +133,7 @@ impl Studio {
             Action::TypePath(question) => self.path_question = Some(question),
             Action::Typed(question, path) => self.typed(question, path),
             Action::Chosen(question, path) => self.chosen(question, path),
+            Action::CloseComparison => self.comparison = None,
             Action::Recorder(desk, action) => self.act_recorder(desk, action),
             Action::AskForget(desk) => self.ask_forget(desk),
             Action::AskTable { desk, visible } => self.ask_table(desk, visible),
@@ -320,6 +324,7 @@ impl Studio {
                 }
             }
             Done::Read { file, result, open } => self.read(file, result, open),
+            Done::Compare { session, path, result } => self.compare(session, path, result),
             Done::Waited(what) => self.waited = self.waited.max(Some(what)),
             Done::Looked { question, path, exists: true } => {
                 let text = Text::new("question.replace").with("path", path.display());
@@ -370,7 +375,7 @@ impl Studio {
         if self.moves_by_hand() {
             return self.stop_motion();
         }
-        if self.decline() || self.diverged.take().is_some() {
+        if self.decline() || self.diverged.take().is_some() || self.close_comparison() {
             return;
         }
         // Watching is no work: drives stay visible while a dialog closes, or while they are under control.

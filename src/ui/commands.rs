@@ -143,6 +143,8 @@ fn of_every_device(theme: &Theme, device: &AnyDevice, views: &Views) -> Vec<Comm
         ask("memory.review", DeviceCommand::Review).by(COMMAND, Key::Enter).only_if(!is_offline && device.is_dirty()),
         act("shell.save", Action::Save(device.id())).by(COMMAND, Key::S).only_if(device.is_savable()),
         ask("profile_card.save_as", DeviceCommand::AskSave).by(COMMAND_SHIFT, Key::S).only_if(device.is_savable()),
+        ask("shell.restore", DeviceCommand::AskRestore).only_if(device.is_ready() && device.has_memory()),
+        ask("shell.compare", DeviceCommand::AskCompare).only_if(device.is_comparable()),
         ask("memory.undo", DeviceCommand::Undo).by(COMMAND, Key::Z).beside_text().only_if(device.can_undo()),
         ask("memory.redo", DeviceCommand::Redo).by(COMMAND_SHIFT, Key::Z).beside_text().only_if(device.can_redo()),
         ask("memory.redo", DeviceCommand::Redo).by(COMMAND, Key::Y).beside_text().only_if(device.can_redo()),

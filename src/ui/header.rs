@@ -7,7 +7,7 @@ use super::page::apart;
 use super::stop_debounce::{goes_down, means_motion, pressed_at};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, ColorScheme, Language, Notice, Studio, Text, connect};
+use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Notice, Studio, Text, connect};
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
@@ -59,6 +59,15 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
     let savable = studio.shown().is_some_and(AnyDevice::is_savable);
     if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.say("shell.save_hint")).clicked() {
         actions.extend(studio.shown().map(|own| Action::Save(own.id())));
+    }
+    let shown = studio.shown();
+    let restorable = shown.is_some_and(|own| own.is_ready() && own.has_memory());
+    if icon_button(ui, restorable, icons::CLOCK_COUNTER_CLOCKWISE, &theme.say("shell.restore")).clicked() {
+        actions.extend(shown.map(|own| own.command(DeviceCommand::AskRestore)));
+    }
+    let comparable = shown.is_some_and(AnyDevice::is_comparable);
+    if icon_button(ui, comparable, icons::ARROWS_OUT_LINE_HORIZONTAL, &theme.say("shell.compare")).clicked() {
+        actions.extend(shown.map(|own| own.command(DeviceCommand::AskCompare)));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
@@ -121,6 +130,22 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
             });
         }
         ui.separator();
+        if let Some(device) = studio.shown() {
+            let restorable = device.is_ready() && device.has_memory();
+            let entries = [
+                (device.is_readable(), icons::ARROW_CLOCKWISE, "palette.read_again", DeviceCommand::Read),
+                (device.is_savable(), icons::FLOPPY_DISK, "profile_card.save_as", DeviceCommand::AskSave),
+                (restorable, icons::CLOCK_COUNTER_CLOCKWISE, "shell.restore", DeviceCommand::AskRestore),
+                (device.is_comparable(), icons::ARROWS_OUT_LINE_HORIZONTAL, "shell.compare", DeviceCommand::AskCompare),
+            ];
+            for (enabled, icon, word, command) in entries {
+                if enabled_button(ui, enabled, icon, &theme.say(word)).clicked() {
+                    actions.push(device.command(command));
+                    ui.close();
+                }
+            }
+            ui.separator();
+        }
         if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
             actions.push(Action::Connect(connect::ConnectAction::Open));
             ui.close();

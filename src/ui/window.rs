@@ -129,6 +129,7 @@ impl Window {
                 None => self.views.palette = Some(palette),
             }
         }
+        dialogs::comparison_ui(ctx, theme, &self.studio, actions);
         dialogs::diverged_ui(ctx, theme, &self.studio, actions);
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
@@ -269,7 +270,10 @@ impl Window {
 
     /// Returns whether a dialog covers the window and has the keyboard.
     fn is_covered(&self) -> bool {
-        let dialog = self.views.file.is_some() || self.views.about || self.views.palette.is_some();
+        let dialog = self.views.file.is_some()
+            || self.views.about
+            || self.views.palette.is_some()
+            || self.studio.comparison().is_some();
         self.studio.connect.is_some() || self.asks() || dialog
     }
 

@@ -10,6 +10,7 @@ mod biss_writing;
 mod blocking;
 mod closing;
 mod commutation;
+mod comparing;
 mod connecting;
 mod drafts;
 mod drawing;

@@ -89,6 +89,16 @@ impl AnyDevice {
         &self.state().statuses
     }
 
+    /// Returns whether values are written to it, and restored from a profile.
+    pub fn has_memory(&self) -> bool {
+        self.memory().is_some()
+    }
+
+    /// Returns whether it can be compared with a profile.
+    pub fn is_comparable(&self) -> bool {
+        !matches!(self.phase(), Phase::Opening)
+    }
+
     /// A review of a write is open.
     pub fn is_reviewing(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_reviewing)

@@ -30,6 +30,12 @@ pub enum DeviceCommand {
     RevertAll,
     /// Show what restoring a backup would do.
     Restore(PathBuf),
+    /// Ask for a profile to restore.
+    AskRestore,
+    /// Ask for a profile to compare with.
+    AskCompare,
+    /// Show what differs from a profile on disk.
+    Compare(PathBuf),
     /// Show what writing this profile into a connected device would do.
     WriteInto(SessionId),
 }

@@ -69,8 +69,12 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// Carries out a command that every device has.
     fn command(&mut self, command: DeviceCommand, services: &mut Services) {
         match command {
-            // The studio opens links, and knows other sessions.
-            DeviceCommand::Reconnect | DeviceCommand::WriteInto(_) => {}
+            // The studio opens links, asks for files, and knows other sessions.
+            DeviceCommand::Reconnect
+            | DeviceCommand::WriteInto(_)
+            | DeviceCommand::AskRestore
+            | DeviceCommand::AskCompare
+            | DeviceCommand::Compare(_) => {}
             DeviceCommand::Read => {
                 if !self.session().read_file_again(services) {
                     self.read_device(services);
@@ -155,6 +159,14 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// Returns the profile as the user wants it, to be written into another device; `None` where there is none.
     fn wanted_body(&self) -> Option<Body> {
         self.memory()?.wanted_body()
+    }
+
+    /// Returns the profile to compare with others: as the user wants it, or as it was read last; `None` if nothing was read.
+    ///
+    /// # Errors
+    /// What a profile needs beyond what was read, a text each.
+    fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
+        self.wanted_body().map(Ok).or_else(|| self.memory()?.known_body())
     }
 
     /// Takes over a profile: opens the review of a write, or edits the layout to match it.
@@ -278,6 +290,12 @@ pub trait DeviceMemory {
     /// Returns the profile as the user wants it; `None` where this is a device.
     fn wanted_body(&self) -> Option<Body>;
 
+    /// Returns the profile of what was read last; `None` if nothing was.
+    ///
+    /// # Errors
+    /// What a profile needs beyond what was read, a text each.
+    fn known_body(&self) -> Option<Result<Body, Vec<Text>>>;
+
     /// Reviews the restore of a profile.
     ///
     /// # Errors
@@ -336,6 +354,10 @@ impl<T: Saved> DeviceMemory for T {
 
     fn wanted_body(&self) -> Option<Body> {
         Saved::wanted_body(self)
+    }
+
+    fn known_body(&self) -> Option<Result<Body, Vec<Text>>> {
+        Some(Saved::known_body(self)?.map(|(body, _)| body))
     }
 
     fn restore(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

@@ -104,6 +104,8 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn wanted_body(&self) -> Option<Body>;
     #[doc(hidden)]
+    fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>>;
+    #[doc(hidden)]
     fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError>;
     #[doc(hidden)]
     fn take_link(&mut self, url: LinkUrl);
@@ -297,6 +299,10 @@ impl<M: DeviceModel> OpenDevice for M {
 
     fn wanted_body(&self) -> Option<Body> {
         DeviceModel::wanted_body(self)
+    }
+
+    fn comparable_body(&self) -> Option<Result<Body, Vec<Text>>> {
+        DeviceModel::comparable_body(self)
     }
 
     fn take_over(&mut self, body: Body, services: &mut Services) -> Result<(), ProfileError> {

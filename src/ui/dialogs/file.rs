@@ -69,7 +69,9 @@ fn has_dialogs() -> bool {
 /// Returns what the system's dialog calls such files.
 fn kind(question: &FileQuestion) -> Text {
     match question {
-        FileQuestion::Open | FileQuestion::Save { .. } => Text::new("file.profiles"),
+        FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {
+            Text::new("file.profiles")
+        }
         FileQuestion::OpenCapture => Text::new("file.captures"),
         FileQuestion::Recording => Text::new("file.recordings"),
         FileQuestion::OfDevice(file) => file.kind().clone(),
@@ -82,6 +84,8 @@ fn kind(question: &FileQuestion) -> Text {
 fn title(question: &FileQuestion) -> Text {
     match question {
         FileQuestion::Open => Text::new("file.open_title"),
+        FileQuestion::Restore(_) => Text::new("file.restore_title"),
+        FileQuestion::Compare(_) => Text::new("file.compare_title"),
         FileQuestion::OpenCapture => Text::new("file.capture_title"),
         FileQuestion::Recording => Text::new("file.recording_title"),
         FileQuestion::Save { .. } => Text::new("file.save_title"),

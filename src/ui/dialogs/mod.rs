@@ -1,6 +1,7 @@
 //! Dialogs over the window: connecting, a question, a path to type, what this program is, help, the command palette.
 
 mod about;
+mod comparison;
 pub(crate) mod connect;
 mod diverged;
 mod file;
@@ -8,6 +9,7 @@ mod palette;
 mod question;
 
 pub(super) use about::{about_ui, help_ui};
+pub(super) use comparison::comparison_ui;
 pub(super) use connect::{ConnectView, connect_ui};
 pub(super) use diverged::diverged_ui;
 pub(super) use file::{FileView, ask, file_ui};

@@ -1,0 +1,77 @@
+//! A device or an open profile compared with a profile on disk. Nothing is read from the device for it: what was read last
+//! counts.
+
+use std::path::{Path, PathBuf};
+
+use super::action::{Action, Done, ReadError};
+use super::documents::{read_error, read_profile};
+use super::studio::{SessionId, Studio};
+use super::{Severity, Text};
+use crate::profile::{Comparison, Document};
+
+/// The result of a comparison, on display until it is closed.
+#[derive(Debug)]
+pub struct ProfileComparison {
+    session: SessionId,
+    path: PathBuf,
+    comparison: Comparison,
+}
+
+impl ProfileComparison {
+    /// Returns the session on the left side.
+    pub fn session(&self) -> SessionId {
+        self.session
+    }
+
+    /// Returns the profile on the right side.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns the differences.
+    pub fn comparison(&self) -> &Comparison {
+        &self.comparison
+    }
+}
+
+impl Studio {
+    /// Returns the comparison on display.
+    pub fn comparison(&self) -> Option<&ProfileComparison> {
+        self.comparison.as_ref()
+    }
+
+    /// Closes the comparison. Returns whether one was open.
+    pub(super) fn close_comparison(&mut self) -> bool {
+        self.comparison.take().is_some()
+    }
+
+    /// Reads a profile to compare with a session, as a task.
+    pub(super) fn compare_with(&mut self, session: SessionId, path: PathBuf) {
+        let formats = self.services.world.kinds.formats;
+        self.services.tasks.run("compare", move || {
+            let result = read_profile(&path, formats).map(Box::new);
+            Action::Done(Done::Compare { session, path, result })
+        });
+    }
+
+    /// A profile was read to compare with a session, or not.
+    pub(super) fn compare(&mut self, session: SessionId, path: PathBuf, result: Result<Box<Document>, ReadError>) {
+        let Some(device) = self.device(session) else { return };
+        let (tab, name) = (device.tab(), device.name());
+        let compared = match device.comparable_body() {
+            None => Err(vec![Text::new("comparison.nothing_read")]),
+            Some(Err(missing)) => Err(vec![Text::new("comparison.not_all_read").with_list("missing", missing)]),
+            Some(Ok(body)) => {
+                let compared = result.and_then(|document| body.compare(&document.body).map_err(ReadError::Profile));
+                compared.map_err(|error| vec![read_error(&path, &error, self.services.world.kinds)])
+            }
+        };
+        match compared {
+            Ok(comparison) => {
+                self.show(tab, session);
+                self.comparison = Some(ProfileComparison { session, path, comparison });
+            }
+            Err(why) => self.services.tell(Severity::Error, why, Some(&name)),
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! A device or an open profile beside a profile on disk: what differs, and what only one side has.
+
+use egui::{Grid, ScrollArea, Ui};
+
+use crate::app::{Action, AnyDevice, DeviceCommand, ProfileComparison, Studio, Text};
+use crate::profile::Comparison;
+use crate::ui::controls::{at_the_right, button, modal, paragraph, primary};
+use crate::ui::{Theme, icons};
+
+/// Height of the list, so that a long one leaves the buttons in sight.
+const LIST: f32 = 340.0;
+/// Most characters of a value in one line; the tooltip has the rest.
+const SHOWN: usize = 40;
+
+/// Draws the dialog, where there is a comparison.
+pub(in crate::ui) fn comparison_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+    let Some(shown) = studio.comparison() else { return };
+    let Some(device) = studio.device(shown.session()) else { return };
+    modal(ctx, theme, "comparison", 760.0, |ui| {
+        ui.label(theme.heading(theme.say("comparison.title")));
+        let text = Text::new("comparison.sides").with("device", device.name()).with("path", shown.path().display());
+        paragraph(ui, theme.label(theme.words(&text)));
+        ui.add_space(theme.space.between);
+        let Comparison { differences, compared, only_left, only_right } = shown.comparison();
+        let summary = match differences.len() {
+            0 => Text::new("comparison.equal").with("compared", compared),
+            1 => Text::new("comparison.one").with("compared", compared),
+            count => Text::new("comparison.some").with("count", count).with("compared", compared),
+        };
+        paragraph(ui, theme.words(&summary));
+        ui.add_space(theme.space.between);
+        ScrollArea::both().max_height(LIST).auto_shrink([false, true]).show(ui, |ui| {
+            if !differences.is_empty() {
+                table_ui(ui, theme, shown.comparison());
+            }
+            only_ui(ui, theme, "comparison.only_left", only_left);
+            only_ui(ui, theme, "comparison.only_right", only_right);
+        });
+        ui.add_space(theme.space.groups);
+        buttons(ui, theme, device, shown, actions);
+    });
+}
+
+fn table_ui(ui: &mut Ui, theme: &Theme, comparison: &Comparison) {
+    Grid::new("differences").num_columns(3).striped(true).spacing([24.0, 6.0]).show(ui, |ui| {
+        for word in ["comparison.item", "comparison.left", "comparison.right"] {
+            ui.label(theme.caption(theme.say(word)));
+        }
+        ui.end_row();
+        for difference in &comparison.differences {
+            for text in [&difference.item, &difference.left, &difference.right] {
+                value_ui(ui, theme, text);
+            }
+            ui.end_row();
+        }
+    });
+}
+
+fn value_ui(ui: &mut Ui, theme: &Theme, text: &str) {
+    if text.chars().count() <= SHOWN {
+        ui.label(theme.mono(text));
+    } else {
+        let beginning: String = text.chars().take(SHOWN).chain(['…']).collect();
+        ui.label(theme.mono(beginning)).on_hover_text(theme.mono(text));
+    }
+}
+
+fn only_ui(ui: &mut Ui, theme: &Theme, word: &'static str, items: &[String]) {
+    if !items.is_empty() {
+        ui.add_space(theme.space.between);
+        paragraph(ui, theme.caption(theme.words(&Text::new(word).with("items", items.join(", ")))));
+    }
+}
+
+fn buttons(ui: &mut Ui, theme: &Theme, device: &AnyDevice, shown: &ProfileComparison, actions: &mut Vec<Action>) {
+    at_the_right(ui, |ui| {
+        let differs = !shown.comparison().differences.is_empty();
+        let can_restore = differs && device.is_ready() && device.has_memory();
+        let word = theme.say("comparison.restore");
+        if primary(ui, theme, can_restore, icons::DOWNLOAD_SIMPLE, &word).clicked() {
+            actions.push(Action::CloseComparison);
+            actions.push(device.command(DeviceCommand::Restore(shown.path().to_owned())));
+        }
+        if button(ui, "", &theme.say("about.close")).clicked() {
+            actions.push(Action::CloseComparison);
+        }
+    });
+}
