@@ -32,13 +32,13 @@ pub enum Expected {
     #[error("a number from 0 to 0xFFFFFFFF")]
     Number32,
     /// Revolutions a minute in either direction.
-    #[error("a speed from -{most} to {most} revolutions a minute")]
+    #[error("a speed from -{most} to {most} rpm")]
     Speed {
         /// The greatest.
         most: u32,
     },
     /// Revolutions a minute in one direction.
-    #[error("0 to {most} revolutions a minute")]
+    #[error("a speed from 0 to {most} rpm")]
     RevolutionsAMinute {
         /// The greatest.
         most: u32,
@@ -51,7 +51,7 @@ pub enum Expected {
         high: Limit,
     },
     /// A speed of a serial line.
-    #[error("bit/s from {low} to {high}, usually 115200")]
+    #[error("a bit rate from {low} to {high} bit/s, usually 115200")]
     BitRate {
         /// The least.
         low: u32,
@@ -59,7 +59,7 @@ pub enum Expected {
         high: u32,
     },
     /// Periods in a revolution.
-    #[error("1 to {most} periods in a revolution")]
+    #[error("1 to {most} periods per revolution")]
     Periods {
         /// The greatest number.
         most: u32,
@@ -71,7 +71,7 @@ pub enum Expected {
         most: u32,
     },
     /// A gear.
-    #[error("steps from {low} to {high}, which is what its turns have")]
+    #[error("a number of steps from {low} to {high}, limited by its number of turns")]
     StepsOfTurns {
         /// The least.
         low: u32,
@@ -82,13 +82,13 @@ pub enum Expected {
     #[error("only together with {0}")]
     OnlyWith(&'static str),
     /// A checksum's polynomial.
-    #[error("a polynomial with all its terms such as 0x43, or none")]
+    #[error("a polynomial with all terms, such as 0x43, or none")]
     Polynomial,
     /// A frame that is not too long.
-    #[error("bits that leave a frame of no more than 64 with turns, two flags and CRC")]
+    #[error("a frame of at most 64 bits, including turns, two flags and CRC")]
     ShortFrame,
     /// The address of an encoder on a bus, or of the only one.
-    #[error("0x40 to 0x5F, or 0xFF with one encoder connected")]
+    #[error("0x40 to 0x5F, or 0xFF if only one encoder is connected")]
     AddressOrOnlyOne,
     /// The address of an encoder on a bus.
     #[error("an address from 0x40 to {last:#04X}")]
@@ -97,24 +97,24 @@ pub enum Expected {
         last: u8,
     },
     /// The address of the first of several encoders.
-    #[error("an address from 0x40 to {last:#04X}, so that all encoders have one")]
+    #[error("an address from 0x40 to {last:#04X}, so that every encoder gets one")]
     FirstAddress {
         /// The greatest.
         last: u8,
     },
     /// A time-out of HIPERFACE, counted in bits.
-    #[error("44 or 11 bits, as the encoder is set")]
+    #[error("44 or 11 bits, as set in the encoder")]
     TimeoutBits,
     /// The byte of an encoder's type.
     #[error("a type byte from 0x00 to 0xFF")]
     TypeByte,
     /// The byte of an encoder's line settings.
-    #[error("a settings byte without reserved values, as 0xE4")]
+    #[error("a settings byte without reserved values, such as 0xE4")]
     SettingsByte,
     #[error("one to nine ASCII characters")]
     SerialNumber,
     /// A name.
-    #[error("up to {most} characters of ASCII")]
+    #[error("up to {most} ASCII characters")]
     Ascii {
         /// The greatest number.
         most: u32,
@@ -122,49 +122,49 @@ pub enum Expected {
     /// A position that has no limits yet.
     #[error("a position in steps")]
     Steps,
-    #[error("NUMBER:HEX for the codes 0 to 3, separated by commas, as 0:55,2:66")]
+    #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]
     AccessCodes,
     /// The release of a firmware.
-    #[error("a release as 1.6.0")]
+    #[error("a firmware version such as 1.6.0")]
     Release,
     /// The value of an error register.
-    #[error("the error register's value from 0x00 to 0xFF")]
+    #[error("a value of the error register from 0x00 to 0xFF")]
     ErrorRegister,
     /// Write cycles of a flash.
-    #[error("the number of write cycles its flash has had")]
+    #[error("the number of write cycles of its flash so far")]
     WriteCycles,
     /// Stores into an EEPROM.
-    #[error("the number of stores its EEPROM has had")]
+    #[error("the number of write cycles of its EEPROM so far")]
     Stores,
     /// Voltages of Wiegand pulses.
-    #[error("AVERAGE,LOWEST in volts from 0 to 25.5, as 6.3,5.8")]
+    #[error("AVERAGE,MINIMUM in volts from 0 to 25.5, such as 6.3,5.8")]
     Pulses,
     /// The number of a cam program.
-    #[error("a program from 1 to 8, or 0 for none")]
+    #[error("a cam program from 1 to 8, or 0 for none")]
     Program,
     /// Places for drives of a hub.
-    #[error("4 or 8; without it there is an adapter with one drive")]
+    #[error("4 or 8 ports, or omitted for an adapter with one drive")]
     Hub,
     /// The setting of an address switch.
-    #[error("the two digits of the switch, from 0 to 99")]
+    #[error("a two-digit switch setting from 0 to 99")]
     SwitchDigits,
     /// The variant of a drive.
-    #[error("a variant from 1 to 13, or its name as HDA30A")]
+    #[error("a variant from 1 to 13, or its name, such as HDA30A")]
     Variant,
     /// The places with a drive.
-    #[error("0 or 1 for each of {count} places, separated by commas, as 1,0")]
+    #[error("0 or 1 for each of {count} ports, separated by commas, such as 1,0")]
     Places {
         /// Number of places.
         count: u8,
     },
     /// A layout of SSI frames.
-    #[error("a family of SSI encoders with its settings, as atm60,code=gray")]
+    #[error("a family of SSI encoders with its settings, such as atm60,code=gray")]
     Family,
     /// Error bits of a frame.
-    #[error("{}, each with :SECONDS where it happens again and again, separated by commas", .0.join(", "))]
+    #[error("{}, separated by commas, each with :SECONDS for an error that recurs", .0.join(", "))]
     ErrorBits(Vec<String>),
     /// A frame without error bits.
-    #[error("nothing, as this encoder's frame has no error bits")]
+    #[error("no value, because the frame of this encoder has no error bits")]
     NoErrorBits,
     /// Any text.
     #[error("a text")]
@@ -196,7 +196,7 @@ pub enum Expected {
     #[error("a list of four numbers from 0 to 255, in tenths of a volt")]
     FourTenths,
     /// Two banks.
-    #[error("the first and the last bank such as (0x24, 0x43)")]
+    #[error("the first and the last bank, such as (0x24, 0x43)")]
     Banks,
     /// Revolutions, which may be a fraction.
     #[error("a whole number, or a text such as \"25/2\"")]
@@ -209,10 +209,10 @@ pub enum Expected {
     #[error("even@CLOCK or odd@CLOCK")]
     ParityBit,
     /// The repetition of a frame.
-    #[error("BITS+ZEROS, as 25+1")]
+    #[error("BITS+ZEROS, such as 25+1")]
     Repetition,
     /// Clocks of a frame.
-    #[error("clocks, as 1+26")]
+    #[error("clocks, such as 1+26")]
     Clocks,
 }
 
@@ -222,39 +222,39 @@ pub enum Quantity {
     /// Nothing in particular.
     #[error("a number")]
     Number,
-    #[error("milliseconds")]
+    #[error("a time in milliseconds")]
     Milliseconds,
-    #[error("microseconds")]
+    #[error("a time in microseconds")]
     Microseconds,
-    #[error("hertz")]
+    #[error("a frequency in hertz")]
     Hertz,
-    #[error("bits")]
+    #[error("a number of bits")]
     Bits,
-    #[error("steps")]
+    #[error("a position in steps")]
     Steps,
     /// Revolutions.
-    #[error("turns")]
+    #[error("a number of turns")]
     Turns,
     /// A position of an encoder.
     #[error("a position")]
     Position,
     /// A place of a code disc.
-    #[error("a place of the disc")]
+    #[error("a position of the code disc")]
     PlaceOfDisc,
     /// Degrees Celsius.
-    #[error("degrees Celsius")]
+    #[error("a temperature in °C")]
     Celsius,
     /// Degrees Celsius without decimals.
-    #[error("whole degrees Celsius")]
+    #[error("a temperature in whole °C")]
     WholeCelsius,
     /// Tenths of a revolution a minute.
-    #[error("tenths of rpm")]
+    #[error("a speed in units of 0.1 rpm")]
     TenthsOfRpm,
     /// Percent of the nominal torque.
-    #[error("percent of the nominal torque")]
+    #[error("a torque in percent of the nominal torque")]
     Torque,
     /// The version of a protocol.
-    #[error("a version")]
+    #[error("a protocol version")]
     Version,
     #[error("an address")]
     Address,
@@ -262,7 +262,7 @@ pub enum Quantity {
     #[error("a port")]
     Port,
     /// A unit of Modbus.
-    #[error("a unit")]
+    #[error("a unit ID")]
     Unit,
     /// An input register of Modbus.
     #[error("an input register")]
@@ -277,15 +277,15 @@ pub enum Quantity {
     #[error("a number of encoders")]
     Encoders,
     /// A position of a rotary switch.
-    #[error("a position of the switch")]
+    #[error("a switch position")]
     SwitchPosition,
-    #[error("volts")]
+    #[error("a voltage in volts")]
     Volts,
     /// The share of frames with a bit inverted.
-    #[error("the share of damaged frames")]
+    #[error("a share of damaged frames")]
     DamagedFrames,
     /// The share of requests that are answered with an exception.
-    #[error("the share of requests")]
+    #[error("a share of requests answered with an exception")]
     RefusedRequests,
 }
 
@@ -360,10 +360,10 @@ mod tests {
         let cases = [
             (Expected::words(&["on"]), "on"),
             (Expected::words(&["auto", "on", "off"]), "auto, on or off"),
-            (Expected::range(Quantity::Milliseconds, 0, 2000), "milliseconds from 0 to 2000"),
+            (Expected::range(Quantity::Milliseconds, 0, 2000), "a time in milliseconds from 0 to 2000"),
             (
                 Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500)),
-                "volts from 4.75 to 12.5",
+                "a voltage in volts from 4.75 to 12.5",
             ),
             (Expected::Seconds { low: Limit::thousandths(100), high: 60.into() }, "0.1 to 60 seconds"),
             (Expected::BusAddress { last: 0x5F }, "an address from 0x40 to 0x5F"),

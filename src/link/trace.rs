@@ -96,7 +96,7 @@ pub enum TraceFileError {
     #[error("it does not begin with \"{HEADER}\"")]
     Header,
     /// A line is not time, direction and bytes.
-    #[error("line {line}: not of the form \"0.031204 > 40 42 02\"")]
+    #[error("line {line} is not of the form \"0.031204 > 40 42 02\"")]
     Line {
         /// Counted from 1.
         line: usize,
@@ -162,8 +162,8 @@ mod tests {
     fn a_broken_trace_names_the_line() {
         let cases = [
             ("", "it does not begin with \"# encoder-studio trace 1\""),
-            ("# encoder-studio trace 1\n\n0.1 = 40", "line 3: not of the form \"0.031204 > 40 42 02\""),
-            ("# encoder-studio trace 1\n-1 > 40", "line 2: not of the form \"0.031204 > 40 42 02\""),
+            ("# encoder-studio trace 1\n\n0.1 = 40", "line 3 is not of the form \"0.031204 > 40 42 02\""),
+            ("# encoder-studio trace 1\n-1 > 40", "line 2 is not of the form \"0.031204 > 40 42 02\""),
             ("# encoder-studio trace 1\n# note\n1 > 4G", "line 3: 'G' is not a hexadecimal digit"),
         ];
         for (text, message) in cases {

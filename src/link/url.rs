@@ -88,10 +88,10 @@ pub struct Query(Vec<(String, String)>);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
     /// No colon, or a word before it that names no kind of link.
-    #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
+    #[error("{0:?} is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
     Scheme(String),
     /// A link that cannot lead to the device that is meant.
-    #[error("{scheme}: links do not lead to this device; those that do are {known}")]
+    #[error("{scheme}: links cannot be used for this device; valid links begin with {known}")]
     Device {
         /// The word before the colon.
         scheme: &'static str,
@@ -104,8 +104,8 @@ pub enum UrlError {
         /// The kind of link.
         scheme: Scheme,
     },
-    /// Behind the host stands what is no port.
-    #[error("{scheme}: {port} is no port: those are numbers from 1 to 65535")]
+    /// The text after the host is not a port.
+    #[error("{scheme}: {port} is not a port from 1 to 65535")]
     Port {
         /// The word before the colon.
         scheme: &'static str,
@@ -115,11 +115,11 @@ pub enum UrlError {
     /// A parameter that is not of the form name=value.
     #[error("{0:?} is not of the form name=value")]
     Parameter(String),
-    /// A parameter that stands twice.
-    #[error("{0} stands twice")]
+    /// A parameter that appears twice.
+    #[error("{0} appears twice")]
     Twice(String),
     /// A parameter that this link does not take.
-    #[error("{name} is not a parameter of {scheme}: links; known are {known}")]
+    #[error("{name} is not a parameter of {scheme}: links; valid parameters are {known}")]
     Unknown {
         /// The name as written.
         name: String,
@@ -129,7 +129,7 @@ pub enum UrlError {
         known: String,
     },
     /// A value that cannot be used.
-    #[error("{name}={value}: {allowed}")]
+    #[error("{name}={value} is not valid (allowed: {allowed})")]
     Value {
         /// The parameter.
         name: String,
@@ -311,21 +311,21 @@ mod tests {
     #[test]
     fn what_is_no_link_is_told_why() {
         let cases = [
-            ("", "\"\" is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:"),
+            ("", "\"\" is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:"),
             (
                 "/dev/ttyUSB0",
-                "\"/dev/ttyUSB0\" is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
+                "\"/dev/ttyUSB0\" is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
             ),
             (
                 "usb:1",
-                "\"usb:1\" is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
+                "\"usb:1\" is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:",
             ),
             ("serial:", "serial: needs a port, as in serial:/dev/ttyUSB0 or serial:COM3"),
             ("tcp:host", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
-            ("tcp:host:99999", "tcp: 99999 is no port: those are numbers from 1 to 65535"),
-            ("tcp:host:0", "tcp: 0 is no port: those are numbers from 1 to 65535"),
+            ("tcp:host:99999", "tcp: 99999 is not a port from 1 to 65535"),
+            ("tcp:host:0", "tcp: 0 is not a port from 1 to 65535"),
             ("tcp:host:", "tcp: needs host and port, as in tcp:192.168.0.7:4001"),
-            ("enip:127.0.0.1:99999", "enip: 99999 is no port: those are numbers from 1 to 65535"),
+            ("enip:127.0.0.1:99999", "enip: 99999 is not a port from 1 to 65535"),
             ("enip:", "enip: needs a host, as in enip:192.168.1.7 or enip:192.168.1.7:44818"),
             ("replay:", "replay: needs a file, as in replay:capture.trace"),
             (
@@ -337,9 +337,9 @@ mod tests {
                 "bridge: needs a port or host and port, as in bridge:/dev/ttyACM0 or bridge:tcp:192.168.0.7:4001",
             ),
             ("modbus:", "modbus: needs a host, as in modbus:192.168.0.7 or modbus:192.168.0.7:502"),
-            ("modbus:plc:many", "modbus: many is no port: those are numbers from 1 to 65535"),
+            ("modbus:plc:many", "modbus: many is not a port from 1 to 65535"),
             ("serial:x?baud", "\"baud\" is not of the form name=value"),
-            ("serial:x?baud=1&baud=2", "baud stands twice"),
+            ("serial:x?baud=1&baud=2", "baud appears twice"),
         ];
         for (text, message) in cases {
             assert_eq!(text.parse::<LinkUrl>().unwrap_err().to_string(), message);
@@ -375,7 +375,7 @@ mod tests {
         let query: Query = "baud=fast".parse().unwrap();
         let speeds = Whole(Quantity::Number, 1..=9);
         let error = query.read("baud", &speeds).unwrap_err();
-        assert_eq!(error.to_string(), "baud=fast: a number from 1 to 9");
+        assert_eq!(error.to_string(), "baud=fast is not valid (allowed: a number from 1 to 9)");
         assert_eq!(query.read("parity", &speeds), Ok(None));
     }
 }

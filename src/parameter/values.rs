@@ -249,7 +249,7 @@ mod tests {
             [unit.read("0x10"), unit.read("247"), unit.read("248"), unit.read("")],
             [Some(16), Some(247), None, None]
         );
-        assert_eq!((unit.print(&16), told(unit.allowed())), ("16".to_owned(), "a unit from 1 to 247".to_owned()));
+        assert_eq!((unit.print(&16), told(unit.allowed())), ("16".to_owned(), "a unit ID from 1 to 247".to_owned()));
         let time = Milliseconds(50..=8000);
         assert_eq!((time.read("50"), time.read("49")), (Some(Duration::from_millis(50)), None));
         assert_eq!((time.print(&Duration::from_secs(2)), time.unit()), ("2000".to_owned(), "ms"));
@@ -258,10 +258,10 @@ mod tests {
             [supply.read("4.75"), supply.read("12.501"), supply.read("NaN"), supply.read("-5")],
             [Some(4_750), None, None, None]
         );
-        assert_eq!(told(supply.allowed()), "volts from 4.75 to 12.5");
+        assert_eq!(told(supply.allowed()), "a voltage in volts from 4.75 to 12.5");
         let warm = Decimal(Quantity::Celsius, -12.5..=40.0);
         assert_eq!([warm.read("-12.5"), warm.read("-12.6"), warm.read("inf")], [Some(-12.5), None, None]);
-        assert_eq!(told(warm.allowed()), "degrees Celsius from -12.5 to 40");
+        assert_eq!(told(warm.allowed()), "a temperature in °C from -12.5 to 40");
         assert_eq!((Maybe(SWITCH).read("on"), Maybe(SWITCH).read("yes")), (Some(Some(true)), None));
         let refused = SWITCH.take("echo", "yes").unwrap_err();
         assert_eq!(

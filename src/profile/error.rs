@@ -18,7 +18,7 @@ pub enum ProfileError {
         what: SyntaxProblem,
     },
     /// The name of an entry is not known, and one like it is missing.
-    #[error("line {line}, column {column}: {path} is not known, and {meant} is missing")]
+    #[error("line {line}, column {column}: {path} is unknown, and {meant} is missing")]
     Misspelt {
         /// Counted from 1.
         line: usize,
@@ -92,7 +92,7 @@ pub enum SyntaxProblem {
     #[error("nested too deeply")]
     TooDeep,
     /// A name that a structure has twice.
-    #[error("{0} stands twice")]
+    #[error("{0} appears twice")]
     Twice(String),
     /// As the parser says it.
     #[error("{0}")]

@@ -126,7 +126,7 @@ fn entries_of_ones_own_and_of_a_newer_schema_are_kept() {
     assert!(newer.is_newer() && newer.beyond == ["power"]);
     assert_eq!(newer.known(), Err(ProfileError::Schema { found: 7, known: 1 }));
     let error = parse(&TEXT.replace("colour", "color")).unwrap_err().to_string();
-    assert_eq!(error, "line 7, column 5: color is not known, and colour is missing");
+    assert_eq!(error, "line 7, column 5: color is unknown, and colour is missing");
 }
 
 /// Issues 22.25 and 22.26: over a person's text, and with what another person changed.

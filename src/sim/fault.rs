@@ -49,8 +49,8 @@ impl FaultList {
 pub enum FaultError {
     /// A name that is none, or a name without value.
     #[error(
-        "`{item}` is no fault; allowed are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and die-in-store:N, \
-         separated by commas"
+        "`{item}` is not a fault; valid faults are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and \
+         die-in-store:N, separated by commas"
     )]
     Unknown {
         /// The item as written.
@@ -192,8 +192,8 @@ mod tests {
             ("die-in-store:0", "fault `die-in-store:0`: the value must be a whole number from 1 to 4294967295"),
             (
                 "delay:1,lose:0.5",
-                "`lose:0.5` is no fault; allowed are drop:P, flip:P, garbage:P, delay:MS, silent-after:N and \
-                 die-in-store:N, separated by commas",
+                "`lose:0.5` is not a fault; valid faults are drop:P, flip:P, garbage:P, delay:MS, silent-after:N \
+                 and die-in-store:N, separated by commas",
             ),
         ];
         for (text, sentence) in cases {

@@ -9,7 +9,7 @@ use crate::parameter::{Checked, Parameters, Refused, Values, number};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConfigError {
     /// No such key.
-    #[error("{device} has no setting `{key}`; allowed are {known}")]
+    #[error("{device} has no setting `{key}`; valid settings are {known}")]
     Key {
         /// The device without such a key.
         device: VirtualDevice,
@@ -19,7 +19,7 @@ pub enum ConfigError {
         known: String,
     },
     /// A value that its key does not take.
-    #[error("`{key}={value}` cannot be used: allowed is {allowed}")]
+    #[error("`{key}={value}` is not valid (allowed: {allowed})")]
     Value {
         /// The key.
         key: String,

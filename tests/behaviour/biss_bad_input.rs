@@ -39,7 +39,7 @@ fn a_profile_of_a_newer_schema_is_only_read() {
     let bench = Bench::new();
     let good = bench.write("good.ron", PROFILE);
     let newer = bench.write("newer.ron", PROFILE.replacen("schema: 1", "schema: 99", 1));
-    let words = ["schema 99", "read only"];
+    let words = ["schema 99", "read-only"];
     for arguments in [&["restore", &newer, "--yes"][..], &["restore", &newer, "--dry-run"]] {
         bench.run(&[arguments, &["--link", "sim:", "--json"]].concat()).fails(1, &["schema 99", "newer.ron"]);
     }

@@ -46,7 +46,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
         ("syntax", edited("identity: (", "identity: ((").into(), &["line", "column"]),
         ("cut", good[..good.len() / 2].into(), &["line"]),
         ("empty", Vec::new(), &["line 1"]),
-        ("words", b"Dear Sir or Madam".into(), &["not a profile"]),
+        ("words", b"Dear Sir or Madam".into(), &["not a valid profile"]),
         ("deep", "[".repeat(100_000).into(), &["line 1"]),
         ("key", edited("serial_number:", "serial_nr:").into(), &["identity.serial_number", "missing"]),
         ("kind", edited("status: 0xC8", "status: \"C8\"").into(), &["status", "number"]),
@@ -75,7 +75,7 @@ fn a_profile_of_a_newer_schema_is_only_read() {
     }
     let compared = bench.run(&["diff", &bench.file("good.ron"), &newer, "--json"]);
     assert_eq!((compared.status, compared.json()["equal"].as_bool()), (Some(0), Some(true)), "{compared:?}");
-    assert!(["schema 99", "read only"].iter().all(|word| compared.err.contains(word)), "{compared:?}");
+    assert!(["schema 99", "read-only"].iter().all(|word| compared.err.contains(word)), "{compared:?}");
 }
 
 #[test]
@@ -228,7 +228,7 @@ fn a_port_that_is_none_is_told() {
         (format!("serial:{}", bench.file("")), "not a serial port"),
         ("serial:/dev/null".to_owned(), "not a serial port"),
         ("tcp:127.0.0.1:1".to_owned(), "cannot be reached"),
-        ("tcp:no-such-host.invalid:4001".to_owned(), "not known"),
+        ("tcp:no-such-host.invalid:4001".to_owned(), "not found on this network"),
     ];
     for (url, words) in cases {
         bench.run(&["identify", "hiperface", "--link", &url, "--json"]).fails(1, &[words]);

@@ -184,7 +184,7 @@ fn what_is_no_layout_is_refused_with_entry_and_reason() {
         (LAYOUT.replace("frame:", "frame"), "line 5, column "),
         (LAYOUT.replace("clocks: 13, ", ""), "frame.clocks is missing"),
         (LAYOUT.replace("\"gray\"", "\"grey\""), "frame.code must be binary, gray, gray-excess or bcd"),
-        (LAYOUT.replace("clocks: 13", "clocks: 13, clocks: 14"), "clocks stands twice"),
+        (LAYOUT.replace("clocks: 13", "clocks: 13, clocks: 14"), "clocks appears twice"),
     ];
     for (text, reason) in cases {
         bench.write("wrong.ron", &text);

@@ -151,14 +151,14 @@ fn a_link_is_typed_or_pasted() {
     desk.connect(Connect::Open);
     let wrong = [
         (crate::tabs::HIPERFACE, "", "form.other", "is not a link"),
-        (crate::tabs::HIPERFACE, "/dev/ttyUSB0", "form.other", "it begins with sim:, serial:"),
+        (crate::tabs::HIPERFACE, "/dev/ttyUSB0", "form.other", "a link begins with sim:, serial:"),
         (crate::tabs::HIPERFACE, "serial:", "form.other", "serial:/dev/ttyUSB0"),
         (crate::tabs::HIPERFACE, "tcp:moxa", "form.other", "tcp:192.168.0.7:4001"),
-        (crate::tabs::HIPERFACE, "bridge:/dev/ttyACM0", "form.other", "do not lead to this device"),
+        (crate::tabs::HIPERFACE, "bridge:/dev/ttyACM0", "form.other", "cannot be used for this device"),
         (crate::tabs::HIPERFACE, "serial:x?clock=1", "form.other", "clock is not a parameter"),
         (crate::tabs::HIPERFACE, "serial:x?baud=fast", "form.parameter", "baud=fast"),
         (crate::tabs::BISS, "serial:x?address=0x40", "form.other", "address is not a parameter"),
-        (crate::tabs::BISS, "bridge:x?clock=9", "form.clock", "9 is not possible"),
+        (crate::tabs::BISS, "bridge:x?clock=9", "form.clock", "9 is not valid"),
         (crate::tabs::BISS, "sim:?motor=none", "form.parameter", "motor=none"),
         (crate::tabs::BISS, "sim:?noise=0.1", "form.other", "noise"),
     ];

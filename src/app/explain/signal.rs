@@ -284,18 +284,21 @@ mod tests {
         assert_eq!(
             said(drive),
             [
-                "Interference at 8000 Hz in both channels in phase, 12.3 mV (2.5 % of the amplitude): it comes in by the \
-                 screen or the ground. Connect the screen at both ends.",
-                "Störung mit 8000 Hz gleichphasig in beiden Kanälen, 12,3 mV (2,5 % der Amplitude): Sie kommt über Schirm \
-                 oder Masse. Den Schirm an beiden Enden auflegen.",
+                "Interference at 8000 Hz in phase on both channels, 12.3 mV (2.5 % of the amplitude), coupled in through \
+                 the screen or the ground. Connect the screen at both ends.",
+                "Störung mit 8000 Hz gleichphasig in beiden Kanälen, 12,3 mV (2,5 % der Amplitude), eingekoppelt über \
+                 Schirm oder Masse. Den Schirm beidseitig auflegen.",
             ]
         );
         let dead = What::Dead { channel: Channel::Sine, stuck: Stuck::Ground(Wire::Refsin) };
-        assert!(said(dead)[1].starts_with("Der Sinus ist tot, REFSIN liegt auf Masse:"));
+        assert!(said(dead)[1].starts_with("Der Sinus hat kein Signal: REFSIN liegt auf Masse."));
         let level = What::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
         assert!(said(level)[0].contains("3.20 V, outside 2.375 … 2.625 V"));
         let harmonics = What::Harmonics { order: 4, share: 0.02 };
-        assert!(said(harmonics)[0].starts_with("Harmonics 3 and 5 of the signal, 2.0 %: an imaging error of 1.1°"));
+        assert!(
+            said(harmonics)[0]
+                .starts_with("Harmonics 3 and 5 of the signal, 2.0 %: an error of 1.1° within the signal period")
+        );
     }
 
     #[test]
@@ -307,7 +310,7 @@ mod tests {
         assert_eq!(
             said(Quantity::GainRatio, 0.1234),
             [
-                "Gain ratio, cosine over sine: 0.123 is outside 0.2 … 5.",
+                "Gain ratio, cosine to sine: 0.123 is outside 0.2 … 5.",
                 "Verstärkungsverhältnis Kosinus zu Sinus: 0,123 liegt außerhalb von 0,2 … 5."
             ]
         );
@@ -317,7 +320,7 @@ mod tests {
         );
         assert_eq!(
             said(Quantity::Periods, 16.5)[0],
-            "Periods in a revolution: 16.5 is not a whole number from 1 to 65536."
+            "Periods per revolution: 16.5 is not a whole number from 1 to 65536."
         );
     }
 }

@@ -15,7 +15,7 @@ fn each_reads_its_own_settings() {
     let query = "line=low&noise=0.5&ssi-error=error:2&ssi=ahm36,st=12&supply=switched&uart=hiperface&version=2&rpm=60";
     assert_eq!(error(query), None);
     let unknown = error("lin=low").unwrap().to_string();
-    let sentence = "a virtual adapter has no setting `lin`; allowed are line, noise, ssi, ssi-error, supply, uart, \
+    let sentence = "a virtual adapter has no setting `lin`; valid settings are line, noise, ssi, ssi-error, supply, uart, \
                     version, seed, fault, firmware, ";
     assert!(unknown.starts_with(sentence), "{unknown}");
     for query in ["rpm=NaN", "noise=2", "ssi=x", "ssi-error=ERROR", "uart=on", "version=256", "seed=x"] {

@@ -23,24 +23,24 @@ pub enum LogbookProblem {
     #[error(transparent)]
     Folder(FileError),
     /// The file cannot be opened: a folder of its name, or no permission.
-    #[error("it cannot be opened")]
+    #[error("cannot be opened")]
     NoAccess,
     /// It can be read but not written.
-    #[error("it is write-protected")]
+    #[error("is write-protected")]
     WriteProtected,
     /// Another program held it longer than it is waited for.
-    #[error("another program is using it")]
+    #[error("is in use by another program")]
     Locked,
     #[error("the disk is full")]
     DiskFull,
     /// It is no database, or a damaged one.
-    #[error("it is damaged: {what}")]
+    #[error("is damaged: {what}")]
     Damaged {
         /// The message of the database.
         what: String,
     },
     /// A newer version of the program made it. It was left alone.
-    #[error("it has schema {found}, made by a newer version; this version knows schemas up to {known}")]
+    #[error("has schema {found}, written by a newer version; this version supports schemas up to {known}")]
     Newer {
         /// The schema's number in the file.
         found: i64,
@@ -48,7 +48,7 @@ pub enum LogbookProblem {
         known: i64,
     },
     /// The entry to conclude does not exist, or is concluded.
-    #[error("entry {entry} is not an open one")]
+    #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
     /// Anything else, as the database calls it.
     #[error("{what}")]

@@ -379,16 +379,16 @@ fn links_lead_to_the_way_that_they_name() {
     }
     assert_eq!(open("sim:?rpm=5").unwrap().motor().unwrap().rpm(), 5.0);
     let cases = [
-        ("sim:?bridge=yes", "bridge=yes: on or off"),
+        ("sim:?bridge=yes", "bridge=yes is not valid (allowed: on or off)"),
         (
             "serial:/dev/null?clock=1",
-            "clock is not a parameter of serial: links; known are baud, parity, order, echo, timeout, margin, mt, st, crc",
+            "clock is not a parameter of serial: links; valid parameters are baud, parity, order, echo, timeout, margin, mt, st, crc",
         ),
         (
             "bridge:/dev/null?echo=on",
-            "echo is not a parameter of bridge: links; known are margin, clock, voltage, leave-supply, mt, st, crc",
+            "echo is not a parameter of bridge: links; valid parameters are margin, clock, voltage, leave-supply, mt, st, crc",
         ),
-        ("bridge:/dev/null?clock=1", "clock=1: hertz from 80000 to 10000000"),
+        ("bridge:/dev/null?clock=1", "clock=1 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),
     ];
     for (text, sentence) in cases {
         match open(text) {

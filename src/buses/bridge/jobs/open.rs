@@ -71,11 +71,14 @@ mod tests {
             assert_eq!(opened(text), Ok(Duration::from_millis(milliseconds)), "{text}");
         }
         for (text, why) in [
-            ("serial:/dev/ttyUSB0", "serial: links do not lead to this device; those that do are sim: and bridge:"),
-            ("tcp:host:1", "tcp: links do not lead to this device; those that do are sim: and bridge:"),
-            ("bridge:/dev/x?rpm=1", "rpm is not a parameter of bridge: links; known are margin"),
-            ("bridge:/dev/x?margin=2001", "margin=2001: milliseconds from 0 to 2000"),
-            ("sim:?bridge=off", "bridge=off: on"),
+            (
+                "serial:/dev/ttyUSB0",
+                "serial: links cannot be used for this device; valid links begin with sim: and bridge:",
+            ),
+            ("tcp:host:1", "tcp: links cannot be used for this device; valid links begin with sim: and bridge:"),
+            ("bridge:/dev/x?rpm=1", "rpm is not a parameter of bridge: links; valid parameters are margin"),
+            ("bridge:/dev/x?margin=2001", "margin=2001 is not valid (allowed: a time in milliseconds from 0 to 2000)"),
+            ("sim:?bridge=off", "bridge=off is not valid (allowed: on)"),
             ("sim:?rpm=NaN", "rpm"),
             ("sim:?what=1", "what"),
         ] {

@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_told_in_a_sentence() {
-        let sentence = "`line=bad` cannot be used: allowed is good, open, low or high";
+        let sentence = "`line=bad` is not valid (allowed: good, open, low or high)";
         assert_eq!(read("line=bad").unwrap_err().to_string(), sentence);
         for query in ["noise=2", "noise=NaN", "supply=on", "version=256", "version=-1"] {
             assert!(matches!(read(query), Err(ConfigError::Value { .. })), "{query}");

@@ -359,23 +359,26 @@ mod tests {
     #[test]
     fn a_value_that_cannot_be_used_names_what_can() {
         let cases = [
-            ("baud=0", "baud=0: bit/s from 300 to 4000000, usually 115200"),
-            ("parity=mark", "parity=mark: none, even or odd"),
-            ("order=lsb", "order=lsb: auto, low-first or high-first"),
-            ("echo=yes", "echo=yes: auto, on or off"),
-            ("timeout=0", "timeout=0: milliseconds from 1 to 10000"),
-            ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
-            ("clock=10000001", "clock=10000001: hertz from 80000 to 10000000"),
-            ("clock=NaN", "clock=NaN: hertz from 80000 to 10000000"),
-            ("mt=33&st=8", "mt=33: bits from 0 to 32"),
-            ("st=0", "st=0: bits from 1 to 32"),
-            ("mt=12", "mt=12: only together with st"),
-            ("crc=0x43", "crc=0x43: only together with st"),
-            ("st=8&crc=43", "crc=43: a polynomial with all its terms such as 0x43, or none"),
-            ("mt=32&st=32", "st=32: bits that leave a frame of no more than 64 with turns, two flags and CRC"),
-            ("leave-supply=no", "leave-supply=no: as-found, on or off"),
-            ("voltage=24", "voltage=24: volts from 4.75 to 12.5"),
-            ("voltage=NaN", "voltage=NaN: volts from 4.75 to 12.5"),
+            ("baud=0", "baud=0 is not valid (allowed: a bit rate from 300 to 4000000 bit/s, usually 115200)"),
+            ("parity=mark", "parity=mark is not valid (allowed: none, even or odd)"),
+            ("order=lsb", "order=lsb is not valid (allowed: auto, low-first or high-first)"),
+            ("echo=yes", "echo=yes is not valid (allowed: auto, on or off)"),
+            ("timeout=0", "timeout=0 is not valid (allowed: a time in milliseconds from 1 to 10000)"),
+            ("margin=-1", "margin=-1 is not valid (allowed: a time in milliseconds from 0 to 2000)"),
+            ("clock=10000001", "clock=10000001 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),
+            ("clock=NaN", "clock=NaN is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),
+            ("mt=33&st=8", "mt=33 is not valid (allowed: a number of bits from 0 to 32)"),
+            ("st=0", "st=0 is not valid (allowed: a number of bits from 1 to 32)"),
+            ("mt=12", "mt=12 is not valid (allowed: only together with st)"),
+            ("crc=0x43", "crc=0x43 is not valid (allowed: only together with st)"),
+            ("st=8&crc=43", "crc=43 is not valid (allowed: a polynomial with all terms, such as 0x43, or none)"),
+            (
+                "mt=32&st=32",
+                "st=32 is not valid (allowed: a frame of at most 64 bits, including turns, two flags and CRC)",
+            ),
+            ("leave-supply=no", "leave-supply=no is not valid (allowed: as-found, on or off)"),
+            ("voltage=24", "voltage=24 is not valid (allowed: a voltage in volts from 4.75 to 12.5)"),
+            ("voltage=NaN", "voltage=NaN is not valid (allowed: a voltage in volts from 4.75 to 12.5)"),
         ];
         for (query, message) in cases {
             assert_eq!(station(query).unwrap_err().to_string(), message);

@@ -136,11 +136,11 @@ mod tests {
         let cases = [
             (
                 "sed=1",
-                "a virtual encoder has no setting `sed`; allowed are seed, fault, firmware, serial, rpm, motor, \
+                "a virtual encoder has no setting `sed`; valid settings are seed, fault, firmware, serial, rpm, motor, \
                  waver, position, temperature, errors, filter, cycles, pulses, calibration, calibration-silent, \
                  calibration-status, echo, order",
             ),
-            ("filter=fast", "`filter=fast` cannot be used: allowed is balanced or dynamic"),
+            ("filter=fast", "`filter=fast` is not valid (allowed: balanced or dynamic)"),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1"),
         ];
         for (query, sentence) in cases {

@@ -93,11 +93,14 @@ mod tests {
             assert!(check(&text.parse().unwrap()).is_ok(), "{text}");
         }
         for (text, why) in [
-            ("serial:/dev/ttyUSB0", "serial: links do not lead to this device; those that do are sim:, enip:, replay:"),
-            ("modbus:plc", "modbus: links do not lead to this device; those that do are sim:, enip:, replay:"),
-            ("enip:hub?hub=4", "hub is not a parameter of enip: links; known are rpi, order, udp, timeout"),
-            ("enip:hub?rpi=4", "rpi=4: milliseconds from 5 to 100"),
-            ("sim:?rpi=1000", "rpi=1000: milliseconds from 5 to 100"),
+            (
+                "serial:/dev/ttyUSB0",
+                "serial: links cannot be used for this device; valid links begin with sim:, enip:, replay:",
+            ),
+            ("modbus:plc", "modbus: links cannot be used for this device; valid links begin with sim:, enip:, replay:"),
+            ("enip:hub?hub=4", "hub is not a parameter of enip: links; valid parameters are rpi, order, udp, timeout"),
+            ("enip:hub?rpi=4", "rpi=4 is not valid (allowed: a time in milliseconds from 5 to 100)"),
+            ("sim:?rpi=1000", "rpi=1000 is not valid (allowed: a time in milliseconds from 5 to 100)"),
             ("sim:?what=1", "a virtual"),
         ] {
             let error = check(&text.parse().unwrap()).unwrap_err().to_string();

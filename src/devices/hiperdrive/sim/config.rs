@@ -178,15 +178,15 @@ mod tests {
     fn what_is_wrong_is_told_in_a_sentence() {
         let keys = Config::KEYS.join(", ");
         let cases = [
-            ("sed=1", format!("a virtual HIPERDRIVE has no setting `sed`; allowed are {keys}")),
+            ("sed=1", format!("a virtual HIPERDRIVE has no setting `sed`; valid settings are {keys}")),
             (
                 "drives=1,1",
-                "`drives=1,1` cannot be used: allowed is 0 or 1 for each of 1 places, separated by commas, as 1,0"
+                "`drives=1,1` is not valid (allowed: 0 or 1 for each of 1 ports, separated by commas, such as 1,0)"
                     .to_owned(),
             ),
             (
                 "hub=2",
-                "`hub=2` cannot be used: allowed is 4 or 8; without it there is an adapter with one drive".to_owned(),
+                "`hub=2` is not valid (allowed: 4 or 8 ports, or omitted for an adapter with one drive)".to_owned(),
             ),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1".to_owned()),
         ];

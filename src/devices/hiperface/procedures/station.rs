@@ -275,13 +275,16 @@ mod tests {
     #[test]
     fn a_value_that_cannot_be_used_names_what_can() {
         let cases = [
-            ("baud=115200", "baud=115200: one of 600, 1200, 2400, 4800, 9600, 19200, 38400"),
-            ("parity=mark", "parity=mark: none, even or odd"),
-            ("address=0x60", "address=0x60: 0x40 to 0x5F, or 0xFF with one encoder connected"),
-            ("echo=yes", "echo=yes: auto, on or off"),
-            ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
-            ("turns=4096", "turns=4096: only together with periods="),
-            ("periods=134217728&turns=2", "turns=2: 1 to 1 turns"),
+            ("baud=115200", "baud=115200 is not valid (allowed: one of 600, 1200, 2400, 4800, 9600, 19200, 38400)"),
+            ("parity=mark", "parity=mark is not valid (allowed: none, even or odd)"),
+            (
+                "address=0x60",
+                "address=0x60 is not valid (allowed: 0x40 to 0x5F, or 0xFF if only one encoder is connected)",
+            ),
+            ("echo=yes", "echo=yes is not valid (allowed: auto, on or off)"),
+            ("margin=-1", "margin=-1 is not valid (allowed: a time in milliseconds from 0 to 2000)"),
+            ("turns=4096", "turns=4096 is not valid (allowed: only together with periods=)"),
+            ("periods=134217728&turns=2", "turns=2 is not valid (allowed: 1 to 1 turns)"),
         ];
         for (query, message) in cases {
             assert_eq!(station(query).unwrap_err().to_string(), message);

@@ -193,22 +193,22 @@ mod tests {
         let cases = [
             (
                 "sed=1",
-                "a virtual encoder has no setting `sed`; allowed are seed, fault, model, type, serial, address, \
+                "a virtual encoder has no setting `sed`; valid settings are seed, fault, model, type, serial, address, \
                  settings, rpm, position, temperature, echo, encoders, pace, codes",
             ),
-            ("model=skm", "`model=skm` cannot be used: allowed is one of skm36, sks36, sel37"),
-            ("address=0x60", "`address=0x60` cannot be used: allowed is an address from 0x40 to 0x5F"),
-            ("echo=yes", "`echo=yes` cannot be used: allowed is on or off"),
-            ("encoders=9", "`encoders=9` cannot be used: allowed is a number from 1 to 8"),
-            ("model=sks36&position=4096", "`position=4096` cannot be used: allowed is a position from 0 to 4095"),
+            ("model=skm", "`model=skm` is not valid (allowed: one of skm36, sks36, sel37)"),
+            ("address=0x60", "`address=0x60` is not valid (allowed: an address from 0x40 to 0x5F)"),
+            ("echo=yes", "`echo=yes` is not valid (allowed: on or off)"),
+            ("encoders=9", "`encoders=9` is not valid (allowed: a number from 1 to 8)"),
+            ("model=sks36&position=4096", "`position=4096` is not valid (allowed: a position from 0 to 4095)"),
             (
                 "encoders=2&address=95",
-                "`address=0x5F` cannot be used: allowed is an address from 0x40 to 0x5E, so that all encoders have one",
+                "`address=0x5F` is not valid (allowed: an address from 0x40 to 0x5E, so that every encoder gets one)",
             ),
             (
                 "codes=4:66",
-                "`codes=**` cannot be used: allowed is NUMBER:HEX for the codes 0 to 3, separated by commas, as \
-                 0:55,2:66",
+                "`codes=**` is not valid (allowed: NUMBER:HEX for the access codes 0 to 3, separated by \
+                 commas, such as 0:55,2:66)",
             ),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1"),
         ];

@@ -262,7 +262,7 @@ mod tests {
             (
                 ChangeKind::Restore,
                 "Restore the profile again to complete the write",
-                "restoring the profile again completes it",
+                "Restore the profile again to complete the write",
             ),
             (ChangeKind::Bytes, "stay edited", "Give the command again to complete it"),
             (ChangeKind::Single, "make the change again", "give the command again if you still want it"),

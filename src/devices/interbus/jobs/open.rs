@@ -78,12 +78,21 @@ mod tests {
         for (text, why) in [
             (
                 "serial:/dev/ttyUSB0",
-                "serial: links do not lead to this device; those that do are sim:, modbus:, replay:",
+                "serial: links cannot be used for this device; valid links begin with sim:, modbus:, replay:",
             ),
-            ("tcp:host:502", "tcp: links do not lead to this device; those that do are sim:, modbus:, replay:"),
-            ("bridge:/dev/x", "bridge: links do not lead to this device; those that do are sim:, modbus:, replay:"),
-            ("modbus:plc?rpm=1", "rpm is not a parameter of modbus: links; known are unit, input, output, order"),
-            ("modbus:plc?unit=300", "unit=300: a unit from 0 to 255"),
+            (
+                "tcp:host:502",
+                "tcp: links cannot be used for this device; valid links begin with sim:, modbus:, replay:",
+            ),
+            (
+                "bridge:/dev/x",
+                "bridge: links cannot be used for this device; valid links begin with sim:, modbus:, replay:",
+            ),
+            (
+                "modbus:plc?rpm=1",
+                "rpm is not a parameter of modbus: links; valid parameters are unit, input, output, order",
+            ),
+            ("modbus:plc?unit=300", "unit=300 is not valid (allowed: a unit ID from 0 to 255)"),
             ("sim:?order=first", "`order=first`"),
             ("sim:?what=1", "a virtual"),
         ] {

@@ -117,13 +117,13 @@ mod tests {
     #[test]
     fn a_value_that_cannot_be_used_names_what_can() {
         let cases = [
-            ("unit=256", "unit=256: a unit from 0 to 255"),
-            ("input=65535", "input=65535: an input register from 0 to 65534"),
-            ("output=-1", "output=-1: a holding register from 0 to 65534"),
-            ("order=swapped", "order=swapped: high-first or low-first"),
-            ("handshake=10", "handshake=10: milliseconds from 50 to 8000"),
-            ("cycle=0", "cycle=0: milliseconds from 1 to 1000"),
-            ("timeout=5000", "timeout=5000: milliseconds from 10 to 2000"),
+            ("unit=256", "unit=256 is not valid (allowed: a unit ID from 0 to 255)"),
+            ("input=65535", "input=65535 is not valid (allowed: an input register from 0 to 65534)"),
+            ("output=-1", "output=-1 is not valid (allowed: a holding register from 0 to 65534)"),
+            ("order=swapped", "order=swapped is not valid (allowed: high-first or low-first)"),
+            ("handshake=10", "handshake=10 is not valid (allowed: a time in milliseconds from 50 to 8000)"),
+            ("cycle=0", "cycle=0 is not valid (allowed: a time in milliseconds from 1 to 1000)"),
+            ("timeout=5000", "timeout=5000 is not valid (allowed: a time in milliseconds from 10 to 2000)"),
         ];
         for (query, message) in cases {
             assert_eq!(station(query).unwrap_err().to_string(), message);

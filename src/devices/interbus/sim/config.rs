@@ -185,12 +185,16 @@ mod tests {
     fn what_is_wrong_is_told_in_a_sentence() {
         let keys = Config::KEYS.join(", ");
         let cases = [
-            ("sed=1", format!("a virtual INTERBUS encoder has no setting `sed`; allowed are {keys}")),
+            ("sed=1", format!("a virtual INTERBUS encoder has no setting `sed`; valid settings are {keys}")),
             (
                 "steps=8193&revolutions=1",
-                "`steps=8193` cannot be used: allowed is steps from 1 to 8192, which is what its turns have".to_owned(),
+                "`steps=8193` is not valid (allowed: a number of steps from 1 to 8192, limited by its number of turns)"
+                    .to_owned(),
             ),
-            ("preset=360&steps=360", "`preset=360` cannot be used: allowed is steps from 0 to 359".to_owned()),
+            (
+                "preset=360&steps=360",
+                "`preset=360` is not valid (allowed: a position in steps from 0 to 359)".to_owned(),
+            ),
             ("fault=drop:7", "fault `drop:7`: the probability must be a number from 0 to 1".to_owned()),
         ];
         for (query, sentence) in cases {

@@ -65,17 +65,20 @@ mod tests {
         for (text, why) in [
             (
                 "serial:/dev/ttyUSB0",
-                "serial: links do not lead to this device; those that do are sim:, bridge:, replay:",
+                "serial: links cannot be used for this device; valid links begin with sim:, bridge:, replay:",
             ),
-            ("modbus:host", "modbus: links do not lead to this device; those that do are sim:, bridge:, replay:"),
-            ("tcp:host:1", "tcp: links do not lead to this device; those that do are sim:, bridge:, replay:"),
+            (
+                "modbus:host",
+                "modbus: links cannot be used for this device; valid links begin with sim:, bridge:, replay:",
+            ),
+            ("tcp:host:1", "tcp: links cannot be used for this device; valid links begin with sim:, bridge:, replay:"),
             (
                 "bridge:/dev/x?rpm=1",
-                "rpm is not a parameter of bridge: links; known are margin, clock, pause, voltage, leave-supply",
+                "rpm is not a parameter of bridge: links; valid parameters are margin, clock, pause, voltage, leave-supply",
             ),
             ("bridge:/dev/x?layout=atm60", "layout is not a parameter of bridge: links"),
-            ("bridge:/dev/x?clock=5", "clock=5: hertz from 80000 to 10000000"),
-            ("sim:?ssi=atm61", "`ssi=atm61` cannot be used: allowed is a family of SSI encoders"),
+            ("bridge:/dev/x?clock=5", "clock=5 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),
+            ("sim:?ssi=atm61", "`ssi=atm61` is not valid (allowed: a family of SSI encoders"),
             ("sim:?what=1", "a virtual adapter has no setting `what`"),
         ] {
             let error = check(&text.parse().unwrap()).unwrap_err().to_string();

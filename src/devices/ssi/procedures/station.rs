@@ -194,12 +194,12 @@ mod tests {
     #[test]
     fn a_value_that_cannot_be_used_names_what_can() {
         for (query, message) in [
-            ("margin=-1", "margin=-1: milliseconds from 0 to 2000"),
-            ("clock=79999", "clock=79999: hertz from 80000 to 10000000"),
-            ("pause=0", "pause=0: microseconds from 1 to 65535"),
-            ("pause=65536", "pause=65536: microseconds from 1 to 65535"),
-            ("voltage=48", "voltage=48: volts from 4.5 to 30"),
-            ("voltage=NaN", "voltage=NaN: volts from 4.5 to 30"),
+            ("margin=-1", "margin=-1 is not valid (allowed: a time in milliseconds from 0 to 2000)"),
+            ("clock=79999", "clock=79999 is not valid (allowed: a frequency in hertz from 80000 to 10000000)"),
+            ("pause=0", "pause=0 is not valid (allowed: a time in microseconds from 1 to 65535)"),
+            ("pause=65536", "pause=65536 is not valid (allowed: a time in microseconds from 1 to 65535)"),
+            ("voltage=48", "voltage=48 is not valid (allowed: a voltage in volts from 4.5 to 30)"),
+            ("voltage=NaN", "voltage=NaN is not valid (allowed: a voltage in volts from 4.5 to 30)"),
         ] {
             assert_eq!(station(query).unwrap_err().to_string(), message);
         }

@@ -54,14 +54,14 @@ fn ssi_words_in_gray_and_binary_and_with_another_zero() {
 
 #[test]
 fn what_is_wrong_is_told_in_a_sentence() {
-    let sentence = "`ssi-error=ERRDIG` cannot be used: allowed is ERROR, each with :SECONDS where it happens again and \
-                    again, separated by commas";
+    let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas, each with :SECONDS for an \
+                    error that recurs)";
     assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
     // The order of the two is no matter.
     assert_eq!(read("ssi-error=ERRDIG&ssi=ahm36").unwrap_err().to_string(), sentence);
     assert_eq!(read("ssi-error=error:2&ssi=ahm36,st=12"), Ok(()));
     let none = read("ssi-error=ERROR").unwrap_err().to_string();
-    assert!(none.contains("nothing, as this encoder's frame has no error bits"), "{none}");
+    assert!(none.contains("no value, because the frame of this encoder has no error bits"), "{none}");
     assert!(matches!(read("ssi=x"), Err(ConfigError::Value { .. })));
 }
 

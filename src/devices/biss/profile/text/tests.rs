@@ -116,8 +116,8 @@ fn what_is_not_known_is_kept() {
 fn a_wrong_profile_is_told_where() {
     let cases = [
         ("schema: 1", "schema: 0", "schema 0; this program knows schema 1 to 1"),
-        ("identity:", "identy:", "line 3, column 5: identy is not known, and identity is missing"),
-        ("data:", "date:", "line 4, column 5: date is not known, and data is missing"),
+        ("identity:", "identy:", "line 3, column 5: identy is unknown, and identity is missing"),
+        ("data:", "date:", "line 4, column 5: date is unknown, and data is missing"),
         ("\"1234567\"", "1234567", "identity.serial_number must be a text"),
         ("0x6129", "0x16129", "identity.profile_id must be a number from 0 to 65535 (0x0000 to 0xFFFF)"),
         ("01 01 68 11 00 01", "01 01 68 11 00", "identity.device_id: 5 bytes instead of 6"),
@@ -143,8 +143,8 @@ fn a_wrong_profile_is_told_where() {
             "mounting[0].item: \"preset\" is neither calibration nor of the form 0x24:0x10+3",
         ),
         ("(0x24, 0x43)", "(0x43, 0x24)", "data[0].banks: 0x43 comes after 0x24"),
-        ("(0x24, 0x43)", "0x24", "data[0].banks must be the first and the last bank such as (0x24, 0x43)"),
-        ("(0x24, 0x43)", "(0x24, 0x143)", "data[0].banks must be the first and the last bank such as (0x24, 0x43)"),
+        ("(0x24, 0x43)", "0x24", "data[0].banks must be the first and the last bank, such as (0x24, 0x43)"),
+        ("(0x24, 0x43)", "(0x24, 0x143)", "data[0].banks must be the first and the last bank, such as (0x24, 0x43)"),
         ("bank: 0x25", "bank: 0x23", "data[0].listed[0].bank: 0x23 is not within 0x24 to 0x43"),
         (
             "data: [(banks: (0x24, 0x43)",
@@ -154,7 +154,7 @@ fn a_wrong_profile_is_told_where() {
         ("\"00 01", "\"01", "data[0].listed[0].bytes: 63 bytes instead of 64"),
         ("\"00 01", "\"00 1", "data[0].listed[0].bytes: \"1\" has an odd number of hexadecimal digits"),
         ("\"00 01", "\"0O 01", "data[0].listed[0].bytes: 'O' is not a hexadecimal digit"),
-        ("bytes:", "bites:", "line 4, column 56: data[0].listed[0].bites is not known, and bytes is missing"),
+        ("bytes:", "bites:", "line 4, column 56: data[0].listed[0].bites is unknown, and bytes is missing"),
         ("bank: 0x25,", "", "data[0].listed[0].bank is missing"),
     ];
     for (old, new, message) in cases {

@@ -270,7 +270,7 @@ mod tests {
         };
         let lost = || Failure::Device(Error::NeverSilent);
         let cases = [
-            (ChangeKind::Restore, "restoring the profile again"),
+            (ChangeKind::Restore, "Restore the profile again"),
             (ChangeKind::Bytes, "any other register stays as it was written"),
             (ChangeKind::Guided, "Completed steps stay done"),
             (ChangeKind::WiegandTest, "changes only its saved result"),

@@ -38,8 +38,8 @@ fn a_profile_written_by_hand_is_read() {
 #[test]
 fn a_slip_of_the_hand_is_no_profile() {
     let cases = [
-        ("fields: [(", "fields: [], fields: [(", "fields stands twice"),
-        ("status: 0xC8", "status: 0xC9, status: 0xC8", "status stands twice"),
+        ("fields: [(", "fields: [], fields: [(", "fields appears twice"),
+        ("status: 0xC8", "status: 0xC9, status: 0xC8", "status appears twice"),
         ("fields:", "feilds:", "fields is missing"),
     ];
     for (from, to, why) in cases {
@@ -81,7 +81,7 @@ fn a_wrong_profile_is_told_where() {
         ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
         ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
         ("00 01", "00 1", "fields[0].bytes: \"1\" has an odd number of hexadecimal digits"),
-        ("bytes:", "byts:", "line 5, column 40: fields[0].byts is not known, and bytes is missing"),
+        ("bytes:", "byts:", "line 5, column 40: fields[0].byts is unknown, and bytes is missing"),
         (
             "bytes: \"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"",
             "",

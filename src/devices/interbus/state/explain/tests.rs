@@ -157,7 +157,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
         texts.iter().map(Text::terminal).collect()
     };
     for (kind, what) in [
-        (ChangeKind::Restore, "restoring the profile again"),
+        (ChangeKind::Restore, "Restore the profile again"),
         (ChangeKind::Edits, "the command again"),
         (ChangeKind::Preset, "old one or the preset"),
         (ChangeKind::Default, "brings back the old ones"),

@@ -247,7 +247,7 @@ fn what_is_not_known_is_kept() {
 #[test]
 fn a_wrong_profile_is_told_where() {
     let cases = [
-        ("frame:", "fram:", "line 3, column 5: fram is not known, and frame is missing"),
+        ("frame:", "fram:", "line 3, column 5: fram is unknown, and frame is missing"),
         ("clocks: 27,", "", "frame.clocks is missing"),
         ("clocks: 27", "clocks: 300", "frame.clocks must be a number from 0 to 255"),
         ("clocks: 27", "clocks: 65", "frame: a frame has 1 to 64 clocks, not 65"),
