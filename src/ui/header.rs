@@ -48,7 +48,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     // In a narrow window the icons have to do; their words are the tooltips.
     // A STOP of twice its width needs the room of some.
-    let narrow = ui.ctx().content_rect().width() < if studio.moves() { 1140.0 } else { 1000.0 };
+    let narrow = ui.ctx().content_rect().width() < if studio.moves() { 1240.0 } else { 1100.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
         let word = theme.say(id);
         if narrow { icon_button(ui, enabled, icon, &word) } else { enabled_button(ui, enabled, icon, &word) }
