@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A data field that stands in the list already.
-    #[error("field {0} is listed twice")]
+    #[error("field {0} appears twice")]
     Twice(u8),
     /// A status byte without a field.
     #[error("{0:02X}h is not the status of an existing field")]
