@@ -20,7 +20,8 @@ pub enum ItemError {
     NoParameter(u16),
     /// A parameter of the device has no drive, and there are drives 1 to 8 alone.
     #[error(
-        "parameter {number} does not belong to drive {drive}: drives are 1 to 8, and parameters below 100 belong to the device"
+        "parameter {number} does not belong to drive {drive}: drives are 1 to 8, and parameters below 100 belong to the \
+         device"
     )]
     NoDrive {
         /// As given.
