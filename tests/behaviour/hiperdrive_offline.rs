@@ -110,7 +110,7 @@ fn golden_packets_are_explained() {
             &both,
             &["RegisterSession", "SendRRData, session 0x12345678", "Get_Attribute_Single of class 0x65, instance 1"],
         ),
-        (&refused, &["status 0x00000064 no such session", "connect anew"]),
+        (&refused, &["status 0x00000064 no such session", "connect again"]),
         (
             open,
             &[

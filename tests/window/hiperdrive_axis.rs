@@ -117,7 +117,7 @@ fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
     assert_eq!(unit(&desk).session.cycles, Some(0));
     let told = words::returned(axis(&desk), &seen(&desk)).unwrap().words(Language::English);
     assert!(
-        told.contains("5 of 5 parameters are as they were") && words::differences(&seen(&desk)).is_none(),
+        told.contains("5 of 5 parameters have their previous values") && words::differences(&seen(&desk)).is_none(),
         "{told}"
     );
     let report = unit(&desk).axis_report(Language::English).unwrap();

@@ -92,8 +92,8 @@ fn what_is_wrong_with_an_entry_stands_beside_it() {
     for words in numbers {
         assert!(screen.shows(words), "{words}");
     }
-    assert!(!screen.shows("One side only"));
+    assert!(!screen.shows("from one side only"));
     screen.ask(Hiperface::Commutation(Assistant::Use(Slot::OneSide)));
-    assert!(screen.shows("One side only"));
+    assert!(screen.shows("from one side only"));
     screen.check_language();
 }

@@ -80,7 +80,7 @@ fn an_address_is_typed_looked_at_and_written() {
     screen.put("Gateway", "192.168.6.1");
     assert!(screen.shows("The gateway 192.168.6.1 is outside the network 192.168.5.0/24."));
     screen.put("Gateway", "192.168.5.1");
-    assert!(screen.shows("The device has the stored address 192.168.5.20."));
+    assert!(screen.shows("The device uses the stored address 192.168.5.20."));
     screen.click("hd_net.write");
     screen.until("the plan is there", |studio| {
         studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))

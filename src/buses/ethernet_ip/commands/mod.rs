@@ -128,10 +128,7 @@ fn stream(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedByt
             Err(why) => return Some(Err(why.to_string())),
         };
         let Some((whole, behind)) = whole else {
-            return Some(Err(format!(
-                "the encapsulation frame is cut off: there are {} of it",
-                count(rest.len(), "byte")
-            )));
+            return Some(Err(format!("the encapsulation frame is cut off after {}", count(rest.len(), "byte"))));
         };
         match Frame::parse(whole).map_err(|why| why.to_string()).and_then(|frame| frame_lines(&frame, device)) {
             Ok(own) => lines.extend(own),

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PacketError {
     /// They end too early.
-    #[error("{what} is cut off: there are {got} bytes of it")]
+    #[error("{what} is cut off after {got} bytes")]
     Short {
         /// The structure being parsed.
         what: &'static str,
@@ -12,7 +12,7 @@ pub enum PacketError {
         got: usize,
     },
     /// Something is left.
-    #[error("{what} is followed by {left} bytes that do not belong to it")]
+    #[error("{what} has {left} extra bytes")]
     Long {
         /// The structure being parsed.
         what: &'static str,

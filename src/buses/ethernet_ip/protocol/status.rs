@@ -41,65 +41,53 @@ const fn row<C>(code: C, meaning: &'static str, remedy: &'static str) -> StatusR
     StatusRow { code, meaning, remedy }
 }
 
-const AGAIN: &str = "try again; where it comes back, restart the device";
-const DEFECT: &str = "this program has sent something wrong: report it with a trace";
+const AGAIN: &str = "try again; if the error returns, restart the device";
+const DEFECT: &str = "a defect of this program: report it with a trace";
 
 /// The statuses of a frame.
 pub const ENCAPSULATION_STATUS: [StatusRow<EncapsulationStatus>; 7] = [
     row(EncapsulationStatus::OK, "success", "nothing"),
-    row(EncapsulationStatus(0x01), "command not supported", "ask for something else: the device does not have it"),
-    row(EncapsulationStatus(0x02), "no memory left for the command", AGAIN),
+    row(EncapsulationStatus(0x01), "command not supported", "use another command"),
+    row(EncapsulationStatus(0x02), "not enough memory for the command", AGAIN),
     row(EncapsulationStatus(0x03), "malformed data", DEFECT),
-    row(EncapsulationStatus::NO_SESSION, "no such session", "connect anew: the device has forgotten the session"),
+    row(EncapsulationStatus::NO_SESSION, "no such session", "connect again: the device has closed the session"),
     row(EncapsulationStatus(0x65), "wrong length", DEFECT),
-    row(EncapsulationStatus::VERSION, "version not supported", "the device speaks another version of EtherNet/IP"),
+    row(EncapsulationStatus::VERSION, "version not supported", "the device uses another version of EtherNet/IP"),
 ];
 
 /// The statuses of a request.
 pub const GENERAL_STATUS: [StatusRow<GeneralStatus>; 31] = [
     row(GeneralStatus::OK, "success", "nothing"),
-    row(GeneralStatus::CONNECTION, "connection failure", "see what stands behind it"),
-    row(GeneralStatus(0x02), "no resources left", "close another connection to the device, or restart it"),
-    row(GeneralStatus(0x03), "wrong parameter of the service", DEFECT),
-    row(GeneralStatus(0x04), "path segment not understood", DEFECT),
-    row(
-        GeneralStatus(0x05),
-        "path unknown",
-        "ask for an object that the device has; a hub has those of its drives alone",
-    ),
-    row(GeneralStatus(0x06), "partial transfer", "ask for less at a time"),
-    row(GeneralStatus(0x07), "connection lost", "connect anew"),
-    row(GeneralStatus(0x08), "service not supported", "ask for something else: the object does not have it"),
+    row(GeneralStatus::CONNECTION, "connection failure", "see the words that follow"),
+    row(GeneralStatus(0x02), "resources unavailable", "close another connection to the device, or restart it"),
+    row(GeneralStatus(0x03), "invalid service parameter", DEFECT),
+    row(GeneralStatus(0x04), "path segment error", DEFECT),
+    row(GeneralStatus(0x05), "path unknown", "use an object that the device has; a hub has only those of its drives"),
+    row(GeneralStatus(0x06), "partial transfer", "request less data at a time"),
+    row(GeneralStatus(0x07), "connection lost", "connect again"),
+    row(GeneralStatus(0x08), "service not supported", "use another service"),
     row(GeneralStatus(0x09), "invalid value", "give a value within its range"),
-    row(GeneralStatus(0x0A), "error in a list of attributes", "ask for the attributes one by one"),
-    row(GeneralStatus(0x0B), "already so", "nothing: it is as it should be"),
-    row(
-        GeneralStatus(0x0C),
-        "not possible in the object's state",
-        "stop the drive, or leave the state, then try again",
-    ),
-    row(GeneralStatus(0x0D), "object exists already", "use the one there is"),
-    row(GeneralStatus(0x0E), "attribute cannot be set", "leave it: it can only be read"),
-    row(GeneralStatus(0x0F), "not permitted", "ask who has the rights"),
-    row(
-        GeneralStatus(0x10),
-        "not possible in the device's state",
-        "stop the drive, or leave the state, then try again",
-    ),
-    row(GeneralStatus(0x11), "reply too long", "ask for less at a time"),
-    row(GeneralStatus(0x12), "a value would be split", DEFECT),
-    row(GeneralStatus(0x13), "too few data", "give a value of the attribute's length"),
-    row(GeneralStatus(0x14), "attribute not supported", "ask for another: the object does not have it"),
-    row(GeneralStatus(0x15), "too many data", "give a value of the attribute's length"),
-    row(GeneralStatus(0x16), "object does not exist", "ask for an object that the device has"),
-    row(GeneralStatus(0x18), "attributes are not kept", "save them otherwise"),
-    row(GeneralStatus(0x19), "attributes could not be kept", AGAIN),
-    row(GeneralStatus(0x1C), "a list lacks attributes", DEFECT),
-    row(GeneralStatus(0x1E), "embedded service failed", "see what stands behind it"),
-    row(GeneralStatus(0x1F), "error of the maker's own", "see what stands behind it, and in the device's manual"),
+    row(GeneralStatus(0x0A), "attribute list error", "read the attributes one by one"),
+    row(GeneralStatus(0x0B), "already in the requested state", "no action needed"),
+    row(GeneralStatus(0x0C), "object state conflict", "stop the drive, or leave the state, then try again"),
+    row(GeneralStatus(0x0D), "object already exists", "use the existing object"),
+    row(GeneralStatus(0x0E), "attribute cannot be set", "it can only be read"),
+    row(GeneralStatus(0x0F), "no permission", "check the access rights"),
+    row(GeneralStatus(0x10), "device state conflict", "stop the drive, or leave the state, then try again"),
+    row(GeneralStatus(0x11), "reply too long", "request less data at a time"),
+    row(GeneralStatus(0x12), "value would be fragmented", DEFECT),
+    row(GeneralStatus(0x13), "not enough data", "give a value of the attribute's length"),
+    row(GeneralStatus(0x14), "attribute not supported", "use another attribute"),
+    row(GeneralStatus(0x15), "too much data", "give a value of the attribute's length"),
+    row(GeneralStatus(0x16), "object does not exist", "use an object that the device has"),
+    row(GeneralStatus(0x18), "no stored attribute data", "save the attributes first"),
+    row(GeneralStatus(0x19), "attributes could not be stored", AGAIN),
+    row(GeneralStatus(0x1C), "attributes missing in a list", DEFECT),
+    row(GeneralStatus(0x1E), "embedded service failed", "see the words that follow"),
+    row(GeneralStatus(0x1F), "vendor-specific error", "see the words that follow, and the device's manual"),
     row(GeneralStatus(0x20), "invalid parameter", "give a value within its range"),
-    row(GeneralStatus(0x26), "path of a wrong size", DEFECT),
-    row(GeneralStatus(0x2C), "attribute cannot be read", "leave it: it can only be set"),
+    row(GeneralStatus(0x26), "invalid path length", DEFECT),
+    row(GeneralStatus(0x2C), "attribute cannot be read", "it can only be set"),
 ];
 
 const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> ExtendedStatusRow {
@@ -107,28 +95,32 @@ const fn connection(code: u16, meaning: &'static str, remedy: &'static str) -> E
 }
 
 const OTHER_MASTER: &str = "close the connection of the other master first";
-const SIZE: &str = "choose with or without parameter words as the device is set, and the number of its drives";
+const SIZE: &str = "set parameter words and number of drives as in the device";
 
 /// Why a connection was not opened or closed.
 pub const EXTENDED_STATUS: [ExtendedStatusRow; 18] = [
-    connection(0x0100, "connection in use already", "wait for its time-out, then connect anew"),
+    connection(0x0100, "connection already in use", "wait for its time-out, then connect again"),
     connection(0x0103, "transport class and trigger not supported", DEFECT),
     connection(0x0106, "another master owns the outputs", OTHER_MASTER),
-    connection(0x0107, "no such connection", "nothing: it has ended already"),
-    connection(0x0108, "kind of connection not supported", "ask for a multicast connection from the target"),
-    connection(0x0109, "size of the connection not supported", SIZE),
-    connection(0x0111, "interval not supported", "ask for a longer interval"),
-    connection(0x0113, "no connection left", OTHER_MASTER),
-    connection(0x0114, "maker or product does not fit the key", "open it without a key, or see which device it is"),
-    connection(0x0115, "device type does not fit the key", "open it without a key, or see which device it is"),
-    connection(0x0116, "revision does not fit the key", "open it without a key, or see which device it is"),
-    connection(0x0117, "no such assemblies", "name the assemblies that the device has: 104, 100, 101"),
+    connection(0x0107, "connection does not exist", "no action needed: it has already ended"),
+    connection(0x0108, "connection type not supported", "request a multicast connection from the target"),
+    connection(0x0109, "connection size not supported", SIZE),
+    connection(0x0111, "interval not supported", "request a longer interval"),
+    connection(0x0113, "no connection available", OTHER_MASTER),
+    connection(
+        0x0114,
+        "vendor or product does not match the key",
+        "open it without a key, or check which device it is",
+    ),
+    connection(0x0115, "device type does not match the key", "open it without a key, or check which device it is"),
+    connection(0x0116, "revision does not match the key", "open it without a key, or check which device it is"),
+    connection(0x0117, "assemblies do not exist", "use the assemblies of the device: 104, 100, 101"),
     connection(0x0127, "size from originator to target not supported", SIZE),
     connection(0x0128, "size from target to originator not supported", SIZE),
-    connection(0x0203, "connection timed out", "check cables and switches, or ask for a longer interval"),
+    connection(0x0203, "connection timed out", "check cables and switches, or request a longer interval"),
     connection(0x0204, "request timed out", AGAIN),
-    connection(0x0312, "no such link address", "leave routes away: the device is asked directly"),
-    connection(0x0315, "segment of the path not understood", DEFECT),
+    connection(0x0312, "link address does not exist", "omit routes: the device is addressed directly"),
+    connection(0x0315, "path segment not supported", DEFECT),
 ];
 
 impl EncapsulationStatus {

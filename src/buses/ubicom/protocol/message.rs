@@ -80,7 +80,7 @@ pub enum Reply {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
     /// The frame is to or from another node.
-    #[error("a frame of node 0x{got:02X} where one of 0x{expected:02X} was expected")]
+    #[error("a frame from node 0x{got:02X} instead of 0x{expected:02X}")]
     Address {
         /// The node that was asked.
         expected: u8,
@@ -88,7 +88,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// The frame answers another command.
-    #[error("a frame of command 0x{got:02X} where one of 0x{expected:02X} was expected")]
+    #[error("a frame with command 0x{got:02X} instead of 0x{expected:02X}")]
     Command {
         /// The command of the request.
         expected: u8,
@@ -96,7 +96,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// It has the wrong number of bytes. Where it has as many as the request, it may be its echo.
-    #[error("{got} payload bytes where the reply has {expected}")]
+    #[error("{got} payload bytes instead of {expected}")]
     Length {
         /// Bytes of the reply.
         expected: usize,

@@ -218,7 +218,7 @@ pub(super) fn exactly<const N: usize>(start: RegisterAddress, bytes: Vec<u8>) ->
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
     /// Bytes that are no frame.
-    #[error("bytes without a whole frame: {bytes}")]
+    #[error("bytes without a complete frame: {bytes}")]
     NoFrame {
         /// Number of bytes.
         bytes: usize,
@@ -227,13 +227,13 @@ pub enum Damage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
     /// A reply came before our own bytes, or these came back changed.
-    #[error("our own bytes did not come back before the reply")]
+    #[error("no correct echo before the reply")]
     Echo,
     /// The checksum of a position frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The checksum of a control frame, as the adapter says.
-    #[error("the encoder's answer to the register access has a wrong CRC")]
+    #[error("the encoder's reply to the register access has a wrong CRC")]
     ControlFrame,
     /// Readings of the same thing differ.
     #[error("two readings differ")]

@@ -17,7 +17,7 @@ pub struct Crc {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The polynomial's degree is 0 or above 32.
-    #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, its highest and its lowest term written")]
+    #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest term")]
     Degree(u64),
     /// The polynomial's lowest term is missing: it would not see every single flipped bit.
     #[error("the CRC polynomial {0:#X} must end with the term 1")]

@@ -52,10 +52,10 @@ pub struct PositionData {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// All bits are 0, which is no frame of this layout: no encoder, a short, or one that is not ready.
-    #[error("the line stays low")]
+    #[error("the data line stays low")]
     StuckLow,
     /// All bits are 1, which is no frame of this layout: no encoder, or a broken wire.
-    #[error("the line stays high")]
+    #[error("the data line stays high")]
     StuckHigh,
     /// Bits above the frame's length are set.
     #[error("the frame has more than {bits} bits")]

@@ -47,7 +47,7 @@ impl fmt::Display for RequestedItem {
             RequestedItem::Identity => f.write_str("reading the identity object"),
             RequestedItem::Network { attribute } => write!(f, "reading attribute {attribute} of the TCP/IP object"),
             RequestedItem::SetNetwork { attribute } => write!(f, "writing attribute {attribute} of the TCP/IP object"),
-            RequestedItem::Mac => f.write_str("reading the address of the network card"),
+            RequestedItem::Mac => f.write_str("reading the MAC address"),
             RequestedItem::Open => f.write_str("opening the cyclic connection"),
             RequestedItem::Close => f.write_str("closing the cyclic connection"),
         }

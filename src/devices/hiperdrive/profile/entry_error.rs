@@ -7,26 +7,26 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A drive that stands in the list already.
-    #[error("drive {} stands twice", .0.get())]
+    #[error("drive {} appears twice", .0.get())]
     DriveTwice(DriveNumber),
     /// A parameter that has a value already.
-    #[error("{0} stands twice")]
+    #[error("{0} appears twice")]
     Twice(Item),
     /// The marked item is not a parameter.
     #[error(transparent)]
     Marked(#[from] ItemError),
     /// The marked item is not a setting.
-    #[error("{0} is not kept, and belongs to no mounting")]
+    #[error("{0} is not saved and does not belong to the mounting")]
     NoMounting(Item),
     /// A parameter that is no setting.
-    #[error("{name} is not kept by the device, and no part of a profile", name = .0.name())]
+    #[error("{name} is not saved by the device and is not part of a profile", name = .0.name())]
     NotKept(Item),
     /// The device has no such parameter.
-    #[error("there is no parameter {0}")]
+    #[error("parameter {0} does not exist")]
     NoParameter(String),
     /// Drives have no such parameter.
     #[error(
-        "there is no parameter {number} of a drive; those of drive {drive} stand here by the numbers of drive 1, 100 to 199",
+        "drives have no parameter {number}; give those of drive {drive} with the numbers of drive 1, 100 to 199",
         drive = .drive.get()
     )]
     NoParameterOfDrive {

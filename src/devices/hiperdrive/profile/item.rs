@@ -13,13 +13,16 @@ pub struct Item(pub ParameterNumber);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
     /// Not of the form of any.
-    #[error("{0:?} is no parameter; one is a number such as 47 or 158, of another drive \"158 drive 2\" or 258")]
+    #[error("{0:?} is not a parameter: give a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
     Unknown(String),
     /// The manual has no parameter of that number.
-    #[error("there is no parameter {0}")]
+    #[error("parameter {0} does not exist")]
     NoParameter(u16),
     /// A parameter of the device has no drive, and there are drives 1 to 8 alone.
-    #[error("parameter {number} is of no drive {drive}: drives are 1 to 8, and parameters below 100 are of the device")]
+    #[error(
+        "parameter {number} does not belong to drive {drive}: drives are 1 to 8, and parameters below 100 belong to the \
+         device"
+    )]
     NoDrive {
         /// As given.
         number: u16,
@@ -116,22 +119,22 @@ mod tests {
     #[test]
     fn what_names_nothing_is_told() {
         for (text, why) in [
-            ("limit", "\"limit\" is no parameter"),
-            ("-158", "\"-158\" is no parameter"),
-            ("0x", "\"0x\" is no parameter"),
-            ("0x-9E", "\"0x-9E\" is no parameter"),
-            ("9E", "\"9E\" is no parameter"),
-            ("+158", "\"+158\" is no parameter"),
-            ("", "\"\" is no parameter"),
-            ("158 drive", "\"158 drive\" is no parameter"),
-            ("158 drive x", "\"158 drive x\" is no parameter"),
-            ("155", "there is no parameter 155"),
-            ("0", "there is no parameter 0"),
-            ("900", "there is no parameter 900"),
-            ("158 drive 9", "parameter 158 is of no drive 9"),
-            ("158 drive 0", "parameter 158 is of no drive 0"),
-            ("47 drive 2", "parameter 47 is of no drive 2"),
-            ("258 drive 3", "parameter 258 is of no drive 3"),
+            ("limit", "\"limit\" is not a parameter"),
+            ("-158", "\"-158\" is not a parameter"),
+            ("0x", "\"0x\" is not a parameter"),
+            ("0x-9E", "\"0x-9E\" is not a parameter"),
+            ("9E", "\"9E\" is not a parameter"),
+            ("+158", "\"+158\" is not a parameter"),
+            ("", "\"\" is not a parameter"),
+            ("158 drive", "\"158 drive\" is not a parameter"),
+            ("158 drive x", "\"158 drive x\" is not a parameter"),
+            ("155", "parameter 155 does not exist"),
+            ("0", "parameter 0 does not exist"),
+            ("900", "parameter 900 does not exist"),
+            ("158 drive 9", "parameter 158 does not belong to drive 9"),
+            ("158 drive 0", "parameter 158 does not belong to drive 0"),
+            ("47 drive 2", "parameter 47 does not belong to drive 2"),
+            ("258 drive 3", "parameter 258 does not belong to drive 3"),
         ] {
             let error = text.parse::<Item>().unwrap_err().to_string();
             assert!(error.starts_with(why), "{text}: {error}");

@@ -118,7 +118,7 @@ pub const ERROR_CODES: [ErrorCodeRow; 16] = [
     ),
     row(
         ErrorCode::RS485,
-        "RS-485 without a valid answer",
+        "RS-485: no valid reply",
         "the drive does not answer, or its reply is damaged",
         "check the drive's cable, address 1 and baud rate, then write 0 to parameter 197",
     ),

@@ -32,7 +32,7 @@ pub enum Value {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ValueError {
     /// The length is not that of the kind.
-    #[error("a value of {got} bytes where {expected} were expected")]
+    #[error("a value of {got} bytes instead of {expected}")]
     Length {
         /// Length of the kind.
         expected: usize,

@@ -52,8 +52,8 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
             }
             if found.is_empty() {
                 return Err(Failure::Failed(vec![
-                    "No encoder answered. Check supply and wiring (A/B); with one encoder connected, try --one-encoder \
-                     and --power-cycle 30."
+                    "No encoder answered. Check supply and wiring (A/B); if only one encoder is connected, try \
+                     --one-encoder and --power-cycle 30."
                         .to_owned(),
                 ]));
             }

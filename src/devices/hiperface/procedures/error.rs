@@ -108,10 +108,10 @@ pub enum Error {
     #[error("the reply to {} is of another kind: {reply}", command.row().name)]
     OtherReply { command: Command, reply: String },
     /// The position already had the value that was written, so reading it back proves nothing.
-    #[error("the position had this value before, so reading it back does not show whether it was written")]
+    #[error("the position already had this value, so reading it back does not show whether it was written")]
     PositionUnchanged,
     /// No data field requires this access code, so it cannot be tried.
-    #[error("no data field requires access code {number}, so it cannot be tried")]
+    #[error("no data field requires access code {number}, so it cannot be tested")]
     CodeGuardsNothing {
         /// The access code.
         number: CodeNumber,
@@ -148,16 +148,16 @@ pub enum Damage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
     /// The reply to a request with an access code; which bytes it has is not told, they may be our own.
-    #[error("a broken frame")]
+    #[error("unreadable frame")]
     Unreadable,
     /// More bytes than a reply has.
-    #[error("more bytes than the reply has")]
+    #[error("extra bytes after the reply")]
     Trailing,
     /// It began after the time it had.
-    #[error("the reply came late")]
+    #[error("the reply came too late")]
     Late,
     /// Our own bytes came back changed.
-    #[error("our own bytes came back changed")]
+    #[error("the echo differs from what was sent")]
     Echo,
     /// The encoder heard a damaged request.
     #[error("the encoder reports: {0}")]

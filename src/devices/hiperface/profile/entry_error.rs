@@ -4,19 +4,19 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
     /// A data field that stands in the list already.
-    #[error("field {0} stands twice")]
+    #[error("field {0} appears twice")]
     Twice(u8),
     /// A status byte without a field.
     #[error("{0:02X}h is not the status of an existing field")]
     Status(u8),
     /// Bytes of a field that could not be read.
-    #[error("a locked field has none")]
+    #[error("a locked field has no bytes")]
     Locked,
     /// No bytes of a field that could be read.
-    #[error("missing; a field without them is locked: true")]
+    #[error("missing; a field without bytes has locked: true")]
     NotLocked,
     /// Another number of bytes than the field has.
-    #[error("{got} bytes where the status says {expected}")]
+    #[error("{got} bytes, but the status gives {expected}")]
     Size {
         /// Number of bytes in the profile.
         got: usize,

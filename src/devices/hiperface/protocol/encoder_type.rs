@@ -38,7 +38,7 @@ pub enum TypeTableError {
         what: String,
     },
     /// A number is zero or too large.
-    #[error("type {code:02X}h: {quantity} must lie within {} and {}", range.start(), range.end())]
+    #[error("type {code:02X}h: {quantity} must be between {} and {}", range.start(), range.end())]
     Range {
         /// The row's type byte.
         code: u8,

@@ -58,7 +58,7 @@ pub enum ReplyError {
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// From another address.
-    #[error("reply from address {got:02X}h where {expected:02X}h was asked")]
+    #[error("reply from address {got:02X}h instead of {expected:02X}h")]
     Address {
         /// The address of the request.
         expected: u8,
@@ -66,7 +66,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// To another command.
-    #[error("reply to command {got:02X}h where {expected:02X}h was sent")]
+    #[error("reply to command {got:02X}h instead of {expected:02X}h")]
     Command {
         /// The command sent.
         expected: u8,
@@ -74,7 +74,7 @@ pub enum ReplyError {
         got: u8,
     },
     /// Too many or too few data bytes.
-    #[error("{got} data bytes do not fit the reply to {command:02X}h")]
+    #[error("wrong length of the reply to {command:02X}h ({got} data bytes)")]
     Length {
         /// The command.
         command: u8,
@@ -82,7 +82,7 @@ pub enum ReplyError {
         got: usize,
     },
     /// The repeated arguments are not those of the request.
-    #[error("the reply repeats other arguments than were sent")]
+    #[error("the arguments in the reply differ from those sent")]
     Argument,
 }
 

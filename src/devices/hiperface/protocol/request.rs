@@ -124,7 +124,7 @@ pub enum RequestError {
     #[error("{0:02X}h is not a command")]
     Command(u8),
     /// A command with the wrong number of arguments.
-    #[error("{got} argument bytes where {expected} belong")]
+    #[error("{got} argument bytes instead of {expected}")]
     Length {
         /// Bytes the command takes.
         expected: usize,
@@ -132,7 +132,7 @@ pub enum RequestError {
         got: usize,
     },
     /// An argument out of its range.
-    #[error("argument {0} is out of its range")]
+    #[error("argument {0} is out of range")]
     Argument(&'static str),
 }
 

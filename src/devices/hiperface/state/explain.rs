@@ -264,8 +264,8 @@ mod tests {
                 "Restore the profile again to complete the write",
                 "Restore the profile again to complete the write",
             ),
-            (ChangeKind::Bytes, "stay edited", "Give the command again to complete it"),
-            (ChangeKind::Single, "make the change again", "give the command again if you still want it"),
+            (ChangeKind::Bytes, "remain as edits", "Give the command again to complete the write"),
+            (ChangeKind::Single, "repeat the change", "give the command again if necessary"),
         ];
         for (kind, part, terminal) in cases {
             let cut =

@@ -54,18 +54,18 @@ mod tests {
                 ("US", &["7…12 V", "typically 8 V", "at most 250 mA"]),
                 ("GND", &["ground"]),
                 ("SIN", &["sine, 1 Vpp"]),
-                ("REFSIN", &["reference of the sine"]),
+                ("REFSIN", &["sine reference"]),
                 ("COS", &["cosine, 1 Vpp"]),
-                ("REFCOS", &["reference of the cosine"]),
+                ("REFCOS", &["cosine reference"]),
                 ("DATA +", &["RS-485"]),
                 ("DATA −", &["RS-485"]),
             ],
         );
-        check_notes(&TEXTS, &NOTES, &["130 Ω and 1 kΩ pull-up and pull-down are built into the standard version"]);
+        check_notes(&TEXTS, &NOTES, &["130 Ω and 1 kΩ pull-up and pull-down resistors built in"]);
         check_notes(
             &TEXTS,
             &NOTES,
-            &["BUS version (up to 8 encoders): no 130 Ω inside", "farthest from the controller"],
+            &["BUS version (up to 8 encoders): no 130 Ω built in", "farthest from the controller"],
         );
         check_notes(&TEXTS, &NOTES, &["overall screen and four twisted pairs"]);
     }

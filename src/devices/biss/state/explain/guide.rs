@@ -240,7 +240,7 @@ mod tests {
         };
         let report = WiegandReport { result, saved: false, clockwise: None, counterclockwise: None };
         let words: Vec<String> = outcome(&Outcome::Tested(report)).iter().map(|text| text.words(English)).collect();
-        assert!(words[0].contains("not passed"), "{words:?}");
+        assert!(words[0].contains("failed"), "{words:?}");
         assert!(words[1].contains("6.3") && words[1].contains("5.4") && words[1].contains("above"), "{words:?}");
         assert!(words[2].contains("5.3") && words[2].contains("not above"), "{words:?}");
         let report = super::report(&Op::WiegandTest { save: false }, &Outcome::Tested(report));
@@ -253,7 +253,7 @@ mod tests {
     fn a_stored_preset_value_is_told_as_an_angle() {
         let value = PresetValue::new(0x18000, 2).unwrap();
         let texts = outcome(&Outcome::PresetStored { value, singleturn_bits: 17 });
-        assert_eq!(texts[0].words(English), "Preset value stored: 270.000° (step 98304), turn 2.");
+        assert_eq!(texts[0].words(English), "Preset value saved: 270.000° (step 98304), turn 2.");
         assert!(texts[0].words(German).contains("270,000° (Schritt 98304), Umdrehung 2"), "{texts:?}");
     }
 

@@ -272,7 +272,7 @@ mod tests {
         let cases = [
             (ChangeKind::Restore, "Restore the profile again"),
             (ChangeKind::Bytes, "any other register stays as it was written"),
-            (ChangeKind::Guided, "Completed steps stay done"),
+            (ChangeKind::Guided, "Completed steps need not be repeated"),
             (ChangeKind::WiegandTest, "changes only its saved result"),
             (ChangeKind::Filter, "status biss"),
             (ChangeKind::Preset, "position biss"),
@@ -332,7 +332,7 @@ mod tests {
             ["0x01 calibration, 0x00 operation", "0x01 Kalibrierung, 0x00 Betrieb"],
             ["password", "Passwort"],
             ["table", "Tabelle"],
-            ["Lead the encoder back", "zurückführen"],
+            ["Return the encoder to operation", "zurückführen"],
             ["b.ron", "b.ron"],
         ];
         assert_eq!((english.len(), german.len()), (expected.len(), expected.len()), "{english:?}");
@@ -362,7 +362,7 @@ mod tests {
         }
         let (idle, _) =
             told(Failure::Device(Error::NeverSilent), standing(&[DeviceMode::PRESET], false, Activity::Nothing));
-        assert!(idle[3].contains("Lead the encoder back"), "{idle:?}");
+        assert!(idle[3].contains("Return the encoder to operation"), "{idle:?}");
     }
 
     /// Manual 6.3 and 6.4, every code; what happened, and what to do.
@@ -373,26 +373,26 @@ mod tests {
         let wiegand =
             |byte, code| Failure::Wiegand { run: Run::WiegandClockwise, status: WiegandStatus::from_byte(byte), code };
         let cases = [
-            (calibration(first, 0x30), "other way"),
+            (calibration(first, 0x30), "wrong direction"),
             (calibration(first, 0x31), "25…40 °C"),
             (calibration(first, 0x32), "300…700 rpm"),
             (calibration(first, 0x33), "no reason"),
             (calibration(second, 0x32), "lost"),
             (calibration(second, 0x77), "0x77"),
-            (wiegand(0x30, 0), "other way"),
+            (wiegand(0x30, 0), "wrong direction"),
             (wiegand(0x07, 0x2A), "0x2A"),
             (wiegand(0x99, 0), "0x99"),
             (Failure::NotBalanced { code: 4 }, "balanced"),
             (Failure::Mode { wanted: DeviceMode::PRESET, found: DeviceMode::OPERATION }, "0x07 preset"),
             (Failure::Status { kind: ProcedureKind::DataWrite, expected: 1, found: 0 }, "0x00"),
             (Failure::TooLong { run: first, seconds: 20 }, "20 s"),
-            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "stands"),
+            (Failure::NotReady { task: Task::Turn(first), blockers: vec![Blocker::Standing] }, "not turning"),
             (
                 Failure::NotReady {
                     task: Task::Stand,
                     blockers: vec![Blocker::Standing, Blocker::Temperature { celsius: 20 }],
                 },
-                "stands still. The encoder is at 20 °C",
+                "is not turning. The encoder is at 20 °C",
             ),
             (Failure::NotVerified { item: "0x6E".to_owned(), expected: "04".to_owned(), got: "03".to_owned() }, "0x6E"),
             (Failure::NotDescribed { kind: ProcedureKind::Preset }, "Preset"),

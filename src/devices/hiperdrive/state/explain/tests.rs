@@ -39,7 +39,10 @@ fn bad_input_has_its_sentence_and_its_remedy() {
     let outside = PlanError::PositionOutside { drive: ONE, position: 5000, lower: 0, upper: 4000 };
     assert!(english(&plan(&outside)).starts_with("Drive 1 is at 5000, outside the limits 0 to 4000"));
     let read_only = PlanError::ReadOnly { item: Item(number(107)) };
-    assert_eq!(english(&plan(&read_only)), "Parameter 107 (Actual position) can only be read. Leave it as it is.");
+    assert_eq!(
+        english(&plan(&read_only)),
+        "Parameter 107 (Actual position) can only be read. Choose another parameter."
+    );
     assert_eq!(
         english(&device(&Error::NotRequested { drive: ONE })),
         "Drive 1 is not requested: parameter 152 is 0. Set it to 1 first."
@@ -47,7 +50,7 @@ fn bad_input_has_its_sentence_and_its_remedy() {
     let switch = ended(Ended::NotStarted, plain);
     assert!(english(&switch).contains("S3 of the hub is 0"), "{}", english(&switch));
     let master = device(&Error::OtherMaster { extended: 0x0106 });
-    assert!(english(&master).starts_with("Another master controls these drives already (0x0106). End its connection"));
+    assert!(english(&master).starts_with("Another master already controls these drives (0x0106). End its connection"));
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn a_wrong_profile_is_told_where() {
         ("\"A1\"", "17", "identity.serial_number must be a text"),
         ("0x37", "0x137", "identity.encoder_type must be a number from 0 to 255 (0x00 to 0xFF)"),
         ("status: 0xC8", "status: 0x48", "fields[0].status: 48h is not the status of an existing field"),
-        ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes where the status says 32"),
+        ("status: 0xC8", "status: 0xC9", "fields[0].bytes: 16 bytes, but the status gives 32"),
         ("00 01", "0G 01", "fields[0].bytes: 'G' is not a hexadecimal digit"),
         ("00 01", "00 1", "fields[0].bytes: \"1\" has an odd number of hexadecimal digits"),
         ("bytes:", "byts:", "line 5, column 40: fields[0].byts is unknown, and bytes is missing"),
@@ -87,7 +87,7 @@ fn a_wrong_profile_is_told_where() {
             "",
             "fields[0].bytes: missing; a field without them is",
         ),
-        ("bytes:", "locked: true, bytes:", "fields[0].bytes: a locked field has none"),
+        ("bytes:", "locked: true, bytes:", "fields[0].bytes: a locked field has no bytes"),
         ("fields: [", "fields: [5, ", "fields[0] must be a structure: (name: value, …)"),
         ("fields: [", "mounting: [(item: \"counter\")], fields: [", "mounting[0].item: \"counter\" is not"),
     ];

@@ -81,8 +81,8 @@ mod tests {
             (
                 CheckFinding::FieldLocked { number: 1, status },
                 "1: 48 bytes, write protected, code 2, code required, the access code 2 is not known",
-                "Datenfeld 1: 48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel nötig, Zugriffsschlüssel 2 ist \
-                 nicht bekannt",
+                "Datenfeld 1: 48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel erforderlich, \
+                 Zugriffsschlüssel 2 ist unbekannt",
             ),
             (
                 CheckFinding::FieldRefused { number: 3, codes: vec![StatusCode::WRONG_CODE, StatusCode::TEMPERATURE] },

@@ -161,7 +161,7 @@ mod tests {
             ("40 4F 02 55 66 3E", "address 40h: change access code (4Fh)|request: access code 2"),
             (
                 "40 4D 00 C9 55 91",
-                "address 40h: create, change or delete a data field (4Dh)|request: field 00h becomes C9h (32 bytes, \
+                "address 40h: create, change or delete a data field (4Dh)|request: set field 00h to C9h (32 bytes, \
                  writable, code 0, code required)",
             ),
             ("40 4B 01 05 02 66 08 15 76", "address 40h: store data (4Bh)|request: field 01h, from address 5: 08 15"),
@@ -171,7 +171,7 @@ mod tests {
                  SRS/SCK/SFS; EEPROM 2048 bytes; options 01h",
             ),
             ("FF 53 AC", "broadcast: reset (53h)|request"),
-            ("40 41 01", "address 40h: unknown command (41h)|as a request: 41h is not a command"),
+            ("40 41 01", "address 40h: unknown command (41h)|not a valid request: 41h is not a command"),
         ];
         for (bytes, expected) in cases {
             let words: Vec<String> = texts(bytes).iter().map(Text::terminal).collect();
@@ -187,8 +187,8 @@ mod tests {
                 "40 D0 0F 9F",
                 "Adresse 40h: Geberstatus lesen (50h, Fehlerbit gesetzt)|Fehler 0Fh falscher Zugriffsschlüssel",
             ),
-            ("40 4E 08 01 07", "Adresse 40h: Freien Speicher lesen (4Eh)|Antwort: 128 Bytes frei, 1 Datenfeld"),
-            ("40 41 01", "Adresse 40h: unbekannter Befehl (41h)|als Anfrage: 41h ist kein Befehl"),
+            ("40 4E 08 01 07", "Adresse 40h: freien Speicher lesen (4Eh)|Antwort: 128 Bytes frei, 1 Datenfeld"),
+            ("40 41 01", "Adresse 40h: unbekannter Befehl (41h)|keine gültige Anfrage: 41h ist kein Befehl"),
         ];
         for (bytes, expected) in cases {
             let words: Vec<String> = texts(bytes).iter().map(|text| text.words(Language::German)).collect();

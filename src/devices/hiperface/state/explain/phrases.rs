@@ -105,7 +105,7 @@ fn what_a_write_checks_is_named_in_both_languages() {
         (PlanItem::Item(Item::Analogue(0x48)), "Analogkanal 0x48"),
         (PlanItem::Item(Item::Counter), "Zähler"),
         (PlanItem::Item(Item::Address), "Adresse"),
-        (PlanItem::Item(Item::Settings), "Schnittstelleneinstellung"),
+        (PlanItem::Item(Item::Settings), "Schnittstelleneinstellungen"),
         (PlanItem::Code(CodeNumber::new(2).unwrap()), "Zugriffsschlüssel 2"),
         (PlanItem::Encoder, "Der Geber selbst"),
         (PlanItem::FieldCount, "Anzahl der Datenfelder"),

@@ -58,8 +58,8 @@ mod tests {
         let error = StoreError::Refused(Cause::new(broken)).into();
         assert_eq!(
             open(&error).words(English),
-            "The table of encoder types own.ron cannot be used: type 01h: periods must lie within 1 and 134217728. Correct or \
-             remove it."
+            "The table of encoder types in own.ron cannot be used: type 01h: periods must be between 1 and 134217728. \
+             Correct or remove the file."
         );
     }
 }

@@ -152,7 +152,7 @@ mod tests {
         let cases = [
             (
                 field_status(DataFieldStatus::from_byte(0xAA)),
-                "48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel nötig",
+                "48 Bytes, schreibgeschützt, Zugriffsschlüssel 2, Schlüssel erforderlich",
             ),
             (geometry(Geometry::Linear { period_nm: 1_500_000, periods: 0 }), "linear, Periode 1,5 mm"),
             (position(Geometry::Rotary { periods: 128, turns: 4096 }.position(0x000E_0531)), "Umdrehung 224, 116,807°"),

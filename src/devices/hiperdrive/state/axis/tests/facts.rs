@@ -215,10 +215,10 @@ fn what_is_other_than_saved_is_told_and_written_back() {
     let returned = |seen: &Seen| words::returned(&axis, seen).unwrap().words(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
-    assert!(returned(&seen).contains("2 of 2 parameters are as they were"));
+    assert!(returned(&seen).contains("2 of 2 parameters have their previous values"));
     // Manual, 198: "the actual position to be shown at the present position": elsewhere the old number is a wrong zero.
     let told = words::place_left(&axis, &seen).unwrap().words(Language::English);
-    assert!(told.starts_with("The position (198) is not written back: 198 numbers the place where"), "{told}");
+    assert!(told.starts_with("The position (198) is not written back: 198 applies to the place where"), "{told}");
     assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.place_left", "and not that nothing differs");
     axis.cancel(&seen, "");
     let device = Device { name: String::new(), variant: None, serial_number: String::new() };
