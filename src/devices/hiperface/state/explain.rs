@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn an_access_code_is_acknowledged_and_not_read_back() {
         let of = |verified| Written { ops: 1, written: 1, verified, write_cycles: 1 };
-        assert!(verified(&of(3)).words(Language::English).starts_with("Read back and equal"));
+        assert!(verified(&of(3)).words(Language::English).starts_with("Read back and verified"));
         for text in [written(&of(0)), verified(&of(0))] {
             assert_eq!(text.id(), "session.acknowledged");
         }
