@@ -226,6 +226,6 @@ mod tests {
     fn limits_have_the_decimal_sign_of_the_language() {
         let volts = Expected::range(Quantity::Volts, Limit::thousandths(4750), Limit::thousandths(12_500));
         assert_eq!(expected(&volts).words(English), "a voltage in volts from 4.75 to 12.5");
-        assert_eq!(expected(&volts).words(German), "Volt von 4,75 bis 12,5");
+        assert_eq!(expected(&volts).words(German), "eine Spannung in Volt von 4,75 bis 12,5");
     }
 }

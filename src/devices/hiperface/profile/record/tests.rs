@@ -85,7 +85,7 @@ fn a_wrong_profile_is_told_where() {
         (
             "bytes: \"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"",
             "",
-            "fields[0].bytes: missing; a field without them is",
+            "fields[0].bytes: missing; a field without bytes has locked: true",
         ),
         ("bytes:", "locked: true, bytes:", "fields[0].bytes: a locked field has no bytes"),
         ("fields: [", "fields: [5, ", "fields[0] must be a structure: (name: value, …)"),
