@@ -5,7 +5,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::given::Opener;
 use super::question::{Question, Then};
-use super::services::{JobEnd, Services, World};
+use super::services::{Environment, JobEnd, Services};
 use super::session::{Kind, Opening, Phase, Source, without_secrets};
 use super::shutdown::same_wire;
 use super::studio::{SessionId, Studio};
@@ -205,7 +205,7 @@ impl Services {
 }
 
 fn open<D: Kind>(
-    world: &World,
+    world: &Environment,
     url: &LinkUrl,
     prepare: impl FnOnce(&mut Session<D>),
     wake: Wake,
@@ -220,7 +220,7 @@ fn open<D: Kind>(
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
     let trace: Ring<TraceEntry> = Ring::new(FRAMES);
-    let (ring, last) = (trace.clone(), WakeAtTheEnd(wake.clone()));
+    let (ring, last) = (trace.clone(), WakeOnDrop(wake.clone()));
     session.watch(move |entry| {
         let _ = &last;
         ring.push(entry.clone());
@@ -232,9 +232,9 @@ fn open<D: Kind>(
 }
 
 /// Wakes the window when a session's thread is gone, however it ended.
-struct WakeAtTheEnd(Wake);
+struct WakeOnDrop(Wake);
 
-impl Drop for WakeAtTheEnd {
+impl Drop for WakeOnDrop {
     fn drop(&mut self) {
         (self.0)();
     }

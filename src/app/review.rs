@@ -166,7 +166,7 @@ pub struct Question {
 
 /// How a plan is carried out, and what starts it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
+pub enum ExecutionMode {
     /// From end to end.
     Writes,
     /// Step by step, with the user at the device.
@@ -175,22 +175,22 @@ pub enum Manner {
     Tests,
 }
 
-impl Manner {
+impl ExecutionMode {
     /// Returns the id of the text of the start button.
     pub const fn word(self) -> &'static str {
         match self {
-            Manner::Writes => "review.write",
-            Manner::Leads => "review.begin",
-            Manner::Tests => "review.test",
+            ExecutionMode::Writes => "review.write",
+            ExecutionMode::Leads => "review.begin",
+            ExecutionMode::Tests => "review.test",
         }
     }
 
     /// Returns the id of the text that says what will be done.
     pub const fn way(self) -> &'static str {
         match self {
-            Manner::Writes => "review.way",
-            Manner::Leads => "review.way_led",
-            Manner::Tests => "review.way_test",
+            ExecutionMode::Writes => "review.way",
+            ExecutionMode::Leads => "review.way_led",
+            ExecutionMode::Tests => "review.way_test",
         }
     }
 }
@@ -211,7 +211,7 @@ pub struct ReviewSheet {
     pub redo: Option<Text>,
     /// The cost, besides the write cycles that this computer has counted.
     pub cost: Option<Text>,
-    pub manner: Manner,
+    pub manner: ExecutionMode,
     pub toggles: Vec<Toggle>,
     /// Questions that have to be answered first.
     pub questions: Vec<Question>,
@@ -310,8 +310,8 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     }
 
     /// Returns how the plan is carried out.
-    fn manner(_prepared: &Self::Prepared) -> Manner {
-        Manner::Writes
+    fn manner(_prepared: &Self::Prepared) -> ExecutionMode {
+        ExecutionMode::Writes
     }
 }
 
@@ -385,7 +385,7 @@ impl<K: Reviewed> Review<K> {
             needs: shown.map(|own| K::needs(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost),
-            manner: prepared.map_or(Manner::Writes, K::manner),
+            manner: prepared.map_or(ExecutionMode::Writes, K::manner),
             toggles: self.toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),
             force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),

@@ -12,7 +12,7 @@ use super::file_question::FileQuestion;
 use super::given::Given;
 use super::kinds::Kinds;
 use super::notices::{Log, Notice, Severity};
-use super::shutdown::{GracePeriods, Leaving};
+use super::shutdown::{ClosingSession, GracePeriods};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
 use crate::link::{LinkError, PortInfo};
@@ -21,7 +21,7 @@ use crate::worker::JobId;
 
 /// The world outside, as the studio reaches it; a test has one of its own.
 #[derive(Clone)]
-pub struct World {
+pub struct Environment {
     /// Backups, logbook, drafts, settings.
     pub store: Store,
     /// The configuration that kinds of device receive from outside.
@@ -38,10 +38,10 @@ pub struct World {
     pub patience: GracePeriods,
 }
 
-impl World {
+impl Environment {
     /// This machine, with these kinds of devices and tools.
     pub fn real(store: Store, kinds: Kinds) -> Self {
-        World {
+        Environment {
             store,
             given: Given::default(),
             kinds,
@@ -83,7 +83,7 @@ pub struct JobRecord {
 /// The services that sessions share.
 pub struct Services {
     /// The world outside.
-    pub(crate) world: World,
+    pub(crate) world: Environment,
     /// Threads.
     pub(crate) tasks: Tasks,
     pub log: Log,
@@ -94,7 +94,7 @@ pub struct Services {
     /// The drives of all sessions.
     pub(crate) brakes: Brakes,
     /// Sessions that were let go and have not ended.
-    pub(super) leaving: Vec<Leaving>,
+    pub(super) leaving: Vec<ClosingSession>,
     /// Profiles that are being read.
     pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
@@ -116,7 +116,7 @@ impl Services {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
 
-    pub(crate) fn new(world: World, wake: Wake) -> Self {
+    pub(crate) fn new(world: Environment, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
         let (tasks, leaving) = (Tasks::new(wake), Vec::new());
         let opening_files = Vec::new();

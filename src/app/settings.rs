@@ -8,7 +8,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Language;
-use super::drives::{LocksAlone, RememberedDrives};
+use super::drives::{LocksOnly, RememberedDrives};
 use super::kinds::Kinds;
 use super::tab::Tab;
 
@@ -100,7 +100,7 @@ impl Settings {
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay so, whatever else is broken.
-                entry!(drives: BTreeMap<String, LocksAlone>, BTreeMap::new())
+                entry!(drives: BTreeMap<String, LocksOnly>, BTreeMap::new())
                     .into_iter()
                     .map(|(device, locks)| (device, locks.into()))
                     .collect()

@@ -8,7 +8,7 @@ use crossbeam_channel::Sender;
 use super::action::{Action, Done};
 use super::brakes::Brakes;
 use super::services::{JobEnd, Services};
-use super::session::{Kind, LastWords};
+use super::session::{JobEnding, Kind};
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Wire};
@@ -39,7 +39,7 @@ impl Default for GracePeriods {
 }
 
 /// Whose thread was let go.
-pub(crate) struct Leaver {
+pub(crate) struct ClosingSessionInfo {
     /// Its number.
     pub(crate) session: SessionId,
     /// Its name.
@@ -50,8 +50,8 @@ pub(crate) struct Leaver {
 }
 
 /// A session that was let go and has not ended.
-pub(super) struct Leaving {
-    who: Leaver,
+pub(super) struct ClosingSession {
+    who: ClosingSessionInfo,
     ending: Arc<dyn Left>,
 }
 
@@ -64,7 +64,7 @@ pub(crate) trait Left: Send + Sync {
     fn wait(&self, patience: Duration) -> bool;
 
     /// Returns how jobs ended since the last call.
-    fn last_words(&self) -> Vec<LastWords>;
+    fn job_endings(&self) -> Vec<JobEnding>;
 }
 
 impl<D: Kind> Left for Ending<D> {
@@ -76,8 +76,8 @@ impl<D: Kind> Left for Ending<D> {
         Ending::wait(self, patience)
     }
 
-    fn last_words(&self) -> Vec<LastWords> {
-        self.events().try_iter().filter_map(|event| D::last_words(&event)).collect()
+    fn job_endings(&self) -> Vec<JobEnding> {
+        self.events().try_iter().filter_map(|event| D::job_endings(&event)).collect()
     }
 }
 
@@ -90,7 +90,7 @@ impl Left for End {
         End::wait(self, patience)
     }
 
-    fn last_words(&self) -> Vec<LastWords> {
+    fn job_endings(&self) -> Vec<JobEnding> {
         Vec::new()
     }
 }
@@ -102,24 +102,24 @@ pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 
 impl Services {
     /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
-    pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
+    pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: ClosingSessionInfo, turn: Option<Sender<()>>) {
         self.let_end(Arc::new(worker.end()), who, turn);
     }
 
     /// Lets a stream go, which belongs to no session.
     pub(crate) fn leave_stream(&mut self, end: End, url: LinkUrl) {
-        let who = Leaver { session: SessionId::default(), about: String::new(), url, write: None };
+        let who = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
         self.let_end(Arc::new(end), who, None);
     }
 
-    fn let_end(&mut self, ending: Arc<dyn Left>, who: Leaver, turn: Option<Sender<()>>) {
+    fn let_end(&mut self, ending: Arc<dyn Left>, who: ClosingSessionInfo, turn: Option<Sender<()>>) {
         let (watched, patience) = (ending.clone(), self.patience_with(who.write.is_some()));
         self.tasks.run("leave", move || {
             watched.wait(patience);
             drop(turn);
             Action::Done(Done::Left)
         });
-        self.leaving.push(Leaving { who, ending });
+        self.leaving.push(ClosingSession { who, ending });
     }
 
     /// Takes the events of sessions that are ending.
@@ -128,7 +128,7 @@ impl Services {
         self.leaving.retain_mut(|leaving| {
             // In this order: what has ended tells nothing more.
             let ended = leaving.ending.is_ended();
-            for end in leaving.ending.last_words() {
+            for end in leaving.ending.job_endings() {
                 if leaving.who.write == Some(end.job) {
                     leaving.who.write = None;
                     told.push((leaving.who.session, leaving.who.about.clone(), end));
@@ -137,7 +137,7 @@ impl Services {
             if ended && let Some(job) = leaving.who.write.take() {
                 let why = Text::new("session.ended");
                 let end = JobEnd::Failed(why.clone());
-                let end = LastWords { job, end, severity: Severity::Error, texts: vec![why] };
+                let end = JobEnding { job, end, severity: Severity::Error, texts: vec![why] };
                 told.push((leaving.who.session, leaving.who.about.clone(), end));
             }
             !ended

@@ -9,7 +9,7 @@ use super::diverged::Diverged;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::question::{Question, Then};
-use super::services::{Services, World};
+use super::services::{Environment, Services};
 use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
@@ -46,7 +46,7 @@ pub struct Studio {
 
 impl Studio {
     /// A studio with what it remembers; `wake` is called when there is something to look at.
-    pub fn new(world: World, wake: Wake) -> Self {
+    pub fn new(world: Environment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
         let (settings, keeper) = SettingsStore::load(&mut services);

@@ -23,7 +23,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use clock::{Clock, RealClock, VirtualClock};
-pub use datagram::{DatagramPort, Datagrams, Shout};
+pub use datagram::{Broadcast, DatagramPort, Datagrams};
 pub use error::{LinkError, LinkErrorKind};
 pub use line::{Echo, LineQuality, LineState};
 pub use realtime_priority::wake_before_others;
@@ -35,7 +35,7 @@ pub use tcp::TcpLink;
 pub use trace::{
     Direction, HEADER as TRACE_HEADER, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header,
 };
-pub use udp::{UdpPort, UdpShout};
+pub use udp::{UdpBroadcast, UdpPort};
 pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
 
 use crate::units::{CharacterFormat, Moment};

@@ -9,7 +9,7 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::page::apart;
 use super::{Theme, icons};
-use crate::app::review::{ChangeWords, Manner, OpWords, Question, ReviewSheet, Stage, Toggle};
+use crate::app::review::{ChangeWords, ExecutionMode, OpWords, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the dialog, where a write is on its way.
@@ -63,7 +63,7 @@ fn content(
             options(ui, theme, device, sheet, actions);
             ui.label(theme.label(theme.say(sheet.manner.way())));
             buttons(ui, theme, device, actions, "review.cancel", |ui, actions| {
-                let icon = if sheet.manner == Manner::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
+                let icon = if sheet.manner == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
                 // Without the permit it would be refused.
                 let may_wear = sheet.force_wear != Some(false);
                 if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.manner.word())).clicked() {

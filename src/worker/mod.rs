@@ -67,7 +67,7 @@ pub trait Device: Send + 'static {
         &mut self,
         desk: &mut SessionContext,
         job: Self::Job,
-        tell: &mut dyn FnMut(Tell<Self::DeviceMessage, Self::JobStep>),
+        tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
     /// Samples are wished at this interval from now on, or none any more: what the device sends by itself begins with the
@@ -152,7 +152,7 @@ impl<W> Progress<W> {
 
 /// A report from a running job.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Tell<R, W> {
+pub enum JobReport<R, W> {
     /// Progress of the job.
     Progress(Progress<W>),
     /// A message of the device; each is passed on.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Device, EndedEarly as _, Event, JobId, Tell, Watched};
+use super::{Device, EndedEarly as _, Event, JobId, JobReport, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
@@ -91,8 +91,8 @@ impl<D: Device> Session<D> {
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
         let result = self.device.run(&mut self.desk, job, &mut |told| match told {
-            Tell::Progress(progress) => tell(Event::Progress(id, progress)),
-            Tell::Remark(remark) => tell(Event::Remark(remark)),
+            JobReport::Progress(progress) => tell(Event::Progress(id, progress)),
+            JobReport::Remark(remark) => tell(Event::Remark(remark)),
         });
         while let Some(remark) = self.take_remark() {
             tell(Event::Remark(remark));

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-pub use analogue::{Analogue, Forgotten};
+pub use analogue::{Analogue, SettingsDropped};
 
 use super::has_ended;
 use super::thread::Never;
@@ -43,7 +43,7 @@ pub struct Batch<S> {
 }
 
 /// Samples that can be counted.
-pub trait Counted: Send + 'static {
+pub trait SampleCount: Send + 'static {
     /// Returns the number of samples.
     fn count(&self) -> usize;
 }
@@ -53,7 +53,7 @@ pub trait Producer: Send + 'static {
     /// A change while it runs.
     type Request: Send + 'static;
     /// The samples of a batch.
-    type Samples: Counted;
+    type Samples: SampleCount;
     /// Why it ends by itself.
     type Error: Send + 'static;
 
@@ -129,7 +129,7 @@ impl<P: Producer> Stream<P> {
             stop: AtomicBool::new(false),
         });
         let (alive, ended) = bounded(0);
-        let (own, end) = (shared.clone(), Alive { alive: Some(alive), wake });
+        let (own, end) = (shared.clone(), ExitSignal { alive: Some(alive), wake });
         std::thread::Builder::new().name("stream".to_owned()).spawn(move || work(producer, &own, &*clock, &end))?;
         Ok(Stream { shared, ended })
     }
@@ -180,7 +180,7 @@ impl<P: Producer> Drop for Stream<P> {
     }
 }
 
-impl<S: Counted> Ring<S> {
+impl<S: SampleCount> Ring<S> {
     /// Adds a batch; returns the batches pushed out, to be dropped without the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
@@ -200,32 +200,32 @@ impl<S: Counted> Ring<S> {
     }
 }
 
-impl<T: Send + 'static> Counted for Vec<T> {
+impl<T: Send + 'static> SampleCount for Vec<T> {
     fn count(&self) -> usize {
         self.len()
     }
 }
 
-impl Counted for Wires {
+impl SampleCount for Wires {
     fn count(&self) -> usize {
         self.len()
     }
 }
 
 /// The end of a thread, however it comes: told when it is over.
-struct Alive {
+struct ExitSignal {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
 
-impl Drop for Alive {
+impl Drop for ExitSignal {
     fn drop(&mut self) {
         self.alive = None;
         (self.wake)();
     }
 }
 
-fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &Alive) {
+fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &ExitSignal) {
     let (mut woken, mut unread) = (None, false);
     while !shared.stop.load(Ordering::SeqCst) {
         let wish = lock(&shared.wish).take();

@@ -9,10 +9,10 @@ use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::jobs::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
 };
-use encoder_studio::devices::hiperdrive::procedures::{Error, Found, RequestedItem, discover};
+use encoder_studio::devices::hiperdrive::procedures::{DiscoveredDevice, Error, RequestedItem, discover};
 use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
-use encoder_studio::link::{Cancel, RealClock, UdpShout};
+use encoder_studio::link::{Cancel, RealClock, UdpBroadcast};
 use encoder_studio::profile::Consent;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
@@ -130,10 +130,11 @@ fn who_is_there_is_found_by_asking_all() {
     let Some(other) = bench.target(&["--product=Valve island"]) else { return };
     let address = |foreign: &Foreign| foreign.place.parse::<SocketAddrV4>().unwrap();
     let clock = Arc::new(RealClock::start());
-    let mut shout = UdpShout::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
+    let mut shout = UdpBroadcast::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
     let found = discover(&mut shout, &*clock, &Cancel::default()).unwrap();
-    let of =
-        |foreign: &Foreign| -> &Found { found.iter().find(|found| found.port == address(foreign).port()).unwrap() };
+    let of = |foreign: &Foreign| -> &DiscoveredDevice {
+        found.iter().find(|found| found.port == address(foreign).port()).unwrap()
+    };
     assert_eq!(found.len(), 2, "{found:?}");
     assert!(of(&foreign).is_hiperdrive() && !of(&other).is_hiperdrive());
     assert_eq!(of(&foreign).identity.identity.serial_number, 0x1_0000 + 77);

@@ -6,9 +6,11 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
-use encoder_studio::devices::ssi::protocol::{Code, Doubt, Location, Range};
+use encoder_studio::devices::ssi::protocol::{Code, Location, Range, Uncertainty};
 use encoder_studio::devices::ssi::state::strip::Handle;
-use encoder_studio::devices::ssi::state::{Edit, Encoder, Entry, Field, Format, Hunt, Input, SsiAction as Ssi, Try};
+use encoder_studio::devices::ssi::state::{
+    Edit, Encoder, Entry, Field, Format, Input, SearchState, SsiAction as Ssi, Try,
+};
 
 use crate::support::Desk;
 
@@ -239,10 +241,10 @@ fn the_layout_is_found_live_and_taken() {
     desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 2000);
     command(&mut desk, DeviceCommand::Poll(None));
     act(&mut desk, Ssi::Find);
-    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
-    let Hunt::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
+    let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
     // The end of 4096 turns was not passed.
-    assert_eq!(search.doubt, Some(Doubt::Open));
+    assert_eq!(search.doubt, Some(Uncertainty::Open));
     let members = &search.classes[0].members;
     let place = members.iter().position(|own| own.family.as_ref().is_some_and(|(key, _)| key == "afm60")).unwrap();
     act(&mut desk, Ssi::Take(0, place));
@@ -255,10 +257,10 @@ fn the_layout_is_found_live_and_taken() {
     desk.until("they are written", |_| path.exists());
     act(&mut desk, Ssi::ForgetSearch);
     act(&mut desk, Ssi::FindIn(path));
-    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let nowhere = desk.outside.path("nowhere.txt");
     act(&mut desk, Ssi::FindIn(nowhere));
-    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Failed(_)));
+    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Failed(_)));
 }
 
 #[test]

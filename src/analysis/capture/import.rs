@@ -22,13 +22,13 @@ pub struct Import {
     decoder: Decoder,
     /// The first row that was left out, and the value missing in it.
     first_left_out: Option<(u64, CaptureError)>,
-    taken: Taken,
+    taken: ColumnChoice,
     capture: Capture,
 }
 
 /// Columns from 0, and factors.
 #[derive(Clone, Copy, Debug)]
-struct Taken {
+struct ColumnChoice {
     columns: Columns,
     /// The time in seconds is the first, and the second for each unit of the column.
     seconds: (f64, f64),
@@ -67,7 +67,7 @@ impl Import {
 
     /// Begins with a layout that is known.
     pub fn with(layout: Layout) -> Self {
-        let taken = Taken {
+        let taken = ColumnChoice {
             columns: layout.columns,
             seconds: match layout.clock {
                 Some(clock) => (clock.start_s, clock.increment_s),
@@ -193,7 +193,7 @@ impl Import {
     }
 }
 
-impl Taken {
+impl ColumnChoice {
     /// Takes a row; returns what is missing if the row is left out.
     fn take(
         &self,

@@ -69,7 +69,7 @@ pub trait Kind: Device + Sized {
     fn loss(error: &Self::Error) -> Option<Text>;
 
     /// Returns the last message about the job in an event of a released session.
-    fn last_words(event: &Event<Self>) -> Option<LastWords> {
+    fn job_endings(event: &Event<Self>) -> Option<JobEnding> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
                 let told =
@@ -83,12 +83,12 @@ pub trait Kind: Device + Sized {
             }
             _ => return None,
         };
-        Some(LastWords { job: *job, end, severity, texts })
+        Some(JobEnding { job: *job, end, severity, texts })
     }
 }
 
 /// How the last job of a released session ended.
-pub struct LastWords {
+pub struct JobEnding {
     pub(in crate::app) job: JobId,
     pub(in crate::app) end: JobEnd,
     pub(in crate::app) severity: Severity,

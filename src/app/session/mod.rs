@@ -20,12 +20,12 @@ pub use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
 pub use has_session::HasSession;
-pub use kind::{Kind, LastWords};
+pub use kind::{JobEnding, Kind};
 pub use memory::{ApprovedPlanOf, WithMemory};
-pub use profiles::Listed;
+pub use profiles::DeviceHistory;
 pub(crate) use saved::some;
-pub use saved::{Known, Saved, without_edits};
-pub(in crate::app) use saving::Found;
+pub use saved::{KnownProfile, Saved, without_edits};
+pub(in crate::app) use saving::DivergedFile;
 pub use saving::{Guard, ProfileFile, Saving};
 pub(crate) use session_events::first;
 pub use session_events::{EarlyEnd, SessionEvents};
@@ -34,7 +34,7 @@ pub use state::SessionState;
 use super::action::Opened;
 use super::live_session::LiveSession;
 use super::services::{JobEnd, Services};
-use super::shutdown::Leaver;
+use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Scheme};
@@ -285,7 +285,7 @@ impl<D: Kind> Session<D> {
         if let Some(running) = line.running().filter(|_| write.is_none()) {
             services.job_ends(self.id, running.id, end);
         }
-        services.leave(line.into_worker(), Leaver { session: self.id, about, url, write }, None);
+        services.leave(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
     }
 
     /// The connection is gone.

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Text};
-use crate::signals::state::synchronise::{Form, Synchronise, SynchroniseAction as Page, ToldAs};
+use crate::signals::state::synchronise::{Form, PhaseInput, Synchronise, SynchroniseAction as Page};
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::Synchronisation};
 use crate::signals::views::say;
 use crate::ui::controls::{
@@ -85,16 +85,16 @@ fn positions(
         typed(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
         entry(ui, theme, &say(theme, "synchronise.analogue"), |ui| {
             let ways = [
-                (ToldAs::Periods, "synchronise.in_periods"),
-                (ToldAs::Degrees, "synchronise.in_degrees"),
-                (ToldAs::Volts, "synchronise.in_volts"),
+                (PhaseInput::Periods, "synchronise.in_periods"),
+                (PhaseInput::Degrees, "synchronise.in_degrees"),
+                (PhaseInput::Volts, "synchronise.in_volts"),
             ];
             let ways = ways.map(|(way, id)| (way, say(theme, id)));
-            choice(ui, &say(theme, "synchronise.analogue"), &mut form.told_as, ways);
+            choice(ui, &say(theme, "synchronise.analogue"), &mut form.phase_input, ways);
         });
-        match form.told_as {
-            ToldAs::Periods | ToldAs::Degrees => typed(ui, theme, "synchronise.phase", &mut form.phase, "0"),
-            ToldAs::Volts => {
+        match form.phase_input {
+            PhaseInput::Periods | PhaseInput::Degrees => typed(ui, theme, "synchronise.phase", &mut form.phase, "0"),
+            PhaseInput::Volts => {
                 typed(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
                 typed(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
             }

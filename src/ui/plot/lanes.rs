@@ -50,14 +50,14 @@ pub(super) struct Layout {
 pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
     /// The inputs of each picture.
-    made: Vec<(LineId, Made)>,
+    made: Vec<(LineId, PictureInputs)>,
     /// How much room the labels of the values took.
     gutter: f32,
 }
 
 /// The inputs of a picture: if they are unchanged, so is the picture.
 #[derive(Clone, PartialEq)]
-struct Made {
+struct PictureInputs {
     samples: Option<Stamp>,
     all: Range<u64>,
     grid: Grid,
@@ -73,10 +73,10 @@ impl Reduced {
         let shown = |id: &LineId| recorder.shown().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
         self.made.retain(|(id, _)| shown(id));
-        let mut cuts: Vec<(Made, GridCut)> = Vec::new();
+        let mut cuts: Vec<(PictureInputs, GridCut)> = Vec::new();
         for line in recorder.shown() {
             let Some(history) = recorder.history(line) else { continue };
-            let wanted = Made { samples: recorder.stamp(line), all: history.all(), grid: *grid };
+            let wanted = PictureInputs { samples: recorder.stamp(line), all: history.all(), grid: *grid };
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }

@@ -29,7 +29,7 @@ pub struct PlotUiState {
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     /// A picture of it that is wanted.
-    shot: snapshot::Shot,
+    shot: snapshot::Screenshot,
     /// It takes the place of the page; `None`: it cannot.
     large: Option<bool>,
 }

@@ -135,7 +135,7 @@ fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot) {
+fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Screenshot) {
     let theme = context.theme;
     let (some, desk) = (!context.recorder.is_empty(), context.desk);
     let mut chosen = None;

@@ -11,7 +11,7 @@ use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
 use encoder_studio::worker::open::{check_parameters, inside, leads_elsewhere, open_bytes};
-use encoder_studio::worker::{self, Device, OpenError, Progress, Session, SessionContext, Tell, Watched};
+use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, Watched};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
 use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
@@ -139,7 +139,7 @@ impl Novo {
     }
 }
 
-pub(super) type Told<'t> = &'t mut dyn FnMut(Tell<Infallible, usize>);
+pub(super) type Told<'t> = &'t mut dyn FnMut(JobReport<Infallible, usize>);
 
 impl Device for Novo {
     type Job = Job;
@@ -158,7 +158,7 @@ impl Device for Novo {
             Job::Prepare(change) => Output::Prepared(Box::new(self.prepare(desk, &change)?)),
             Job::Commit(own) => {
                 let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-                let told = &mut |at: Progress<&Op>| tell(Tell::Progress(at.map(|op| op.item)));
+                let told = &mut |at: Progress<&Op>| tell(JobReport::Progress(at.map(|op| op.item)));
                 let written = write_plan(&store, is_virtual, &own, &mut NovoWrite { novo: self, desk }, told)?;
                 Output::Committed(Box::new(written))
             }

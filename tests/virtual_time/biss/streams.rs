@@ -16,7 +16,7 @@ use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 use encoder_studio::worker::{Session, Watched};
 
-use super::support::{Way, at, pairs};
+use super::support::{Transport, at, pairs};
 use crate::support::{MARGIN, Tap, TestLink};
 
 const FAST: Duration = Duration::from_micros(50);
@@ -45,7 +45,7 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let tap = Arc::<Mutex<Tap>>::default();
     let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
-    let mut station = Station::new(Way::Adapter, MARGIN);
+    let mut station = Station::new(Transport::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
     let session = Session::over(Box::new(link), clock.clone(), station, Store::at(folder.path()), None);
     Stand { clock, adapter, tap, session, _folder: folder }

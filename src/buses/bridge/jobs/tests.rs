@@ -45,8 +45,8 @@ impl Stretch for RawFrames {
     type Samples = Vec<u64>;
 
     /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.
-    fn wanted(&self) -> Wanted {
-        Wanted::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
+    fn wanted(&self) -> StreamRequest {
+        StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }
 
     fn read(&self, data: Data, _: &Streaming) -> Option<Vec<u64>> {

@@ -13,7 +13,9 @@ use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
-use crate::devices::biss::procedures::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
+use crate::devices::biss::procedures::{
+    Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Transport,
+};
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
@@ -152,7 +154,7 @@ fn status_text(status: &Status) -> String {
 
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    let over_biss = runner.kept == Way::Adapter;
+    let over_biss = runner.kept == Transport::Adapter;
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,valid,warning\n")?;
     }

@@ -1,7 +1,7 @@
 //! Carries a plan out.
 
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
-use crate::devices::biss::procedures::procedure::News;
+use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWrite;
 use crate::devices::biss::profile::{Base, BissPlan, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
@@ -19,10 +19,10 @@ pub(super) fn commit(
     let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
     // Each step of an operation is told, and so where it begins.
-    let told = &mut |news: News| {
+    let told = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
-        tell(Progress { done, total, what: JobStep::Operation { item, news: Box::new(news) } });
+        tell(Progress { done, total, what: JobStep::Operation { item, progress: Box::new(news) } });
     };
     encoder.know(desk)?;
     let mut master = encoder.master(desk);

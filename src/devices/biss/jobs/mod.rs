@@ -30,7 +30,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
 /// A BiSS encoder at the end of its wire.
 pub struct Biss {
@@ -114,10 +114,10 @@ impl Device for Biss {
         &mut self,
         desk: &mut SessionContext,
         job: BissJob,
-        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
+        tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<BissOutput, JobError> {
         let types = self.types.clone();
-        let steps = &mut |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        let steps = &mut |done, total, what| tell(JobReport::Progress(Progress { done, total, what }));
         Ok(match job {
             BissJob::Survey => {
                 let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
@@ -159,11 +159,11 @@ impl Device for Biss {
                 BissOutput::Saved(Box::new(procedures::save(&mut self.master(desk), &types, unsaved, progress)?))
             }
             BissJob::Prepare(change) => {
-                let steps = &mut |progress| tell(Tell::Progress(progress));
+                let steps = &mut |progress| tell(JobReport::Progress(progress));
                 BissOutput::Prepared(Box::new(prepare::prepare(self, desk, &change, steps)?))
             }
             BissJob::Commit(commit) => {
-                let steps = &mut |progress| tell(Tell::Progress(progress));
+                let steps = &mut |progress| tell(JobReport::Progress(progress));
                 BissOutput::Committed(Box::new(commit::commit(self, desk, *commit, steps)?))
             }
             BissJob::LeadBack => {

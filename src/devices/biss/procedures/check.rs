@@ -2,7 +2,7 @@
 //! verdict a line. It writes nothing but the bank that is selected.
 
 use super::survey::{Bits, Status, survey};
-use super::{Error, Identity, Master, PositionReading, Survey, Way};
+use super::{Error, Identity, Master, PositionReading, Survey, Transport};
 use crate::analysis::check;
 use crate::devices::biss::protocol::{
     Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
@@ -262,7 +262,7 @@ fn wiegand(survey: &Survey) -> Option<BissStepResult> {
 /// Reads the position again and again. A reading that does not come at all is damage as well.
 fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
-    let told_by_line = master.station().way == Way::ConfigPin;
+    let told_by_line = master.station().transport == Transport::ConfigPin;
     let mut damaged = 0;
     for _ in 0..READINGS {
         match master.position() {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::error::exactly;
 use super::registers::Registers;
 use super::widths::find_widths;
-use super::{Error, Master, Station, Way};
+use super::{Error, Master, Station, Transport};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol::Hello;
 use crate::devices::biss::profile::ProfileIdentity;
@@ -180,7 +180,7 @@ pub(super) fn identify_with(
 /// Determines an unknown frame: that of the kit encoder if its checksum fits, else one is searched for. Over the
 /// configuration pin it cannot be observed.
 fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
-    if master.station().way == Way::ConfigPin {
+    if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
     }
     match master.position() {

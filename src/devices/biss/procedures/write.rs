@@ -2,7 +2,7 @@
 //! the motor where needed, and leads the encoder back to operation after each.
 
 use super::error::exactly;
-use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, ProcedureStep};
+use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
 use crate::devices::biss::protocol::{
@@ -77,7 +77,7 @@ impl<'w, 'm> EncoderWrite<'w, 'm> {
         master: &'w mut Master<'m>,
         identity: &'w Identity,
         operator: &'w mut dyn Operator,
-        tell: &'w mut dyn FnMut(News),
+        tell: &'w mut dyn FnMut(ProcedureProgress),
     ) -> Result<Self, Error> {
         let description = master.description()?;
         Ok(EncoderWrite {

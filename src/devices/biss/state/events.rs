@@ -84,7 +84,7 @@ impl SessionEvents for Encoder {
 
     fn progressed(&mut self, what: JobStep) {
         let running = self.guide.as_mut().filter(|guide| guide.is_running());
-        if let (JobStep::Operation { news, .. }, Some(guide)) = (what, running) {
+        if let (JobStep::Operation { progress: news, .. }, Some(guide)) = (what, running) {
             guide.tell(*news);
         }
     }

@@ -213,7 +213,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
         JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),
         JobStep::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
-        JobStep::Operation { news, .. } => step(news.step),
+        JobStep::Operation { progress: news, .. } => step(news.step),
     }
 }
 

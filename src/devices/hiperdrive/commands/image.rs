@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::meaning::{self, Known, WordMeaning, control_words, parameter_name, status_words};
+use super::meaning::{self, BytesContext, WordMeaning, control_words, parameter_name, status_words};
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
     Actual, Answer, ControlWord, InImage, Kind, Layout, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Task,
@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::{
 ///
 /// # Errors
 /// Why they cannot have gone the way that is known.
-pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
@@ -34,7 +34,7 @@ pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<WordMeaning>, 
     Ok(readings)
 }
 
-fn layouts(length: usize, known: &Known) -> impl Iterator<Item = Layout> {
+fn layouts(length: usize, known: &BytesContext) -> impl Iterator<Item = Layout> {
     Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
@@ -49,7 +49,7 @@ fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
 }
 
 /// Process data of a cyclic packet, which tells the way itself where nothing else is said. Nothing of a length that there is not.
-pub(super) fn cyclic(data: &[u8], to_target: bool, known: &Known) -> Vec<WordMeaning> {
+pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
@@ -126,7 +126,7 @@ fn in_turns(position: i32) -> String {
 }
 
 /// Eight bytes as a parameter word, where the manual has the parameter. Texts alone have elements.
-fn parameter_word(bytes: &[u8], known: &Known) -> Vec<WordMeaning> {
+fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
     let Some(row) = row(pkw) else { return Vec::new() };

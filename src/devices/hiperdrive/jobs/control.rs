@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::commit::commit as carry_through;
-use super::rules_refresh::Looks;
+use super::rules_refresh::RulesRefresh;
 use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Motion, ProgressSink};
 use crate::buses::ethernet_ip::protocol::ForwardClose;
 use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
@@ -23,7 +23,7 @@ pub(super) struct Control {
     /// The device and its drives, as they were when it was opened last.
     identity: Option<Identity>,
     /// When what rules them could not be read.
-    pub(super) looks: Looks,
+    pub(super) rules_refresh: RulesRefresh,
 }
 
 struct Open {
@@ -39,7 +39,7 @@ impl Control {
             motion: Motion::new(clock),
             open: None,
             identity: None,
-            looks: Looks::default(),
+            rules_refresh: RulesRefresh::default(),
         }
     }
 
@@ -100,7 +100,7 @@ impl Hiperdrive {
             return Err(Error::InControl);
         }
         let identity = identify(&mut self.master(desk), told)?;
-        self.control.looks = Looks::default();
+        self.control.rules_refresh = RulesRefresh::default();
         identity.drives.iter().for_each(|drive| self.control.motion.doubt_limits(drive.number));
         self.read_rules(desk, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;

@@ -22,7 +22,7 @@ pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Prepared,
     WEAR_WARNING, device_key,
 };
-pub use motion::{DriveView, Glance, Motion, MotionSnapshot};
+pub use motion::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
 pub use open::{check, open};
 use session_watch::WatchedWire;
 
@@ -34,7 +34,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
 use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
 use crate::store::Store;
-use crate::worker::{Device, IDLE, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, Watched};
 
 /// An adapter or a hub with its drives.
 pub struct Hiperdrive {
@@ -58,7 +58,7 @@ impl fmt::Debug for Hiperdrive {
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 /// Receives the reports of a job.
-type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
+type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
     /// The host's side of explicit messages.
@@ -68,7 +68,7 @@ impl Hiperdrive {
 }
 
 /// The start of a session with an adapter or a hub.
-pub struct Way {
+pub struct DeviceConnection {
     /// Explicit messages.
     pub wire: Box<dyn ByteLink>,
     /// Port of cyclic data; `None` for a link without any.
@@ -81,8 +81,8 @@ pub struct Way {
 
 impl Session<Hiperdrive> {
     /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
-    pub fn to_target(way: Way, clock: Arc<dyn Clock>, store: Store) -> Self {
-        let Way { wire, port, station, target } = way;
+    pub fn to_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
+        let DeviceConnection { wire, port, station, target } = way;
         let is_virtual = target.is_some();
         let control = Control::new(port, clock.clone());
         let wire = Box::new(WatchedWire::new(wire, clock.clone(), control.motion()));
@@ -124,7 +124,7 @@ impl Device for Hiperdrive {
     ) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
         self.let_go_of_lost(desk);
-        let mut step = |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, what }));
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
             HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),

@@ -40,7 +40,7 @@ struct Cell {
 
 /// The drives at one moment: what they do, and what they may do.
 #[derive(Clone, Debug)]
-pub struct Glance {
+pub struct DrivesSnapshot {
     pub at: Moment,
     /// The state of the drives.
     pub view: MotionSnapshot,
@@ -139,10 +139,10 @@ impl Motion {
     }
 
     /// Returns the state and the limits of the drives at one moment.
-    pub fn glance(&self) -> Glance {
+    pub fn glance(&self) -> DrivesSnapshot {
         let at = self.0.clock.now();
         let cell = self.lock();
-        Glance { at, view: cell.view.clone(), limits: cell.limits.clone() }
+        DrivesSnapshot { at, view: cell.view.clone(), limits: cell.limits.clone() }
     }
 
     /// Returns the limits of a drive, with the time of reading; the default for an unknown one.
@@ -238,7 +238,7 @@ impl Motion {
             act: man.act(),
             ended: man.ended(),
         };
-        let mut views: Vec<DriveView> = drives.men().map(of).collect();
+        let mut views: Vec<DriveView> = drives.dead_men().map(of).collect();
         views.sort_by_key(|view| view.number);
         let view = MotionSnapshot {
             open: !drives.is_ending(),

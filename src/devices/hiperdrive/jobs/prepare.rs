@@ -9,7 +9,7 @@ use crate::devices::hiperdrive::profile::{
 };
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Progress, SessionContext, Tell};
+use crate::worker::{JobReport, Progress, SessionContext};
 
 pub(super) fn prepare(
     device: &mut Hiperdrive,
@@ -20,7 +20,7 @@ pub(super) fn prepare(
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let mut master = device.master(desk);
     let told = &mut |done, total, number| {
-        tell(Tell::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
+        tell(JobReport::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
     };
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
     let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {

@@ -20,7 +20,7 @@ const REST: Duration = Duration::from_millis(500);
 
 /// Whether the limits of the drives could be read.
 #[derive(Debug, Default)]
-pub(super) struct Looks {
+pub(super) struct RulesRefresh {
     /// Until when nothing is asked, behind a look that failed.
     rests: Option<Moment>,
 }
@@ -45,7 +45,7 @@ impl Hiperdrive {
     /// nothing moves until they can, which is reported once.
     pub(super) fn look_at_rules(&mut self, desk: &mut SessionContext) {
         let Some(identity) = self.control.held() else { return };
-        if self.control.looks.rests.is_some_and(|until| desk.clock.now() < until) {
+        if self.control.rules_refresh.rests.is_some_and(|until| desk.clock.now() < until) {
             return;
         }
         let moved = self.control.motion().wanted_drive();
@@ -60,7 +60,7 @@ impl Hiperdrive {
                 Err(error) => return self.cannot_look(desk, drive, error),
             }
         }
-        if self.control.looks.rests.take().is_some() {
+        if self.control.rules_refresh.rests.take().is_some() {
             self.remark.get_or_insert(DeviceMessage::RulesRead);
         }
     }
@@ -98,7 +98,7 @@ impl Hiperdrive {
             // Nothing more can be asked: that is told as a loss.
             return self.control.lose_session();
         }
-        if self.control.looks.rests.replace(desk.clock.now() + REST).is_none() {
+        if self.control.rules_refresh.rests.replace(desk.clock.now() + REST).is_none() {
             self.control.motion().stop();
             self.remark.get_or_insert(DeviceMessage::RulesUnread(Box::new(error)));
         }

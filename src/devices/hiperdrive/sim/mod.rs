@@ -25,10 +25,10 @@ mod target;
 mod tests;
 mod words;
 
-pub use axis::{Defect, Load};
+pub use axis::{Defect, SpindleLoad};
 pub use config::Config;
 pub use drive::Drive;
-pub use hindrance::Hindrance;
+pub use hindrance::WriteFault;
 pub use parameters::Refused;
 pub use station::{Setup, Station};
 pub use target::{Figures, Target};

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::devices::hiperdrive::jobs::{DriveView, Glance, Motion, MotionSnapshot};
+use crate::devices::hiperdrive::jobs::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
 use crate::devices::hiperdrive::procedures::dead_man::{
     Effort, Ended, HEARD, Lock, MotionRequest, Motive, Permit, Phase,
 };
@@ -89,7 +89,7 @@ impl Moves {
         (self.experts, self.act) = (BTreeSet::new(), None);
         self.limits_changed.clear();
         self.taken = false;
-        let Glance { at, view, limits } = motion.glance();
+        let DrivesSnapshot { at, view, limits } = motion.glance();
         (self.looked, self.view, self.limits) = (at, view, limits);
         self.motion = Some(motion);
     }
@@ -128,7 +128,7 @@ impl Moves {
     /// Looks at what the drives say, and at what they may do.
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
-        let Glance { at, view, limits } = motion.glance();
+        let DrivesSnapshot { at, view, limits } = motion.glance();
         self.taken |= view.open && !self.view.open;
         for (drive, own) in &limits {
             let before = self.limits.get(drive).map(|before| (before.rules(), before.locks()));

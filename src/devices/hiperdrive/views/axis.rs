@@ -13,7 +13,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisStep, Button, End, Entries, Reached, Seen, end_lines, words,
+    Axis, AxisAction as Run, AxisStep, Button, DriveFacts, End, Entries, Reached, end_lines, words,
 };
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
@@ -43,7 +43,7 @@ impl AxisUiState {
 pub(crate) struct AxisPicture<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
-    seen: &'a Seen,
+    seen: &'a DriveFacts,
     /// For how long the step has been looked at.
     looked_at: Duration,
 }

@@ -20,7 +20,7 @@ pub use types::{BrokenTypes, encoder_types};
 
 use status::StatusKeeper;
 
-use crate::devices::hiperface::procedures::find::News;
+use crate::devices::hiperface::procedures::find::SearchProgress;
 use crate::devices::hiperface::procedures::{
     self, Codes, Error, Identity, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
     read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
@@ -29,7 +29,7 @@ use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
 use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::store::{DeviceKey, Store};
-use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
 /// A HIPERFACE encoder at the end of its wire.
 pub struct Hiperface {
@@ -128,7 +128,7 @@ impl Device for Hiperface {
         &mut self,
         desk: &mut SessionContext,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
+        tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let result = self.carry_out(desk, job, tell);
         let codes = self.station.take_codes_read();
@@ -192,10 +192,10 @@ impl Hiperface {
         &mut self,
         desk: &mut SessionContext,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
+        tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let types = self.types.clone();
-        let steps = &mut |progress| tell(Tell::Progress(progress));
+        let steps = &mut |progress| tell(JobReport::Progress(progress));
         Ok(match job {
             HiperfaceJob::Prepare(change) => {
                 let prepared = prepare::prepare(self, desk, change, steps)?;
@@ -239,7 +239,7 @@ impl Hiperface {
             }
             HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(desk))?),
             HiperfaceJob::Find(options) => {
-                let watch = &mut |news: News<'_>| tell(message_of(news));
+                let watch = &mut |news: SearchProgress<'_>| tell(message_of(news));
                 HiperfaceOutput::Found(find::find(&mut self.master(desk), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
@@ -250,12 +250,12 @@ impl Hiperface {
     }
 }
 
-fn message_of(news: News<'_>) -> Tell<DeviceMessage, JobStep> {
+fn message_of(news: SearchProgress<'_>) -> JobReport<DeviceMessage, JobStep> {
     match news {
-        News::Trying { done, total, attempt } => {
-            Tell::Progress(Progress { done, total, what: JobStep::Attempt(attempt.clone()) })
+        SearchProgress::Trying { done, total, attempt } => {
+            JobReport::Progress(Progress { done, total, what: JobStep::Attempt(attempt.clone()) })
         }
-        News::Found(found) => Tell::Remark(DeviceMessage::Found(found.clone())),
+        SearchProgress::Found(found) => JobReport::Remark(DeviceMessage::Found(found.clone())),
     }
 }
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::bits::hex_compact;
 use crate::devices::hiperface::procedures::identify::{read_serial, read_type_label};
-use crate::devices::hiperface::procedures::master::Trouble;
+use crate::devices::hiperface::procedures::master::ExchangeFailure;
 use crate::devices::hiperface::procedures::position::{distance, range_of};
 use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, Scalar};
 use crate::devices::hiperface::protocol::{
@@ -336,7 +336,7 @@ pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<()
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
     master.station().address = before;
-    match answers?.iter().all(|answer| matches!(answer, Err(Trouble::Silence { .. }))) {
+    match answers?.iter().all(|answer| matches!(answer, Err(ExchangeFailure::Silence { .. }))) {
         true => Ok(()),
         false => Err(Error::AddressTaken { address: address.byte() }),
     }

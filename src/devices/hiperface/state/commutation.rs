@@ -48,12 +48,12 @@ pub struct Commutation {
     /// The last position read: the shaft is still there, as far as is known.
     last: Option<Slot>,
     /// The reading that is under way.
-    asked: Option<Asked>,
+    asked: Option<PendingReading>,
 }
 
 /// A reading that is under way: what it is for, and how it was asked for, whatever is chosen or typed meanwhile.
 #[derive(Debug)]
-struct Asked {
+struct PendingReading {
     slot: Slot,
     source: Source,
     /// As typed.
@@ -106,7 +106,7 @@ impl Commutation {
 
     /// The encoder is asked for a position at rest.
     fn ask(&mut self, slot: Slot) {
-        self.asked = Some(Asked { slot, source: self.form.source, phase: self.form.phase.clone() });
+        self.asked = Some(PendingReading { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
 
     fn note(&mut self, slot: Slot, reading: RestReading) {
@@ -157,7 +157,7 @@ impl Commutation {
     }
 }
 
-impl Asked {
+impl PendingReading {
     fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<RestReading, Text> {
         if !rest.valid {
             return Err(Text::new("commutation.invalid"));
@@ -211,7 +211,7 @@ mod tests {
     }
 
     fn read(source: Source, phase: &str, rest: Rest) -> Result<RestReading, &'static str> {
-        let asked = Asked { slot: Slot::OneSide, source, phase: phase.to_owned() };
+        let asked = PendingReading { slot: Slot::OneSide, source, phase: phase.to_owned() };
         asked.reading(rest, SKM36).map_err(|text| text.id())
     }
 

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{
 };
 
 /// Known facts about a word besides its digits.
-pub(super) struct Known {
+pub(super) struct WordContext {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
     pub(super) shift: Option<WindowShift>,
@@ -49,7 +49,7 @@ pub(super) fn of_k1(word: Single) -> WordMeaning {
 }
 
 /// Returns the request of an OUT word, or why it must not be sent.
-pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
@@ -76,7 +76,7 @@ pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, Strin
 }
 
 /// An OUT word that an encoder in the known mode must not get, where it means something in another.
-pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
+pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
         .filter(|refused| !matches!(refused.command, Command::Unknown(_)))
@@ -98,7 +98,7 @@ fn elsewhere(command: Command) -> String {
 }
 
 /// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
-pub(super) fn of_in(word: u32, known: &Known) -> Vec<WordMeaning> {
+pub(super) fn of_in(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
     let said = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",

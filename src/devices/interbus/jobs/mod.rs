@@ -27,7 +27,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
 /// An INTERBUS encoder behind its gateway.
 pub struct Interbus {
@@ -44,7 +44,7 @@ impl fmt::Debug for Interbus {
 }
 
 /// Receives the reports of a job.
-type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
+type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
     /// The host's side of the process data; each step of the handshake is told.
@@ -165,8 +165,9 @@ impl Interbus {
         ask: impl FnOnce(&mut Master<'_>, Steps<'_>) -> Result<InterbusOutput, Error>,
     ) -> Result<InterbusOutput, JobError> {
         let tell = std::cell::RefCell::new(tell);
-        let mut master = self.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
-        let mut steps = |done, total, what| (tell.borrow_mut())(Tell::Progress(Progress { done, total, what }));
+        let mut master =
+            self.master(desk, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+        let mut steps = |done, total, what| (tell.borrow_mut())(JobReport::Progress(Progress { done, total, what }));
         Ok(ask(&mut master, &mut steps)?)
     }
 }

@@ -12,7 +12,7 @@ use super::LinkParameters;
 use super::data::ProcessData;
 use super::error::{Damage, Exception, RequestedItem};
 use super::station::Station;
-use super::{Error, Known};
+use super::{Error, KnownState};
 use crate::bits::MaskedBytes;
 use crate::devices::interbus::protocol::WordOrder;
 use crate::link::Ctx;
@@ -66,7 +66,7 @@ type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
     /// The gateway of a station, and what is known of the encoder behind it.
-    pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut Known) {
+    pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut KnownState) {
         let Station { link, recorded, line, next, waiting, silent, known } = station;
         let (link, recorded) = (*link, *recorded);
         line.begin_job();

@@ -13,24 +13,24 @@ use notes::Notes;
 
 use super::data::ProcessData;
 use super::error::{Awaited, RequestedItem};
-use super::handshake::{Handshake, LeftState, Says, is_echo};
+use super::handshake::{Handshake, LeftState, WordReply, is_echo};
 use super::reading::{swapped, swapped_unexplained};
-use super::{Error, Gateway, Known, Station, WordReading};
+use super::{Error, Gateway, KnownState, Station, WordReading};
 use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::link::Ctx;
 use crate::units::Moment;
 
 /// Receives each step.
-type Teller<'a> = Box<dyn FnMut(Handshake) + 'a>;
+type StepListener<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
 /// The host's side of the process data of one encoder, for one job.
 pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
-    known: &'a mut Known,
+    known: &'a mut KnownState,
     patience: Duration,
     /// It is a recording that answers.
     recorded: bool,
-    tell: Option<Teller<'a>>,
+    tell: Option<StepListener<'a>>,
     /// The mode, as read in this job.
     is: Option<StartupMode>,
     /// It was sent into another mode and has not said yet that it is there.
@@ -51,7 +51,7 @@ pub struct Master<'a> {
     input: u32,
     /// When it was seen last to do what it did before this job, with nothing asked of it.
     rested: Option<Moment>,
-    told: Option<(u32, Says)>,
+    told: Option<(u32, WordReply)>,
     /// The notes that outlast this job.
     notes: Notes<'a>,
 }
@@ -70,7 +70,7 @@ impl<'a> Master<'a> {
         Master::with(Box::new(data), &mut station.known, patience)
     }
 
-    fn with(data: Box<dyn ProcessData + 'a>, known: &'a mut Known, patience: Duration) -> Self {
+    fn with(data: Box<dyn ProcessData + 'a>, known: &'a mut KnownState, patience: Duration) -> Self {
         Master {
             data,
             known,
@@ -133,7 +133,7 @@ impl<'a> Master<'a> {
     /// The way to it.
     pub fn reading(&mut self) -> Result<WordReading, Error> {
         let word = self.data.input()?;
-        let Known { mode, gear, shift, .. } = *self.known;
+        let KnownState { mode, gear, shift, .. } = *self.known;
         Ok(WordReading { at: self.data.now(), word, mode, gear, shift })
     }
 
@@ -277,7 +277,7 @@ impl<'a> Master<'a> {
                 ended?
             }
         };
-        let (out, input, says) = (command.emit(), self.input, Says::of(command, self.input));
+        let (out, input, says) = (command.emit(), self.input, WordReply::of(command, self.input));
         // The position of a shaft that turns is not told again and again.
         if self.told != Some((out, says))
             && let Some(tell) = &mut self.tell

@@ -79,12 +79,12 @@ pub struct TableProblem {
     /// The column, counted from 1.
     pub column: u64,
     /// The problem.
-    pub what: Wrong,
+    pub what: TableProblemKind,
 }
 
 /// A problem in a line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Wrong {
+pub enum TableProblemKind {
     /// There is nothing in the table.
     #[error("the table has no rows")]
     Empty,

@@ -1,7 +1,7 @@
 //! The meaning of the frames in the trace: the words in them. It depends on the mode of the encoder, which the OUT
 //! words before have selected.
 
-use super::said::{self, Known};
+use super::said::{self, WordContext};
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::interbus::procedures::{Carried, Fault, carried, fault};
 use crate::devices::interbus::protocol::{Command, Mode, ReadOut, Reply, WindowShift, WordOrder};
@@ -67,7 +67,7 @@ impl Meaning {
                 vec![word_of("ib_trace.out", word), said::asked(command)]
             }
             Some(Carried::In(word)) => {
-                let known = Known { mode: self.mode, read_out: self.read_out, shift: self.shift };
+                let known = WordContext { mode: self.mode, read_out: self.read_out, shift: self.shift };
                 vec![word_of("ib_trace.in", word), said::word_text(word, &known)]
             }
             None => Vec::new(),

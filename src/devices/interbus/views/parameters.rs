@@ -210,7 +210,7 @@ fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
                     ui.label(theme.mono(format!("0x{:08X}", step.out)));
                     ui.label(theme.label(theme.words(&said::asked(step.command))));
                     ui.label(theme.mono(format!("0x{:08X}", step.input)));
-                    let known = said::Known::of(step.command, encoder.shift());
+                    let known = said::WordContext::of(step.command, encoder.shift());
                     ui.add(egui::Label::new(theme.label(theme.words(&said::word_text(step.input, &known)))).truncate());
                     ui.end_row();
                 }

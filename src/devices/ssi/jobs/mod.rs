@@ -17,7 +17,7 @@ use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::{Device, EndedEarly, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionContext, Watched};
 
 /// An SSI encoder behind its adapter.
 pub struct Ssi {
@@ -128,7 +128,7 @@ impl Device for Ssi {
         &mut self,
         desk: &mut SessionContext,
         job: SsiJob,
-        tell: &mut dyn FnMut(Tell<Infallible, JobStep>),
+        tell: &mut dyn FnMut(JobReport<Infallible, JobStep>),
     ) -> Result<SsiOutput, JobError> {
         let mut master = self.master(desk);
         Ok(match job {
@@ -136,7 +136,7 @@ impl Device for Ssi {
             SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
             SsiJob::Read => SsiOutput::Read(master.word()?),
             SsiJob::Check(layout) => {
-                let progress = &mut |done, total| tell(Tell::Progress(Progress { done, total, what: JobStep }));
+                let progress = &mut |done, total| tell(JobReport::Progress(Progress { done, total, what: JobStep }));
                 SsiOutput::Check(check::check(&mut master, &layout, progress)?)
             }
         })

@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use super::design::{Design, Designer, Edit};
-use super::record::{Record, Seen, Streamed};
-use super::search::Hunt;
+use super::record::{ReadWord, Record, Streamed};
+use super::search::SearchState;
 use super::trial::{Decoded, Trial};
 use crate::app::check::CheckLine;
 use crate::app::session::{Phase, Session, Source};
@@ -29,7 +29,7 @@ pub struct Encoder {
     /// The recording of what was read.
     pub record: Record,
     /// The search for the layout.
-    pub hunt: Hunt,
+    pub hunt: SearchState,
     /// Searches that were begun.
     pub(super) searches: u32,
     /// The adapter and how it reads words, once known.
@@ -55,7 +55,7 @@ impl Encoder {
             designer,
             trial,
             follows: true,
-            hunt: Hunt::default(),
+            hunt: SearchState::default(),
             searches: 0,
             identity: None,
             check: None,
@@ -82,7 +82,7 @@ impl Encoder {
     }
 
     /// The word that was read last; `None`: none was.
-    pub fn last(&self) -> Option<&Seen> {
+    pub fn last(&self) -> Option<&ReadWord> {
         self.record.last()
     }
 

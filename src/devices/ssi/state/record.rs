@@ -30,14 +30,14 @@ pub struct Record {
     tally: Tally,
     /// Findings up to this time are no longer shown.
     forgotten: Option<Moment>,
-    last: Option<Seen>,
+    last: Option<ReadWord>,
     stream: Option<Streamed>,
     lost: u64,
 }
 
 /// A word with what it says.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct ReadWord {
     /// When it was taken.
     pub at: Moment,
     /// Its bits.
@@ -140,7 +140,7 @@ impl Record {
         self.track.add(&sightings, &self.meaning);
         if let Some((at, word)) = run.timed().last() {
             self.last =
-                Some(Seen { at, clocks: run.clocks, decoded: fits.then(|| Decoded::of(&self.layout, word)), word });
+                Some(ReadWord { at, clocks: run.clocks, decoded: fits.then(|| Decoded::of(&self.layout, word)), word });
         }
     }
 
@@ -215,7 +215,7 @@ impl Record {
     }
 
     /// The last word.
-    pub fn last(&self) -> Option<&Seen> {
+    pub fn last(&self) -> Option<&ReadWord> {
         self.last.as_ref()
     }
 

@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a HIPERDRIVE.
 
-use super::{Differs, Edit, EditError, LimitsStay, Mark, SavedEdit, Staged};
+use super::{Differs, Edit, EditError, LimitsPolicy, Mark, SavedEdit, Staged};
 use crate::app::PendingEdits;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
@@ -81,11 +81,11 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     assert_eq!(out(&mut staged, Edit::Set(number(170), 1 << 30)), (170, 1 << 30, within(67_108_864)));
     assert_eq!(staged.edit(&Edit::Set(number(158), -33_554_432)), Ok(true));
     let hundredths = PositionScale::new(400, 256).unwrap();
-    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
     assert_eq!((staged.value(number(158)), staged.marks(|_| None)), (Some(-204_800), vec![]));
     assert_eq!(out(&mut staged, Edit::Set(number(160), 204_801)), (160, 204_801, within(204_800)));
     assert!(staged.undo() && staged.undo() && !staged.is_dirty());
-    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
     let mut profile = Staged::of_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
     profile.know([(ONE, Family::Short)].into());
@@ -139,7 +139,7 @@ fn a_draft_waits_for_what_it_is_about() {
 fn a_scale_takes_the_limits_along_or_moves_them() {
     let hundredths = PositionScale::new(400, 256).unwrap();
     let mut along = staged();
-    along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
     // 511 turns of 400 steps.
     assert_eq!(along.edited(), image(&[(154, 400), (156, 256), (158, -204_400), (160, 204_400)]));
     // 600 turns of 65536 steps, scaled to 400 are 240 000: inside no more.
@@ -149,7 +149,7 @@ fn a_scale_takes_the_limits_along_or_moves_them() {
     assert_eq!(outside, [expected]);
 
     let mut moved = staged();
-    moved.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    moved.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     let [Mark::LimitsMove { lower, upper, .. }] = moved.marks(|_| Some(0))[..] else { panic!() };
     // 33 488 896 steps of 400 a turn.
     assert_eq!((lower, upper), ((-511.0, -83_722.24), (511.0, 83_722.24)));

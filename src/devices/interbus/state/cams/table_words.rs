@@ -3,7 +3,7 @@
 use crate::analysis::capture::Delimiter;
 use crate::app::Text;
 use crate::devices::interbus::profile::{
-    CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableRow, Unit, Wrong,
+    CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableProblemKind, TableRow, Unit,
 };
 use crate::devices::interbus::state::TEXTS;
 
@@ -27,27 +27,27 @@ pub fn problem(problem: &TableProblem) -> Text {
     text.with_text("what", wrong(&problem.what))
 }
 
-fn wrong(wrong: &Wrong) -> Text {
+fn wrong(wrong: &TableProblemKind) -> Text {
     match wrong {
-        Wrong::Empty => TEXTS.text("camtable.empty"),
-        Wrong::NoColumn(own) => TEXTS.text("camtable.no_column").with_text("column", column(*own)),
-        Wrong::Missing(own) => TEXTS.text("camtable.missing").with_text("column", column(*own)),
-        Wrong::Number { text } => TEXTS.text("camtable.number").with("text", text),
-        Wrong::Program { text } => TEXTS.text("camtable.program").with("text", text),
-        Wrong::Cam { text } => TEXTS.text("camtable.cam").with("text", text),
-        Wrong::Outside { column: own, outside } => {
+        TableProblemKind::Empty => TEXTS.text("camtable.empty"),
+        TableProblemKind::NoColumn(own) => TEXTS.text("camtable.no_column").with_text("column", column(*own)),
+        TableProblemKind::Missing(own) => TEXTS.text("camtable.missing").with_text("column", column(*own)),
+        TableProblemKind::Number { text } => TEXTS.text("camtable.number").with("text", text),
+        TableProblemKind::Program { text } => TEXTS.text("camtable.program").with("text", text),
+        TableProblemKind::Cam { text } => TEXTS.text("camtable.cam").with("text", text),
+        TableProblemKind::Outside { column: own, outside } => {
             let decimals = |value: f64| if value.fract() == 0.0 { 0 } else { 3 };
             let text = TEXTS.text("camtable.outside").with_text("column", column(*own));
             let text = text.with_number("value", outside.value, decimals(outside.value));
             let text = text.with_number("least", outside.least, decimals(outside.least));
             text.with_number("most", outside.most, decimals(outside.most))
         }
-        Wrong::Full(program) => TEXTS.text("camtable.full").with("program", program.get()),
-        Wrong::Twice { program, cam, first } => {
+        TableProblemKind::Full(program) => TEXTS.text("camtable.full").with("program", program.get()),
+        TableProblemKind::Twice { program, cam, first } => {
             let text = TEXTS.text("camtable.twice").with("program", program.get()).with("cam", cam.get());
             text.with("first", first)
         }
-        Wrong::Name { most } => TEXTS.text("camtable.name").with("most", most),
+        TableProblemKind::Name { most } => TEXTS.text("camtable.name").with("most", most),
     }
 }
 

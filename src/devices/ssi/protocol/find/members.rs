@@ -4,7 +4,7 @@ use super::any_other::any_other;
 use super::of_family::of_family;
 use super::probe::{Probe, Trial};
 use super::reading::{Read, Reading};
-use super::seen::Seen;
+use super::seen::FrameSet;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
@@ -34,7 +34,7 @@ pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 
 pub(super) fn members(
     probe: &Probe<'_>,
     read: &Read,
-    words: &Seen,
+    words: &FrameSet,
     repeat: Option<Repeat>,
     families: Option<&Families>,
 ) -> Vec<Member> {
