@@ -125,9 +125,9 @@ impl Studio {
             Some(RecorderOwner::Tool(_)) => None,
             None => self.shown(),
         };
-        let whose = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
-        let whose = whose.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
-        PathBuf::from(format!("{whose}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
+        let stem = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
+        let stem = stem.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        PathBuf::from(format!("{stem}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
     }
 
     fn write_table(&mut self, desk: RecorderOwner, visible: bool, path: &Path) {

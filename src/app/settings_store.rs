@@ -38,7 +38,7 @@ pub(crate) struct SettingsStore {
     busy: Option<Settings>,
     /// The file has been read, or put aside: before that nothing is written over it.
     may_write: bool,
-    told: bool,
+    is_failure_reported: bool,
     /// The file is being read, since then.
     looking: Option<Zoned>,
     /// When it was read last.
@@ -93,7 +93,7 @@ impl SettingsStore {
             failed: None,
             busy: None,
             may_write: false,
-            told: false,
+            is_failure_reported: false,
             looking: None,
             looked: None,
             unseen: None,
@@ -168,14 +168,14 @@ impl SettingsStore {
                     let text = Text::new("session.settings_broken").with("aside", aside.display());
                     services.tell(Severity::Warning, vec![text.with("path", path.display())], None);
                 }
-                if std::mem::take(&mut self.told) {
+                if std::mem::take(&mut self.is_failure_reported) {
                     services.log.settle(NOT_KEPT, None);
                 }
             }
             Err(error) => {
                 // Another program lets go of it some time: it is tried again.
                 self.failed = (error.problem != FileProblem::InUse).then_some(written);
-                if !std::mem::replace(&mut self.told, true) {
+                if !std::mem::replace(&mut self.is_failure_reported, true) {
                     let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
                     services.tell(Severity::Warning, vec![text], None);
                 }

@@ -124,25 +124,25 @@ impl Services {
 
     /// Takes the events of sessions that are ending.
     pub(super) fn pump_leaving(&mut self) {
-        let mut told = Vec::new();
+        let mut endings = Vec::new();
         self.leaving.retain_mut(|leaving| {
             // In this order: what has ended tells nothing more.
             let ended = leaving.ending.is_ended();
             for end in leaving.ending.job_endings() {
                 if leaving.who.write == Some(end.job) {
                     leaving.who.write = None;
-                    told.push((leaving.who.session, leaving.who.about.clone(), end));
+                    endings.push((leaving.who.session, leaving.who.about.clone(), end));
                 }
             }
             if ended && let Some(job) = leaving.who.write.take() {
                 let why = Text::new("session.ended");
                 let end = JobEnd::Failed(why.clone());
                 let end = JobEnding { job, end, severity: Severity::Error, texts: vec![why] };
-                told.push((leaving.who.session, leaving.who.about.clone(), end));
+                endings.push((leaving.who.session, leaving.who.about.clone(), end));
             }
             !ended
         });
-        for (session, about, last) in told {
+        for (session, about, last) in endings {
             self.job_ends(session, last.job, last.end);
             self.tell(last.severity, last.texts, Some(&about));
         }

@@ -234,7 +234,7 @@ pub(crate) fn show_done(
     operations: &[Json],
     spent: &WriteSummary,
     results: &[Json],
-    said: &str,
+    changes: &str,
 ) -> Result {
     let mut json = json!({
         "item": item,
@@ -253,7 +253,7 @@ pub(crate) fn show_done(
             let mut lines = Lines::default();
             lines.add("written", spent.written).add("verified", spent.verified);
             lines.add("write cycles", spent.write_cycles).add("backup", backup.display());
-            format!("{said}{}", lines.text())
+            format!("{changes}{}", lines.text())
         }
     };
     output.show_written(&json, &text)?;

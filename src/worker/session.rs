@@ -90,7 +90,7 @@ impl<D: Device> Session<D> {
     /// Carries out a job here and now. `tell` hears all events but the last, which is given back.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
-        let result = self.device.run(&mut self.desk, job, &mut |told| match told {
+        let result = self.device.run(&mut self.desk, job, &mut |report| match report {
             JobReport::Progress(progress) => tell(Event::Progress(id, progress)),
             JobReport::Remark(remark) => tell(Event::Remark(remark)),
         });

@@ -120,7 +120,7 @@ fn what_is_no_drive_says_who_it_is() {
     let mut session = session(&bench, &foreign, "");
     let error = session.run_inline(HiperdriveJob::Hello).unwrap_err();
     let JobError::Device(error) = error else { panic!("{error}") };
-    assert_eq!(error, Error::NotHiperdrive { says: "Valve island".to_owned() });
+    assert_eq!(error, Error::NotHiperdrive { product: "Valve island".to_owned() });
 }
 
 #[test]

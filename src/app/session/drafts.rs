@@ -87,7 +87,7 @@ pub(crate) struct Drafting<E> {
     /// The right to keep it; without, it belongs to another window or session.
     claim: Option<Arc<Claim>>,
     /// The failure to keep it has been reported.
-    told: bool,
+    is_failure_reported: bool,
 }
 
 /// The name of a file's draft: of the file itself, whichever way leads to it. As a task: it asks the disk.
@@ -104,7 +104,15 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 impl<E: DraftEdits> Drafting<E> {
     /// Creates the drafting of a session, before any draft was looked for.
     pub(in crate::app) fn new(session: SessionId) -> Self {
-        Drafting { session, kept: E::default(), busy: false, due: true, looked: false, claim: None, told: false }
+        Drafting {
+            session,
+            kept: E::default(),
+            busy: false,
+            due: true,
+            looked: false,
+            claim: None,
+            is_failure_reported: false,
+        }
     }
 
     /// Looks for the draft of an earlier time.
@@ -204,7 +212,7 @@ impl<E: DraftEdits> Drafting<E> {
             self.busy = false;
         }
         if let Err(error) = result
-            && !std::mem::replace(&mut self.told, true)
+            && !std::mem::replace(&mut self.is_failure_reported, true)
         {
             let text = Text::new("session.draft_not_kept").with_text("why", explain::file(&error));
             services.tell(Severity::Warning, vec![text], Some(name));
@@ -238,7 +246,7 @@ impl<E: DraftEdits> Drafting<E> {
 
     /// A device without a serial number has no draft, which is said once, with the first edit.
     pub(in crate::app) fn tell_of_none(&mut self, name: &str, services: &mut Services) {
-        if !std::mem::replace(&mut self.told, true) {
+        if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.tell(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }

@@ -72,9 +72,9 @@ pub trait Kind: Device + Sized {
     fn job_endings(event: &Event<Self>) -> Option<JobEnding> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
-                let told =
+                let result =
                     Self::result_texts(output).unwrap_or_else(|| (Severity::Note, vec![Text::new("session.ended")]));
-                (job, JobEnd::Done, told)
+                (job, JobEnd::Done, result)
             }
             Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, Self::error_texts(error))),
             Event::Failed(job, error) => {

@@ -103,10 +103,10 @@ fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Re
             return Err(Box::new(DivergedFile { text: String::new(), document: Err(ReadError::File(error)) }));
         }
     };
-    let says = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
-    let found = says(&text);
+    let normalized = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
+    let found = normalized(&text);
     // A change of comments only: they are kept like any others.
-    if text == opened || found.is_some() && (found == says(opened) || found == Some(wanted.emit())) {
+    if text == opened || found.is_some() && (found == normalized(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }
     let document = Document::parse(&text, formats).map(Box::new).map_err(ReadError::Profile);

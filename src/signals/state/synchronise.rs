@@ -69,7 +69,7 @@ pub struct Synchronise {
     /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
     /// Whose they are.
-    whose: Option<SineCosineOrigin>,
+    origin: Option<SineCosineOrigin>,
 }
 
 /// The result of the entries.
@@ -241,13 +241,13 @@ impl Synchronise {
         }
     }
 
-    fn take(&mut self, reading: SineCosineReading, whose: SineCosineOrigin) {
+    fn take(&mut self, reading: SineCosineReading, origin: SineCosineOrigin) {
         self.problem = None;
-        let range = whose.range;
-        if self.whose.as_ref() != Some(&whose) {
+        let range = origin.range;
+        if self.origin.as_ref() != Some(&origin) {
             // Those were another encoder's.
             self.readings.clear();
-            self.whose = Some(whose);
+            self.origin = Some(origin);
         }
         let Some(SineCosineVolts { sine_v, cosine_v }) = reading.signals else {
             self.form.absolute = reading.position.to_string();

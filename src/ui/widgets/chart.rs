@@ -61,7 +61,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     legend(ui, theme, chart.traces);
     let own = *theme;
     let (x_unit, y_unit) = (chart.x_unit.to_owned(), chart.y_unit.to_owned());
-    let told = move |hover: &HoverPosition<'_>| match hover {
+    let tooltip = move |hover: &HoverPosition<'_>| match hover {
         HoverPosition::NearDataPoint { plot_name, position, .. } => {
             let (x, y) = (figures(&own, position.x), figures(&own, position.y));
             Some(format!("{plot_name}\n{x} {x_unit}\n{y} {y_unit}"))
@@ -83,7 +83,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
             .grid_spacing(egui::Rangef::new(8.0, 24.0))
             .grid_color(theme.palette.line.into())
             .set_margin_fraction(Vec2::new(0.0, if chart.marks.is_empty() { 0.08 } else { 0.16 }))
-            .label_formatter(told)
+            .label_formatter(tooltip)
             .custom_x_axes(vec![axis(AxisHints::new_x(), own, 16.0)])
             .custom_y_axes(vec![axis(AxisHints::new_y(), own, 12.0)])
             .auto_bounds(true);
@@ -157,9 +157,9 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
             Bar::new(x + off, *y).width(width * 0.9).fill(fill).stroke(Stroke::new(1.0, colour)).name(&trace.name)
         };
         let (own, name) = (*theme, trace.name.clone());
-        let told = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
+        let tooltip = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
-        plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
+        plot.bar_chart(chart.color(colour).element_formatter(Box::new(tooltip)));
     }
 }
 

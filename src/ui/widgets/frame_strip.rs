@@ -65,10 +65,10 @@ pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
     let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + theme.space.inside;
     let height = placing.lines as f32 * line + placing.lines.saturating_sub(1) as f32 * theme.space.between;
     let (outer, response) = ui.allocate_exact_size(Vec2::new(placing.width, height), Sense::hover());
-    let told: Vec<String> = strip.fields.iter().map(StripField::words).collect();
+    let values: Vec<String> = strip.fields.iter().map(StripField::words).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, strip.label);
-        info.current_text_value = Some(told.join(", "));
+        info.current_text_value = Some(values.join(", "));
         info
     });
     for piece in &placing.pieces {

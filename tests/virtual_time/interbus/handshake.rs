@@ -63,7 +63,7 @@ fn nothing_but_the_exact_echo_that_stands_counts() {
         let script = reading_back(Script::new().on(STEPS, words));
         let (ended, steps, _) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
         assert_eq!(ended.unwrap().verified, 1, "{label}");
-        let echoed = steps.iter().filter(|step| step.out == STEPS && step.says == WordReply::Echoed).count();
+        let echoed = steps.iter().filter(|step| step.out == STEPS && step.reply == WordReply::Echoed).count();
         assert!(echoed >= 1, "{label}");
         let run = steps.iter().position(|step| step.out == RUN).unwrap();
         assert_eq!(steps[run - 1].input & !0x2000_0000, 0xC200_00FF, "{label}: the echo stood before run");

@@ -251,16 +251,16 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     if let Some(mode) = unsaved {
         output.remark(&explained::unsaved(mode).terminal());
     }
-    let said = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
+    let meaning = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
     let (value, shown) = match bytes.as_slice() {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
         bytes => (json!(hex_compact(bytes)), hex(bytes)),
     };
     let mut json = json!({"item": range.to_string(), "value": value});
-    if let (Some(said), Some(keys)) = (&said, json.as_object_mut()) {
-        keys.insert("text".to_owned(), json!(said));
+    if let (Some(meaning), Some(keys)) = (&meaning, json.as_object_mut()) {
+        keys.insert("text".to_owned(), json!(meaning));
     }
-    let text = said.map_or_else(|| format!("{shown}\n"), |said| format!("{shown}  {said}\n"));
+    let text = meaning.map_or_else(|| format!("{shown}\n"), |meaning| format!("{shown}  {meaning}\n"));
     output.show(&json, &text)?;
     Ok(Done::Well)
 }

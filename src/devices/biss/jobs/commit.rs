@@ -19,14 +19,14 @@ pub(super) fn commit(
     let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
     // Each step of an operation is told, and so where it begins.
-    let told = &mut |news: ProcedureProgress| {
+    let report = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
         tell(Progress { done, total, what: JobStep::Operation { item, progress: Box::new(news) } });
     };
     encoder.know(desk)?;
     let mut master = encoder.master(desk);
-    let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, told)?;
+    let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, report)?;
     let ended = write_plan(&store, is_virtual, &agreed, &mut write, &mut |_| {});
     match &ended {
         Ok(_) => encoder.station.unfinished = false,

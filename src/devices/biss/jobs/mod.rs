@@ -149,8 +149,8 @@ impl Device for Biss {
                 self.know(desk)?;
                 let first = area.first;
                 let total = area.banks().count() as u64;
-                let told = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
-                let banks = procedures::read_area_surely(&mut self.master(desk), &area, told)?;
+                let report = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
+                let banks = procedures::read_area_surely(&mut self.master(desk), &area, report)?;
                 BissOutput::Area { banks, unsaved: self.unsaved(desk)? }
             }
             BissJob::Save | BissJob::SaveToCompare => {

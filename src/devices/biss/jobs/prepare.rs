@@ -78,8 +78,8 @@ fn state(
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<crate::devices::biss::profile::DeviceState, Error> {
     let total = banks.len() as u64;
-    let told = &mut |done, bank| tell(Progress { done, total, what: JobStep::Bank(bank) });
-    read_state(master, identity, banks, told)
+    let report = &mut |done, bank| tell(Progress { done, total, what: JobStep::Bank(bank) });
+    read_state(master, identity, banks, report)
 }
 
 /// Reads what the edits touch.

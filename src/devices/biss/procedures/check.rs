@@ -195,12 +195,13 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
         findings.push((Verdict::Good, CheckFinding::SumsFit));
         match &sheet.layout {
             Err(error) => findings.push((Verdict::Bad, CheckFinding::Sheet(*error))),
-            Ok(told) => {
+            Ok(sheet_layout) => {
                 let widths = |layout: &crate::devices::biss::protocol::Layout| {
                     (layout.multiturn_bits(), layout.singleturn_bits())
                 };
-                let described = identity.description.layout().map(widths).filter(|own| *own != widths(told));
-                let other = described.map(|description| CheckFinding::OtherFrame { sheet: widths(told), description });
+                let described = identity.description.layout().map(widths).filter(|own| *own != widths(sheet_layout));
+                let other =
+                    described.map(|description| CheckFinding::OtherFrame { sheet: widths(sheet_layout), description });
                 findings.extend(other.map(|finding| (Verdict::Attention, finding)));
             }
         }

@@ -166,9 +166,9 @@ impl Guide {
 
     /// This is the way back from where it was cut off, and it was gone to its end.
     fn was_led_back(&self, op: usize, step: ProcedureStep) -> bool {
-        let told = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
+        let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
-        step == ProcedureStep::LeadBack && told && in_operation
+        step == ProcedureStep::LeadBack && was_reported && in_operation
     }
 }
 
@@ -178,9 +178,9 @@ mod tests {
     use crate::devices::biss::procedures::procedure::Run;
     use crate::devices::biss::protocol::DeviceMode;
 
-    fn reached(told: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
+    fn reached(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        told.iter().for_each(|step| guide.tell(ProcedureProgress { op: 0, step: *step, detail: Detail::Begins }));
+        reported.iter().for_each(|step| guide.tell(ProcedureProgress { op: 0, step: *step, detail: Detail::Begins }));
         guide.cut = cut;
         guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()

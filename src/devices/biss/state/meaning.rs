@@ -28,7 +28,7 @@ impl Meaning {
     /// Returns the meaning of a frame.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
-        let said = match entry.direction {
+        let meaning = match entry.direction {
             Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
             Direction::Sent => {
                 self.is_pin = false;
@@ -40,7 +40,7 @@ impl Meaning {
                 None => self.packet(&bytes),
             },
         };
-        said.into_iter().collect::<Vec<_>>().into()
+        meaning.into_iter().collect::<Vec<_>>().into()
     }
 
     fn request(&mut self, bytes: &[u8]) -> Option<Text> {
@@ -99,11 +99,11 @@ impl Meaning {
                 TEXTS.text("trace.read").with("address", place(address))
             }
             bridge::Request::BissRegisterWrite { address, value, .. } => {
-                let said = written("trace.write", place(address), value);
+                let meaning = written("trace.write", place(address), value);
                 if address == RegisterAddress::BANK_SELECT.address() {
                     self.bank = Some(value);
                 }
-                said
+                meaning
             }
             ref other => adapter::asked(other),
         }

@@ -48,14 +48,14 @@ fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
 }
 
 fn explain(captured: &Captured, known: &BytesContext) -> Explained {
-    let (shown, compact, said) = match captured {
+    let (shown, compact, meaning_lines) = match captured {
         Captured::Word(word) => {
             let text = format!("{word:04X}");
             (text.clone(), text, meaning::of_word(*word, known).map(|readings| lines(&readings)))
         }
         Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), of_bytes(bytes, known)),
     };
-    let (meaning, mut more) = match said {
+    let (meaning, mut more) = match meaning_lines {
         Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
         Err(why) => (Err(why), Map::new()),
     };
@@ -75,14 +75,14 @@ fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBy
     let fits = Layout::of_length(bytes.len()).next().is_some();
     let packet =
         ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());
-    if let Some(said) = packet {
-        let mut said = said?;
-        if let Some((data, to_target)) = said.data.take() {
+    if let Some(explained) = packet {
+        let mut explained = explained?;
+        if let Some((data, to_target)) = explained.data.take() {
             let readings = image::cyclic(&data, to_target, known);
-            said.lines.extend(readings.iter().flat_map(WordMeaning::lines));
-            said.more.insert("readings".to_owned(), readings.iter().map(WordMeaning::json).collect());
+            explained.lines.extend(readings.iter().flat_map(WordMeaning::lines));
+            explained.more.insert("readings".to_owned(), readings.iter().map(WordMeaning::json).collect());
         }
-        return Ok(said);
+        return Ok(explained);
     }
     if !fits {
         return Err(format!(

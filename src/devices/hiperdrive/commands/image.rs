@@ -153,7 +153,7 @@ fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
 
 fn request_words(pkw: Pkw) -> String {
     let name = parameter_name(pkw.number());
-    let said = match pkw.task() {
+    let request = match pkw.task() {
         None => return format!("parameter word: a request {}, which there is not, about {name}", pkw.pke >> 12),
         Some(Task::None) => return "parameter word: nothing is asked".to_owned(),
         Some(task @ (Task::Read | Task::Count)) => format!("{} of {name}", task.name()),
@@ -164,12 +164,12 @@ fn request_words(pkw: Pkw) -> String {
             format!("{} {} of {name}: {}", task.name(), pkw.ind, pkw.pwe)
         }
     };
-    format!("parameter word: {said}")
+    format!("parameter word: {request}")
 }
 
 fn answer_words(pkw: Pkw) -> String {
     let name = parameter_name(pkw.number());
-    let said = match pkw.answer() {
+    let answer = match pkw.answer() {
         Answer::None => return "parameter word: nothing is answered".to_owned(),
         Answer::Unknown => format!("an answer {}, which there is not, about {name}", pkw.pke >> 12),
         Answer::Word(word) => format!("{name} is {}", value_words(pkw, word.into(), true)),
@@ -177,7 +177,7 @@ fn answer_words(pkw: Pkw) -> String {
         Answer::Elements(count) => format!("{name} has {count} elements"),
         Answer::Refused(error) => format!("{name} refused: {error}"),
     };
-    format!("parameter word: {said}")
+    format!("parameter word: {answer}")
 }
 
 /// An answer has the width of its parameter's type.

@@ -70,9 +70,9 @@ fn identity_text(identity: &Identity) -> String {
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
-    let said: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
+    let facts: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
     let list = |weight: FactSeverity| {
-        said.iter().filter(|own| own.severity == weight).map(DriveFact::json).collect::<Vec<Json>>()
+        facts.iter().filter(|own| own.severity == weight).map(DriveFact::json).collect::<Vec<Json>>()
     };
     let (errors, warnings, earlier) =
         (list(FactSeverity::Error), list(FactSeverity::Warning), list(FactSeverity::Earlier));
@@ -100,7 +100,7 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
         "supply_v": volts(&status),
         "temperature_c": status.temperature,
     });
-    output.show(&json, &status_text(&status, &said))?;
+    output.show(&json, &status_text(&status, &facts))?;
     Ok(Done::Well)
 }
 
@@ -138,22 +138,22 @@ fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
         let weight = if at < since { FactSeverity::Error } else { FactSeverity::Earlier };
         DriveFact { drive: number, code: code.code(), text: error_text(*code), severity: weight }
     };
-    let mut said: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();
+    let mut facts: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();
     if is_fault && drive.buffer.is_empty() {
         let text = "the drive is in a fault and names no error".to_owned();
-        said.push(DriveFact { drive: number, code: 0, text, severity: FactSeverity::Error });
+        facts.push(DriveFact { drive: number, code: 0, text, severity: FactSeverity::Error });
     }
     if drive.status.has(StatusBit::PositionLimit) {
         let text = "the drive stands outside its limits (158, 160)".to_owned();
-        said.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
+        facts.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
     }
     // 118: 0 is well, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
         let text = format!("RS-485 to the drive has errors (parameter 118: 0x{communication:04X})");
-        said.push(DriveFact { drive: number, code: communication, text, severity: FactSeverity::Warning });
+        facts.push(DriveFact { drive: number, code: communication, text, severity: FactSeverity::Warning });
     }
-    said
+    facts
 }
 
 pub(super) fn error_text(code: ErrorCode) -> String {
@@ -179,9 +179,9 @@ fn volts(status: &Status) -> f64 {
     status.supply_tenths as f64 / 10.0
 }
 
-fn status_text(status: &Status, said: &[DriveFact]) -> String {
+fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     let mut lines = Lines::default();
-    let of = |weight: FactSeverity| said.iter().filter(move |own| own.severity == weight);
+    let of = |weight: FactSeverity| facts.iter().filter(move |own| own.severity == weight);
     let words = |own: &DriveFact| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
     for (label, weight) in [("error", FactSeverity::Error), ("warning", FactSeverity::Warning)] {
         for own in of(weight) {

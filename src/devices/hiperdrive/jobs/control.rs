@@ -94,12 +94,12 @@ impl Hiperdrive {
     pub(super) fn take(
         &mut self,
         desk: &mut SessionContext,
-        told: &mut dyn FnMut(u64, u64, ParameterNumber),
+        progress: &mut dyn FnMut(u64, u64, ParameterNumber),
     ) -> Result<(), Error> {
         if self.control.open.is_some() {
             return Err(Error::InControl);
         }
-        let identity = identify(&mut self.master(desk), told)?;
+        let identity = identify(&mut self.master(desk), progress)?;
         self.control.rules_refresh = RulesRefresh::default();
         identity.drives.iter().for_each(|drive| self.control.motion.doubt_limits(drive.number));
         self.read_rules(desk, &identity)?;

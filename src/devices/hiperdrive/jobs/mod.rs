@@ -139,8 +139,8 @@ impl Device for Hiperdrive {
             }
             HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
             HiperdriveJob::Check => {
-                let told = &mut |done, total, what| step(done, total, JobStep::Step(what));
-                Out::Check(check_device(&mut self.master(desk), told)?)
+                let report = &mut |done, total, what| step(done, total, JobStep::Step(what));
+                Out::Check(check_device(&mut self.master(desk), report)?)
             }
             HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(desk), drive)?),
             HiperdriveJob::Read(number) => Out::Value(number, self.master(desk).read(number)?),

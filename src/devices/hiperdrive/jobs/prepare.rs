@@ -19,12 +19,12 @@ pub(super) fn prepare(
 ) -> Result<Prepared, JobError> {
     let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
     let mut master = device.master(desk);
-    let told = &mut |done, total, number| {
+    let report = &mut |done, total, number| {
         tell(JobReport::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
     };
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
     let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {
-        let (identity, state) = read_state(master, numbers, told)?;
+        let (identity, state) = read_state(master, numbers, report)?;
         are_there(&identity, change)?;
         Ok::<_, Error>((identity, state))
     };

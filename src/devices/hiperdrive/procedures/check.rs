@@ -193,10 +193,10 @@ const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 /// [`Error::NotHiperdrive`]; the way.
 pub fn check(
     master: &mut Master<'_>,
-    told: &mut dyn FnMut(u64, u64, CheckStep),
+    progress: &mut dyn FnMut(u64, u64, CheckStep),
 ) -> Result<Vec<HiperdriveStepResult>, Error> {
     let mut lines = Vec::new();
-    told(0, 1, CheckStep::Messages);
+    progress(0, 1, CheckStep::Messages);
     let identity = identify(master, &mut |_, _, _| {})?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
@@ -218,7 +218,7 @@ pub fn check(
     lines.push(HiperdriveStepResult::of(CheckStep::Drives, drives(&identity)));
     let total = identity.drives.len() as u64 + 1;
     for (at, drive) in identity.drives.iter().enumerate() {
-        told(at as u64 + 1, total, CheckStep::Errors(drive.number));
+        progress(at as u64 + 1, total, CheckStep::Errors(drive.number));
         lines.extend(check_drive(master, &identity, drive)?);
     }
     Ok(lines)

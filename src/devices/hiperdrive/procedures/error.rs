@@ -239,10 +239,10 @@ pub enum Error {
     #[error("drive {} moves", drive.get())]
     Moving { drive: DriveNumber },
     /// Its identity is not that of a HIPERDRIVE.
-    #[error("this is no HIPERDRIVE: {says:?}")]
+    #[error("this is no HIPERDRIVE: {product:?}")]
     NotHiperdrive {
         /// Its category, or the name in its identity object.
-        says: String,
+        product: String,
     },
     /// A written value does not read back.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]

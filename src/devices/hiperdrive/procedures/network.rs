@@ -70,7 +70,7 @@ fn attribute<T>(
 /// Returns the value; `None` if it was refused.
 fn unless_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
-        Ok(told) => Ok(Some(told)),
+        Ok(value) => Ok(Some(value)),
         Err(Error::Refused { .. }) => Ok(None),
         Err(error) => Err(error),
     }

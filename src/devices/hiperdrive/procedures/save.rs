@@ -46,9 +46,9 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; the way.
-pub fn save(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
-    let identity = identify(master, told)?;
-    let image = read_image(master, identity.kept().collect(), told)?;
+pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
+    let identity = identify(master, progress)?;
+    let image = read_image(master, identity.kept().collect(), progress)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
@@ -60,13 +60,13 @@ pub fn save(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Hiper
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,
-    told: IdentifyProgress<'_>,
+    progress: IdentifyProgress<'_>,
 ) -> Result<(Identity, DeviceState), Error> {
-    let identity = identify(master, told)?;
+    let identity = identify(master, progress)?;
     let mut numbers: Vec<ParameterNumber> = identity.kept().chain(beside).collect();
     numbers.sort();
     numbers.dedup();
-    let image = read_image(master, numbers, told)?;
+    let image = read_image(master, numbers, progress)?;
     let mut positions = Positions::new();
     for drive in &identity.drives {
         match master.read_number(of(107, drive.number)?) {
@@ -85,12 +85,12 @@ pub fn read_state(
 fn read_image(
     master: &mut Master<'_>,
     numbers: Vec<ParameterNumber>,
-    told: IdentifyProgress<'_>,
+    progress: IdentifyProgress<'_>,
 ) -> Result<Image, Error> {
     let total = numbers.len() as u64;
     let mut image = Image::default();
     for (done, number) in numbers.into_iter().enumerate() {
-        told(done as u64, total, number);
+        progress(done as u64, total, number);
         match master.read_number(number) {
             Ok(value) => {
                 image.values.insert(number, value);

@@ -47,7 +47,7 @@ struct Act {
     /// The drive moves by it, or has a job that waits.
     moves: bool,
     /// Its end has been reported.
-    told: bool,
+    is_reported: bool,
 }
 
 /// The kind of an act, which determines how it is kept alive.
@@ -151,12 +151,12 @@ impl Moves {
 
     /// Returns the end of the last act, once.
     pub(super) fn take_end(&mut self) -> Option<(DriveNumber, Ended)> {
-        let act = self.act.filter(|act| !act.told)?;
+        let act = self.act.filter(|act| !act.is_reported)?;
         let (number, ended) = self.drive(act.drive)?.ended?;
         if number < act.number {
             return None;
         }
-        self.act = Some(Act { told: true, ..act });
+        self.act = Some(Act { is_reported: true, ..act });
         Some((act.drive, ended))
     }
 
@@ -169,7 +169,7 @@ impl Moves {
         self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, wish);
         let moves = wish.moves() || wish == MotionRequest::Pause;
-        self.act = Some(Act { drive, number, kind, moves, told: false });
+        self.act = Some(Act { drive, number, kind, moves, is_reported: false });
         Some(number)
     }
 

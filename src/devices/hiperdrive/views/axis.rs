@@ -150,10 +150,10 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
             Reached::Failed => StepState::Failed,
             Reached::Ahead => StepState::ToCome,
         };
-        let told = matches!(reached, Reached::Done | Reached::Failed);
+        let has_result = matches!(reached, Reached::Done | Reached::Failed);
         let found = match (step, reached) {
             (AxisStep::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
-            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
+            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| has_result),
         };
         Line {
             title: theme.words(&words::title(step)),

@@ -59,13 +59,13 @@ fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
         lamp_ui(ui, theme, leds, lamp);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
-            let said = leds.meaning_of(lamp);
-            let (icon, ink) = severity(theme, said.severity);
+            let meaning = leds.meaning_of(lamp);
+            let (icon, ink) = severity(theme, meaning.severity);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(ink));
-                paragraph(ui, RichText::new(theme.words(&said.meaning)).font(theme.strong(theme.sizes.body)));
+                paragraph(ui, RichText::new(theme.words(&meaning.meaning)).font(theme.strong(theme.sizes.body)));
             });
-            paragraph(ui, theme.label(theme.words(&said.remedy)));
+            paragraph(ui, theme.label(theme.words(&meaning.remedy)));
         });
     });
     ui.add_space(theme.space.inside);

@@ -155,9 +155,9 @@ fn news(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
             return;
         }
     }
-    if let Some(said) = unit.running_or_last(drive) {
-        let ink = if said.is_well { theme.palette.good } else { theme.palette.warn };
-        ui.add(egui::Label::new(RichText::new(theme.words(&said.words)).color(ink)).truncate());
+    if let Some(status) = unit.running_or_last(drive) {
+        let ink = if status.is_well { theme.palette.good } else { theme.palette.warn };
+        ui.add(egui::Label::new(RichText::new(theme.words(&status.words)).color(ink)).truncate());
     }
 }
 

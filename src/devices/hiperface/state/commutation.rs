@@ -189,14 +189,17 @@ fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f
     // An unknown range does not wrap.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
-    let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
-    if told.verdict == Verdict::Fault {
-        let apart = told.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
+    let synchronised = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
+    if synchronised.verdict == Verdict::Fault {
+        let apart = synchronised.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
         return Err(TEXTS.text("commutation.far_apart").with_number("steps", apart, 1));
     }
-    let kind =
-        Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };
-    Ok(RestReading { fine_periods: told.periods(), kind, raw: Some(raw) })
+    let kind = Kind::Fine {
+        residual_periods: synchronised.residual_periods,
+        verdict: synchronised.verdict,
+        resolution_periods: resolution,
+    };
+    Ok(RestReading { fine_periods: synchronised.periods(), kind, raw: Some(raw) })
 }
 
 #[cfg(test)]

@@ -65,15 +65,15 @@ fn read_out(text: &str) -> Result<ReadOut> {
 }
 
 fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> Explained {
-    let (shown, said) = match word {
+    let (shown, meanings) = match word {
         Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::of_k1(Single::parse_k1(word))])),
         Captured::Long(word) => (format!("{word:08X}"), long(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
-    if let Ok(said) = &said {
-        more.insert("readings".to_owned(), said.iter().map(WordMeaning::json).collect::<Json>());
+    if let Ok(meanings) = &meanings {
+        more.insert("readings".to_owned(), meanings.iter().map(WordMeaning::json).collect::<Json>());
     }
-    let meaning = said.map(|said| said.iter().map(WordMeaning::line).collect());
+    let meaning = meanings.map(|meanings| meanings.iter().map(WordMeaning::line).collect());
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 

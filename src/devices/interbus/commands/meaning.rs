@@ -54,7 +54,7 @@ pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>,
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
-    let said = |command: Command, modes: Vec<Mode>| {
+    let meaning = |command: Command, modes: Vec<Mode>| {
         let (words, value) = asked(command);
         WordMeaning { direction: "OUT", modes, words, value, legal: true }
     };
@@ -65,11 +65,11 @@ pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>,
             .map(|command| {
                 let modes: Vec<Mode> = legal(command).collect();
                 let everywhere = modes.len() == Mode::ALL.len();
-                said(command, if everywhere { Vec::new() } else { modes })
+                meaning(command, if everywhere { Vec::new() } else { modes })
             })
             .collect()),
         Some(mode) => match Command::in_mode(word, mode) {
-            Ok(command) => Ok(vec![said(command, vec![mode])]),
+            Ok(command) => Ok(vec![meaning(command, vec![mode])]),
             Err(refused) => Err(format!("not legal in {mode}: {}", elsewhere(refused.command))),
         },
     }
@@ -100,7 +100,7 @@ fn elsewhere(command: Command) -> String {
 /// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
 pub(super) fn of_in(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
-    let said = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
+    let meaning = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",
         modes: modes.iter().copied().filter(|mode| known.mode.is_none_or(|known| known == *mode)).collect(),
         words,
@@ -113,20 +113,20 @@ pub(super) fn of_in(word: u32, known: &WordContext) -> Vec<WordMeaning> {
             let stray = stray(bits.into(), "in bits 30 to 25");
             let number = value.get();
             vec![
-                said(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
-                said(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
-                said(&[Cam], outputs(word, known.shift), None),
+                meaning(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
+                meaning(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
+                meaning(&[Cam], outputs(word, known.shift), None),
             ]
         }
         Reply::Busy { .. } | Reply::Echo { .. } => vec![
-            said(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
-            said(&[Cam], echo(reply, Cam), None),
+            meaning(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
+            meaning(&[Cam], echo(reply, Cam), None),
         ],
-        Reply::ReadOut(value) => vec![said(&Mode::ALL, read_out(value, known.read_out), Some(value.get()))],
-        Reply::UnknownReadOut(_) => vec![said(&Mode::ALL, "unknown parameter in a read-out".to_owned(), None)],
+        Reply::ReadOut(value) => vec![meaning(&Mode::ALL, read_out(value, known.read_out), Some(value.get()))],
+        Reply::UnknownReadOut(_) => vec![meaning(&Mode::ALL, "unknown parameter in a read-out".to_owned(), None)],
         Reply::Unknown { code, data } => {
             let words = format!("a read-out word with code {}, which the manual does not have", code.get());
-            vec![said(&Mode::ALL, words, Some(data.get()))]
+            vec![meaning(&Mode::ALL, words, Some(data.get()))]
         }
         Reply::Error(error) => {
             let words = format!(
@@ -136,13 +136,13 @@ pub(super) fn of_in(word: u32, known: &WordContext) -> Vec<WordMeaning> {
                 error.data.get(),
                 error.remedy()
             );
-            vec![said(&Mode::ALL, words, Some(error.data.get()))]
+            vec![meaning(&Mode::ALL, words, Some(error.data.get()))]
         }
     };
-    all.retain(|said| !said.modes.is_empty());
-    for said in &mut all {
-        if said.modes.len() == Mode::ALL.len() {
-            said.modes.clear();
+    all.retain(|meaning_of_mode| !meaning_of_mode.modes.is_empty());
+    for meaning_of_mode in &mut all {
+        if meaning_of_mode.modes.len() == Mode::ALL.len() {
+            meaning_of_mode.modes.clear();
         }
     }
     all

@@ -48,9 +48,9 @@ type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
     /// The host's side of the process data; each step of the handshake is told.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext, told: impl FnMut(Handshake) + 'a) -> Master<'a> {
+    fn master<'a>(&'a mut self, desk: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(desk.store.clone(), desk.is_virtual);
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(told).noting(notes)
+        Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(on_step).noting(notes)
     }
 }
 
@@ -101,12 +101,12 @@ impl Device for Interbus {
             InterbusJob::Hello => self.ask(desk, tell, |master, _| Ok(Out::Hello(master.reading()?))),
             InterbusJob::Position => self.ask(desk, tell, |master, _| Ok(Out::Position(master.reading()?))),
             InterbusJob::Survey => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
-                Ok(Out::Surveyed(Box::new(survey(master, told)?)))
+                let report = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
+                Ok(Out::Surveyed(Box::new(survey(master, report)?)))
             }),
             InterbusJob::Programs(wanted) => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| steps(done, total, JobStep::Program(what));
-                let (programs, shift) = read_programs(master, &wanted, told)?;
+                let report = &mut |done, total, what| steps(done, total, JobStep::Program(what));
+                let (programs, shift) = read_programs(master, &wanted, report)?;
                 Ok(Out::Programs(programs, shift))
             }),
             InterbusJob::Identify => self.ask(desk, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?)))),
@@ -119,8 +119,8 @@ impl Device for Interbus {
                     limit: WEAR_LIMIT,
                 };
                 self.ask(desk, tell, |master, steps| {
-                    let told = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
-                    Ok(Out::Check(check_device(master, wear, told)?))
+                    let report = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
+                    Ok(Out::Check(check_device(master, wear, report)?))
                 })
             }
             InterbusJob::Read(item) => self.ask(desk, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
@@ -129,11 +129,11 @@ impl Device for Interbus {
             }
             InterbusJob::Select(mode) => self.ask(desk, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
             InterbusJob::Save { programs } => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| match what {
+                let report = &mut |done, total, what| match what {
                     SaveStep::ReadOut(what) => steps(done, total, JobStep::ReadOut(what)),
                     SaveStep::Program(what) => steps(done, total, JobStep::Program(what)),
                 };
-                Ok(Out::Saved(Box::new(save(master, programs, told)?)))
+                Ok(Out::Saved(Box::new(save(master, programs, report)?)))
             }),
             InterbusJob::LeadBack => self.ask(desk, tell, |master, _| Ok(Out::LedBack(master.end_what_was_left()?))),
         }

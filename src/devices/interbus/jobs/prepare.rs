@@ -20,11 +20,11 @@ pub(super) fn prepare(
     let tell = std::cell::RefCell::new(tell);
     let mut master =
         encoder.master(desk, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
-    let told = &mut |done, total, program| {
+    let report = &mut |done, total, program| {
         (tell.borrow_mut())(JobReport::Progress(Progress { done, total, what: JobStep::Program(program) }));
     };
     let identity = identify(&mut master)?;
-    let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, told);
+    let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, report);
     let device;
     let plan = match change {
         Change::Restore { profile, options } => {

@@ -109,7 +109,7 @@ const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 pub fn check(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> Wear,
-    told: &mut dyn FnMut(u64, u64, ReadOut),
+    progress: &mut dyn FnMut(u64, u64, ReadOut),
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {
@@ -117,7 +117,7 @@ pub fn check(
         return Ok(lines);
     }
     let begun = master.now();
-    match master.guarded(|master| read_survey(master, told)) {
+    match master.guarded(|master| read_survey(master, progress)) {
         Ok(survey) => {
             let asked = survey.read_outs().count() as u64;
             let each_ms = master.now().since(begun).as_millis() as u64 / asked.max(1);

@@ -15,7 +15,7 @@ pub struct Handshake {
     pub command: Command,
     pub input: u32,
     /// Meaning of IN as the answer.
-    pub says: WordReply,
+    pub reply: WordReply,
 }
 
 /// The answer of an IN word to an OUT word.

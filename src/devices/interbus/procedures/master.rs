@@ -51,7 +51,7 @@ pub struct Master<'a> {
     input: u32,
     /// When it was seen last to do what it did before this job, with nothing asked of it.
     rested: Option<Moment>,
-    told: Option<(u32, WordReply)>,
+    reported: Option<(u32, WordReply)>,
     /// The notes that outlast this job.
     notes: Notes<'a>,
 }
@@ -87,7 +87,7 @@ impl<'a> Master<'a> {
             lost: false,
             input: 0,
             rested: None,
-            told: None,
+            reported: None,
             notes: Notes::default(),
         }
     }
@@ -277,14 +277,14 @@ impl<'a> Master<'a> {
                 ended?
             }
         };
-        let (out, input, says) = (command.emit(), self.input, WordReply::of(command, self.input));
+        let (out, input, reply) = (command.emit(), self.input, WordReply::of(command, self.input));
         // The position of a shaft that turns is not told again and again.
-        if self.told != Some((out, says))
+        if self.reported != Some((out, reply))
             && let Some(tell) = &mut self.tell
         {
-            tell(Handshake { at: self.data.now(), out, command, input, says });
+            tell(Handshake { at: self.data.now(), out, command, input, reply });
         }
-        self.told = Some((out, says));
+        self.reported = Some((out, reply));
         Ok(input)
     }
 

@@ -307,12 +307,12 @@ impl Encoder {
 
     /// Ends a setting: the IN word is its echo, or an error.
     fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
-        let says = match taken {
+        let word = match taken {
             Ok(_) => self.out | ECHO,
             Err(fault) => fault.word(),
         };
         self.unstored = taken.ok().or(self.unstored);
-        self.turn_to(Activity::Setting, InWordContent::Word(says));
+        self.turn_to(Activity::Setting, InWordContent::Word(word));
         self.busy_until = now + self.busy;
     }
 
@@ -364,8 +364,8 @@ impl Encoder {
     }
 
     /// Changes the activity from now on, without busy words.
-    const fn turn_to(&mut self, doing: Activity, says: InWordContent) {
-        (self.activity, self.content, self.busy_until) = (doing, says, Moment::START);
+    const fn turn_to(&mut self, activity: Activity, content: InWordContent) {
+        (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
 
     fn settle(&mut self, now: Moment) {

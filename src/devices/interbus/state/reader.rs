@@ -70,7 +70,7 @@ pub struct DecodedWord {
     /// As it was typed.
     pub word: String,
     /// The meaning, or why it is not a word.
-    pub says: Result<Text, Text>,
+    pub meaning: Result<Text, Text>,
     /// A problem.
     pub warning: Option<Text>,
 }
@@ -88,7 +88,7 @@ impl Reading {
         let number = Some(bare).filter(|own| own.len() == digits).and_then(|own| u32::from_str_radix(own, 16).ok());
         let Some(number) = number else {
             let why = TEXTS.text("ib_reader.no_word").with("word", typed).with("digits", digits);
-            return DecodedWord { word: typed.to_owned(), says: Err(why), warning: None };
+            return DecodedWord { word: typed.to_owned(), meaning: Err(why), warning: None };
         };
         let single = |own: Single| {
             let position = TEXTS.text("ib_word.position").with("position", own.position().get());
@@ -96,14 +96,14 @@ impl Reading {
             (position, (own.stray() != 0).then(bits))
         };
         let known = WordContext { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
-        let (says, warning) = match self.source {
+        let (meaning, warning) = match self.source {
             WordSource::Out => (said::out(number, self.mode), None),
             WordSource::In => (said::word_text(number, &known), said::stray(number)),
             // Four digits.
             WordSource::K1 => single(Single::parse_k1(number as u16)),
             WordSource::K2 => single(Single::parse_k2(number)),
         };
-        DecodedWord { word: bare.to_ascii_uppercase(), says: Ok(says), warning }
+        DecodedWord { word: bare.to_ascii_uppercase(), meaning: Ok(meaning), warning }
     }
 }
 
@@ -116,7 +116,7 @@ mod tests {
     fn typed_words_are_read_or_told_why_not() {
         let says = |reading: Reading, text: &str| -> Vec<String> {
             let lines = reading.lines(text).into_iter();
-            lines.map(|line| line.says.unwrap_or_else(|why| why).words(Language::English)).collect()
+            lines.map(|line| line.meaning.unwrap_or_else(|why| why).words(Language::English)).collect()
         };
         let of = |way| Reading { source: way, ..Reading::default() };
         // Reference 7.
@@ -127,7 +127,7 @@ mod tests {
         // Bits 15 to 12 of a K1 word should be 0 (reference 1).
         assert!(of(WordSource::K1).lines("1FFF").iter().all(|line| line.warning.is_some()));
         for (way, text) in [(WordSource::In, "123"), (WordSource::K1, "00000FFF"), (WordSource::Out, "0200000G")] {
-            assert!(of(way).lines(text).iter().all(|line| line.says.is_err()), "{text}");
+            assert!(of(way).lines(text).iter().all(|line| line.meaning.is_err()), "{text}");
         }
         assert!(of(WordSource::In).lines(" \n").is_empty());
     }

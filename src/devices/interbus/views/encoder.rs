@@ -102,8 +102,8 @@ fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action
             }
             Some(reading) => {
                 row(ui, theme, &say(theme, "ib_sends.word"), theme.mono(format!("0x{:08X}", reading.word)));
-                let says = said::word_text(reading.word, &encoder.known());
-                row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&says));
+                let meaning = said::word_text(reading.word, &encoder.known());
+                row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&meaning));
                 if let Some(warning) = said::stray(reading.word) {
                     paragraph(ui, RichText::new(theme.words(&warning)).color(theme.palette.warn));
                     paragraph(ui, theme.caption(say(theme, "ib_sends.swapped")));

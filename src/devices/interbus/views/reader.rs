@@ -60,10 +60,10 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
             ui.horizontal_top(|ui| {
                 let own = ui.label(theme.mono(&line.word));
                 ui.add_space((WORD - own.rect.width()).max(0.0));
-                match &line.says {
-                    Ok(says) => {
+                match &line.meaning {
+                    Ok(meaning) => {
                         ui.vertical(|ui| {
-                            paragraph(ui, theme.words(says));
+                            paragraph(ui, theme.words(meaning));
                             if let Some(warning) = &line.warning {
                                 paragraph(ui, RichText::new(theme.words(warning)).color(theme.palette.warn));
                             }

@@ -103,7 +103,7 @@ pub fn check(
 
 /// Judges an adapter and consecutive words.
 fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
-    let mut said: Vec<(Said, u64)> = Vec::new();
+    let mut counted: Vec<(Said, u64)> = Vec::new();
     let mut positions = Vec::new();
     for word in words {
         let reading = layout.decode(*word);
@@ -111,20 +111,20 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
             positions.push(reading.position);
         }
         for finding in layout.findings(reading) {
-            match said.iter_mut().find(|(own, _)| *own == finding) {
+            match counted.iter_mut().find(|(own, _)| *own == finding) {
                 Some((_, count)) => *count += 1,
-                None => said.push((finding, 1)),
+                None => counted.push((finding, 1)),
             }
         }
     }
     let different = words.iter().collect::<BTreeSet<_>>().len();
     let taken = CheckFinding::Words { taken: words.len() as u64, different };
     let among = |wanted: fn(&Said) -> bool| {
-        let wanted = said.iter().filter(move |(what, _)| wanted(what));
+        let wanted = counted.iter().filter(move |(what, _)| wanted(what));
         wanted.map(|(what, count)| CheckFinding::Said { what: what.clone(), count: *count })
     };
     let verdict = |wanted: fn(&Said) -> bool| {
-        let worst = said.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
+        let worst = counted.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
             Meaning::Invalid => Verdict::Bad,
             Meaning::Warning => Verdict::Attention,
         });

@@ -41,7 +41,7 @@ pub struct Encoder {
     /// Words have so many clocks while a layout is looked for.
     pub(super) clocks: Option<u8>,
     /// How the adapter was last asked to read words.
-    pub(super) told: Option<Asking>,
+    pub(super) requested: Option<Asking>,
 }
 
 impl Encoder {
@@ -61,7 +61,7 @@ impl Encoder {
             check: None,
             motor: None,
             clocks: None,
-            told: None,
+            requested: None,
         }
     }
 

@@ -29,7 +29,7 @@ impl DeviceModel for Encoder {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
-        self.told = None;
+        self.requested = None;
         self.session.take_line(opened, services);
         if !self.session.drafting.has_looked() {
             self.load_draft(services);

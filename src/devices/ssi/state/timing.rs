@@ -206,15 +206,15 @@ impl Diagram {
 
     /// Returns the state at a moment: the time, and the clock with its content, or what the lines wait for.
     pub fn state_at(&self, at: f64) -> Vec<Text> {
-        let mut told = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
+        let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
-            told.push(cell(&self.strip, bit.clock));
+            texts.push(cell(&self.strip, bit.clock));
         } else {
             let waits = [Lasting::Monoflop, Lasting::Making, Lasting::Pause];
             let is_in = |span: &&Span| waits.contains(&span.what) && (span.from..span.to).contains(&at);
-            told.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
+            texts.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
         }
-        told
+        texts
     }
 
     /// A span in words, with how long it is.

@@ -84,7 +84,7 @@ fn register_words(register: u16) -> String {
 fn value_words(register: u16, value: u8) -> String {
     let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
     match words::register_meaning(address, &[value]) {
-        Some(said) => format!("register {} is 0x{value:02X}: {said}", register_words(register)),
+        Some(meaning) => format!("register {} is 0x{value:02X}: {meaning}", register_words(register)),
         None => format!("register {} is 0x{value:02X}", register_words(register)),
     }
 }

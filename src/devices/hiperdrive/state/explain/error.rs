@@ -62,7 +62,7 @@ pub fn device(error: &Error) -> Text {
         Error::WriteOnly { number, .. } => named("hd_said.write_only", *number),
         Error::Motion { number, .. } => named("hd_said.motion", *number),
         Error::Moving { drive } => TEXTS.text("hd_said.moving").with("drive", drive.get()),
-        Error::NotHiperdrive { says } => TEXTS.text("hd_said.other_device").with("says", says),
+        Error::NotHiperdrive { product } => TEXTS.text("hd_said.other_device").with("says", product),
         Error::NotTaken { number, wanted, reads } => {
             named("hd_said.not_taken", *number).with("wanted", wanted).with("reads", reads)
         }

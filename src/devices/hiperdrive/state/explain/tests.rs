@@ -78,7 +78,7 @@ fn errors_say_what_happened_and_what_to_do() {
         Error::WriteOnly { number: number(199), name: "reset drive" },
         Error::Motion { number: number(104), name: "target position" },
         Error::Moving { drive: ONE },
-        Error::NotHiperdrive { says: "1769-L16ER".to_owned() },
+        Error::NotHiperdrive { product: "1769-L16ER".to_owned() },
         Error::NotTaken { number: number(198), wanted: 100, reads: 128 },
         Error::NetworkNotTaken { attribute: 5 },
         Error::Busy { reads: 1, milliseconds: 2000 },

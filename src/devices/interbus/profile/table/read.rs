@@ -266,11 +266,11 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
 
 /// The beginning of a cell.
 fn excerpt(text: &str) -> String {
-    let mut told: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
+    let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {
-        told.push('…');
+        excerpt.push('…');
     }
-    told
+    excerpt
 }
 
 /// A table has room for every cam.

@@ -83,8 +83,8 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.shown(frame)).unwrap_or_default();
     let room = ui.available_width();
     let rows = Rows::new(room, model.strip.layout().clocks());
-    let told = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
-    let (tags, levels) = names::tags(ui, theme, shown, &rows, told);
+    let meaning_of = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
+    let (tags, levels) = names::tags(ui, theme, shown, &rows, meaning_of);
     let clocks = shown.layout().clocks();
     let sized = rows.clone().at(egui::Pos2::ZERO, &levels);
     let (outer, _) = ui.allocate_exact_size(sized.size(clocks), Sense::hover());

@@ -91,10 +91,10 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let count = |put: &[Put]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
     let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
     let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
-    let told: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
+    let values: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, model.label);
-        info.current_text_value = Some(told.join(", "));
+        info.current_text_value = Some(values.join(", "));
         info
     });
     if ui.is_rect_visible(outer) {
