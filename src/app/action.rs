@@ -80,7 +80,7 @@ pub enum Action {
     /// Ask where to write a table of what a recorder shows: of what is visible, or of all.
     AskTable {
         /// Whose recorder.
-        desk: RecorderOwner,
+        owner: RecorderOwner,
         /// Only what is visible.
         visible: bool,
     },

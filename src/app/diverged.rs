@@ -64,7 +64,7 @@ impl Row {
     }
 
     /// Returns the value in a version; `None` if it has none.
-    pub fn says(&self, side: Side) -> Option<&str> {
+    pub fn value(&self, side: Side) -> Option<&str> {
         match side {
             Side::Theirs => self.change.from.as_deref(),
             Side::Mine => self.change.to.as_deref(),

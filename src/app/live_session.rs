@@ -85,8 +85,8 @@ impl<D: Kind> LiveSession<D> {
     }
 
     /// Watches these values from now on while samples are taken.
-    pub(crate) fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
-        self.worker.watch(wished);
+    pub(crate) fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
+        self.worker.watch(watched);
     }
 
     /// Ends what runs, live samples included.

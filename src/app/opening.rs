@@ -62,7 +62,7 @@ impl Studio {
                 continue;
             }
             if device.is_writing() {
-                self.services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&device.name()));
+                self.services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&device.name()));
                 let (tab, id) = (device.tab(), device.id());
                 self.show(tab, id);
                 return None;
@@ -110,7 +110,7 @@ impl Studio {
         device.let_go(JobEnd::Cancelled, &mut self.services);
         *device.phase_mut() = Phase::Lost(why.clone());
         let earlier = device.opening_mut().take().map(|opening| opening.over);
-        self.services.tell(Severity::Note, vec![why], Some(&name));
+        self.services.notify(Severity::Note, vec![why], Some(&name));
         Ok(earlier)
     }
 

@@ -177,7 +177,7 @@ pub enum ExecutionMode {
 
 impl ExecutionMode {
     /// Returns the id of the text of the start button.
-    pub const fn word(self) -> &'static str {
+    pub const fn button_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.write",
             ExecutionMode::Leads => "review.begin",
@@ -186,7 +186,7 @@ impl ExecutionMode {
     }
 
     /// Returns the id of the text that says what will be done.
-    pub const fn way(self) -> &'static str {
+    pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
             ExecutionMode::Leads => "review.way_led",
@@ -211,7 +211,7 @@ pub struct ReviewSheet {
     pub redo: Option<Text>,
     /// The cost, besides the write cycles that this computer has counted.
     pub cost: Option<Text>,
-    pub manner: ExecutionMode,
+    pub execution_mode: ExecutionMode,
     pub toggles: Vec<Toggle>,
     /// Questions that have to be answered first.
     pub questions: Vec<Question>,
@@ -310,7 +310,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     }
 
     /// Returns how the plan is carried out.
-    fn manner(_prepared: &Self::Prepared) -> ExecutionMode {
+    fn execution_mode(_prepared: &Self::Prepared) -> ExecutionMode {
         ExecutionMode::Writes
     }
 }
@@ -385,7 +385,7 @@ impl<K: Reviewed> Review<K> {
             needs: shown.map(|own| K::needs(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost),
-            manner: prepared.map_or(ExecutionMode::Writes, K::manner),
+            execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
             toggles: self.toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),
             force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),

@@ -94,7 +94,7 @@ pub struct Services {
     /// The drives of all sessions.
     pub(crate) brakes: Brakes,
     /// Sessions that were let go and have not ended.
-    pub(super) leaving: Vec<ClosingSession>,
+    pub(super) closing_sessions: Vec<ClosingSession>,
     /// Profiles that are being read.
     pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
@@ -118,7 +118,7 @@ impl Services {
 
     pub(crate) fn new(world: Environment, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
-        let (tasks, leaving) = (Tasks::new(wake), Vec::new());
+        let (tasks, closing_sessions) = (Tasks::new(wake), Vec::new());
         let opening_files = Vec::new();
         Services {
             world,
@@ -127,7 +127,7 @@ impl Services {
             jobs,
             file_question: None,
             brakes: Brakes::default(),
-            leaving,
+            closing_sessions,
             opening_files,
             drafts_on_their_way: 0,
             shared: HashMap::new(),
@@ -140,12 +140,12 @@ impl Services {
     }
 
     /// Adds to the log, and stands in the window.
-    pub(crate) fn tell(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+    pub(crate) fn notify(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add(self.notice(severity, texts, about));
     }
 
     /// The same about a part of what it is about.
-    pub(crate) fn tell_of_part(
+    pub(crate) fn notify_part(
         &mut self,
         severity: Severity,
         texts: Vec<Text>,
@@ -156,7 +156,7 @@ impl Services {
 
     /// Adds to the log only: the window shows it elsewhere.
     pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
-        self.log.keep(self.notice(severity, texts, about));
+        self.log.add_to_log(self.notice(severity, texts, about));
     }
 
     fn notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {

@@ -228,10 +228,10 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records these values too, and no others beside the position. What was recorded of others stays.
-    pub fn watch(&mut self, wished: &[W]) {
+    pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
-            if !own.active || wished.iter().any(|what| own.what.continues(what)) {
+            if !own.active || watched.iter().any(|what| own.what.continues(what)) {
                 kept.push(own);
             } else if self.recorder.has_samples(own.line) {
                 self.end(own.line);
@@ -244,7 +244,7 @@ impl<W: Watchable> Track<W> {
         // A recording that was cleared has no lines that have ended.
         kept.retain(|own| self.recorder.line(own.line).is_some());
         self.watched = kept;
-        wished.iter().for_each(|what| self.begin_to_watch(what));
+        watched.iter().for_each(|what| self.begin_to_watch(what));
     }
 
     fn begin_to_watch(&mut self, what: &W) {

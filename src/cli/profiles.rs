@@ -47,7 +47,7 @@ fn read_document(output: &Output, path: &Path) -> Result<Document> {
 }
 
 /// Writes a profile that was read just now.
-pub fn keep(path: &Path, body: Body) -> Result<()> {
+pub fn save_profile(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = Document::new(second.to_string(), body);

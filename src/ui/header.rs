@@ -245,7 +245,7 @@ pub(super) fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice, actions: &m
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.label(RichText::new(icon).size(theme.sizes.section).color(colour));
                 let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
-                let about = notice.whose(|text| theme.words(text));
+                let about = notice.prefix(|text| theme.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(false));
             });
         });

@@ -61,12 +61,15 @@ fn content(
             operations(ui, theme, (&sheet.lines, room), None);
             remarks(ui, theme, sheet);
             options(ui, theme, device, sheet, actions);
-            ui.label(theme.label(theme.say(sheet.manner.way())));
+            ui.label(theme.label(theme.say(sheet.execution_mode.summary_id())));
             buttons(ui, theme, device, actions, "review.cancel", |ui, actions| {
-                let icon = if sheet.manner == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
+                let icon =
+                    if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
                 // Without the permit it would be refused.
                 let may_wear = sheet.force_wear != Some(false);
-                if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.manner.word())).clicked() {
+                if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.execution_mode.button_id()))
+                    .clicked()
+                {
                     actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
                 }
             });

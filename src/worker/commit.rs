@@ -201,7 +201,7 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 impl WriteIntent {
     /// Keeps the before-image and tells the logbook.
     fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
-        let backup = store.backups().keep(&device.kind, &device.serial_number, Timestamp::now(), before)?;
+        let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intend = |mut logbook: Logbook| {
             let id = logbook.intend(Timestamp::now(), device, items, cost, Some(&backup))?;
             Ok((logbook, id))

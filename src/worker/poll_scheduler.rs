@@ -34,9 +34,9 @@ impl<W> Default for PollScheduler<W> {
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
     /// Sets the values to watch; those already watched keep their pace.
-    pub(super) fn watch(&mut self, wished: Vec<(W, Duration)>) {
+    pub(super) fn watch(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
-        for (what, interval) in wished {
+        for (what, interval) in watched {
             let pace = before.iter_mut().find(|watch| watch.what == what).map(|watch| std::mem::take(&mut watch.pace));
             self.watches.push(Watch { what, interval, pace: pace.unwrap_or_default() });
         }
@@ -83,10 +83,10 @@ struct Pace {
 
 impl Pace {
     /// The next time, by the wish that is in force; a new wish begins now.
-    fn due(&mut self, wish: Option<Duration>, now: Instant) -> Option<Instant> {
-        if wish != self.interval {
-            self.interval = wish;
-            self.next = wish.map(|_| now);
+    fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
+        if interval != self.interval {
+            self.interval = interval;
+            self.next = interval.map(|_| now);
         }
         self.next
     }

@@ -58,7 +58,7 @@ pub trait Producer: Send + 'static {
     type Error: Send + 'static;
 
     /// Works by this wish from the next sample on.
-    fn change(&mut self, wish: Self::Request);
+    fn change(&mut self, request: Self::Request);
 
     /// Waits for samples, no longer than `patience`; `None` where none have come.
     ///
@@ -81,7 +81,7 @@ impl End {
     }
 
     /// The thread has ended and what it used is free.
-    pub fn has_come(&self) -> bool {
+    pub fn has_ended(&self) -> bool {
         has_ended(&self.0)
     }
 }
@@ -95,7 +95,7 @@ pub struct Stream<P: Producer> {
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
     /// The latest, until it is taken.
-    wish: Mutex<Option<P::Request>>,
+    request: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
 }
@@ -124,7 +124,7 @@ impl<P: Producer> Stream<P> {
     ) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             ring: Mutex::new(Ring { batches: VecDeque::new(), held: 0, capacity, lost: 0 }),
-            wish: Mutex::new(None),
+            request: Mutex::new(None),
             error: Mutex::new(None),
             stop: AtomicBool::new(false),
         });
@@ -135,8 +135,8 @@ impl<P: Producer> Stream<P> {
     }
 
     /// Changes what the producer does, from its next sample on. Of several changes the latest counts.
-    pub fn change(&self, wish: P::Request) {
-        *lock(&self.shared.wish) = Some(wish);
+    pub fn change(&self, request: P::Request) {
+        *lock(&self.shared.request) = Some(request);
     }
 
     /// Takes what has come since the last time, the oldest first.
@@ -228,9 +228,9 @@ impl Drop for ExitSignal {
 fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &ExitSignal) {
     let (mut woken, mut unread) = (None, false);
     while !shared.stop.load(Ordering::SeqCst) {
-        let wish = lock(&shared.wish).take();
-        if let Some(wish) = wish {
-            producer.change(wish);
+        let request = lock(&shared.request).take();
+        if let Some(request) = request {
+            producer.change(request);
         }
         match producer.next(clock, PATIENCE) {
             Ok(Some(batch)) => {

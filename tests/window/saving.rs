@@ -101,8 +101,8 @@ fn what_others_wrote_meanwhile_is_asked_about() {
         ("fields[number: 0].bytes[0]".to_owned(), Changed::Both, None),
     ];
     assert_eq!(told, expected);
-    assert!(rows[1].says(Side::Theirs).unwrap().starts_with("\"00 AA"));
-    assert!(rows[1].says(Side::Mine).unwrap().starts_with("\"58 01"));
+    assert!(rows[1].value(Side::Theirs).unwrap().starts_with("\"00 AA"));
+    assert!(rows[1].value(Side::Mine).unwrap().starts_with("\"58 01"));
     assert!(!desk.studio.diverged.as_ref().unwrap().can_merge(), "who decides what both changed?");
     desk.act(Action::Resolve(Resolve::Merge));
     assert!(desk.studio.diverged.is_some());

@@ -403,7 +403,7 @@ fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_t
     assert_eq!(to.nanoseconds_since(from), 399 * 5_000);
     let path = desk.outside.path("scope.csv");
     let question = FileQuestion::Table {
-        desk: encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS),
+        owner: encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS),
         visible: false,
         suggested: path.clone(),
     };

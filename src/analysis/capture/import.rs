@@ -59,9 +59,9 @@ impl Import {
     ///
     /// # Errors
     /// As [`Layout::detect`].
-    pub fn begin(head: &[u8], wishes: &TableHints) -> Result<Self, CaptureError> {
+    pub fn begin(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
-        let import = Import::with(Layout::detect(head, wishes)?);
+        let import = Import::with(Layout::detect(head, hints)?);
         Ok(Import { decoder: Decoder::of(head), ..import })
     }
 

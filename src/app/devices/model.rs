@@ -146,7 +146,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         match self.memory_mut() {
             Ok(memory) => Some(act(memory, services)),
             Err(why) => {
-                services.tell(Severity::Note, vec![why], Some(&self.session().name()));
+                services.notify(Severity::Note, vec![why], Some(&self.session().name()));
                 None
             }
         }

@@ -120,7 +120,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn may_have_changed(&mut self);
     #[doc(hidden)]
-    fn keep_draft(&mut self, services: &mut Services);
+    fn write_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
     fn leave_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
@@ -332,8 +332,8 @@ impl<M: DeviceModel> OpenDevice for M {
         self.session_mut().drafting.may_have_changed();
     }
 
-    fn keep_draft(&mut self, services: &mut Services) {
-        Drafted::keep_draft(self, services);
+    fn write_draft(&mut self, services: &mut Services) {
+        Drafted::write_draft(self, services);
     }
 
     fn leave_draft(&mut self, services: &mut Services) {

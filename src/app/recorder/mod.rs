@@ -226,7 +226,7 @@ impl Recorder {
             RecorderAction::Follow => self.follow(),
             RecorderAction::Pause => self.pause(),
             RecorderAction::Fit => self.fit(),
-            RecorderAction::Look(from, to) => self.look(from, to),
+            RecorderAction::Look(from, to) => self.zoom_to(from, to),
             RecorderAction::SetSpan(span) => self.set_span(span),
             RecorderAction::Zoom(about, factor) => self.zoom(about, factor),
             RecorderAction::SetCursor(cursor, time) => self.set_cursor(cursor, time),

@@ -225,14 +225,14 @@ impl<D: Kind> Session<D> {
             self.phase = Phase::Silent(first.clone());
         }
         let texts = std::iter::once(Text::new("session.poll_failed")).chain(why).collect();
-        services.tell(Severity::Error, texts, Some(&self.name()));
+        services.notify(Severity::Error, texts, Some(&self.name()));
     }
 
     /// Starts a job, or says why not and gives false.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
-            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
+            services.notify(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
             return false;
         };
         match line.submit(job, what.clone(), writes, services.now()) {
@@ -241,7 +241,7 @@ impl<D: Kind> Session<D> {
                 return true;
             }
             Err(SubmitError::Busy | SubmitError::Unread) => {
-                services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
+                services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
             }
             // How the session ended comes with its last events.
             Err(SubmitError::Ended) => {}

@@ -59,7 +59,7 @@ impl SessionState {
         services: &mut Services,
     ) {
         if self.is_saving {
-            return services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&self.name()));
+            return services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&self.name()));
         }
         self.is_saving = true;
         let opened = match &self.source {

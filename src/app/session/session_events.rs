@@ -152,7 +152,7 @@ pub trait SessionEvents: HasSession {
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
         let stands_there = self.ended_early(EarlyEnd::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
-        self.session().say(severity, texts, stands_there, services);
+        self.session().report(severity, texts, stands_there, services);
         if begun {
             self.submit(Self::Device::survey(), services);
         }
@@ -171,7 +171,7 @@ pub trait SessionEvents: HasSession {
             }
             None => {
                 self.session_mut().answers();
-                self.session().say(Severity::Error, texts, stands_there, services);
+                self.session().report(Severity::Error, texts, stands_there, services);
                 if error.has_begun() {
                     self.submit(Self::Device::survey(), services);
                 }

@@ -40,12 +40,12 @@ impl OwnCommand for AnalyseCommand {
 
 fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let path = &arguments.file;
-    let wishes =
+    let hints =
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
     let bar = Bar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
     // Ctrl-C ends a command that only reads.
-    let read = read_capture(path, &wishes, &AtomicBool::new(false), &mut progress);
+    let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
     let (layout, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
     remarks(output, &layout, &capture);

@@ -70,8 +70,8 @@ pub(in crate::ui) fn plot_ui(
     actions: &mut Vec<Action>,
 ) {
     let empty = theme.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
-    let desk = RecorderOwner::Device(device.id());
-    plot::plot_ui(ui, theme, device.recorder(), desk, &mut views.plot, &empty, actions);
+    let owner = RecorderOwner::Device(device.id());
+    plot::plot_ui(ui, theme, device.recorder(), owner, &mut views.plot, &empty, actions);
     let dropped = device.dropped();
     if dropped > 0 {
         let text = Text::new("live.dropped").with("count", dropped);

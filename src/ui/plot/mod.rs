@@ -24,7 +24,7 @@ use crate::app::{Action, RecorderOwner};
 #[derive(Default)]
 pub struct PlotUiState {
     /// Whose plot it was.
-    desk: Option<RecorderOwner>,
+    owner: Option<RecorderOwner>,
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
@@ -57,13 +57,13 @@ impl PlotUiState {
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
-    desk: RecorderOwner,
+    owner: RecorderOwner,
     actions: &'a mut Vec<Action>,
 }
 
 impl Context<'_> {
     fn act(&mut self, action: recorder::RecorderAction) {
-        self.actions.push(Action::Recorder(self.desk, action));
+        self.actions.push(Action::Recorder(self.owner, action));
     }
 }
 
@@ -72,16 +72,16 @@ pub fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,
     recorder: &Recorder,
-    desk: RecorderOwner,
+    owner: RecorderOwner,
     view: &mut PlotUiState,
     invitation: &str,
     actions: &mut Vec<Action>,
 ) {
-    if view.desk.replace(desk).is_some_and(|before| before != desk) {
+    if view.owner.replace(owner).is_some_and(|before| before != owner) {
         // Drags and typed text belonged to another one.
-        *view = PlotUiState { desk: view.desk, large: view.large, ..PlotUiState::default() };
+        *view = PlotUiState { owner: view.owner, large: view.large, ..PlotUiState::default() };
     }
-    let context = &mut Context { theme, recorder, desk, actions };
+    let context = &mut Context { theme, recorder, owner, actions };
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
     let below = ui.available_height();

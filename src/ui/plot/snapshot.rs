@@ -23,7 +23,7 @@ const FRAMES: usize = 60;
 
 impl Screenshot {
     /// Wishes a picture: not of this frame, in which the menu is open that it was wished in.
-    pub(super) fn wish(&mut self, ctx: &Context) {
+    pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
@@ -140,7 +140,7 @@ mod tests {
         let mut shot = Screenshot::default();
         let place = |left: f32| Rect::from_min_size(pos2(left, 2.0), egui::vec2(3.0, 2.0));
         assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty() && !shot.is_wanted());
-        shot.wish(&ctx);
+        shot.request(&ctx);
         assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty());
         assert!(matches!(shot, Screenshot::Wanted(1)), "the menu is still open in this frame");
         frame(&ctx, &mut shot, 8.0, place(1.0));
@@ -163,7 +163,7 @@ mod tests {
     fn a_plot_that_is_not_wholly_in_sight_gives_no_picture() {
         let ctx = Context::default();
         let mut shot = Screenshot::default();
-        shot.wish(&ctx);
+        shot.request(&ctx);
         let plot = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(8.0, 20.0));
         let told = (0..100).flat_map(|_| frame(&ctx, &mut shot, 8.0, plot)).collect::<Vec<_>>();
         assert!(matches!(&told[..], [Action::PictureCut]) && !shot.is_wanted());

@@ -106,7 +106,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
             for (x, y, words) in chart.marks {
                 let text = egui::RichText::new(words).size(theme.sizes.caption).color(theme.palette.text);
                 let place = PlotPoint::new(*x, *y);
-                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(beside(chart.traces, *x)));
+                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(label_side(chart.traces, *x)));
             }
         });
         response.response.widget_info(|| {
@@ -164,7 +164,7 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
 }
 
 /// On which side of a place its words have room.
-fn beside(traces: &[Trace], x: f64) -> Align2 {
+fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
     match (x - least) / (most - least).max(f64::MIN_POSITIVE) {

@@ -39,8 +39,8 @@ impl Producer for Analogue {
     type Samples = Wires;
     type Error = SettingsDropped;
 
-    fn change(&mut self, wish: Checked) {
-        self.source.change(self.next, wish);
+    fn change(&mut self, request: Checked) {
+        self.source.change(self.next, request);
     }
 
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Wires>>, SettingsDropped> {

@@ -11,11 +11,11 @@ use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
     encoder: &mut Biss,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     commit: Commit,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
     // Each step of an operation is told, and so where it begins.
@@ -24,8 +24,8 @@ pub(super) fn commit(
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
         tell(Progress { done, total, what: JobStep::Operation { item, progress: Box::new(news) } });
     };
-    encoder.know(desk)?;
-    let mut master = encoder.master(desk);
+    encoder.know(context)?;
+    let mut master = encoder.master(context);
     let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, report)?;
     let ended = write_plan(&store, is_virtual, &agreed, &mut write, &mut |_| {});
     match &ended {

@@ -162,10 +162,10 @@ pub enum OperatorPresence {
 }
 
 impl Operator for OperatorPresence {
-    fn begins(&mut self) {
+    fn on_task_start(&mut self) {
         match self {
-            OperatorPresence::Attended(seat) => seat.begins(),
-            OperatorPresence::Unattended(nobody) => nobody.begins(),
+            OperatorPresence::Attended(seat) => seat.on_task_start(),
+            OperatorPresence::Unattended(nobody) => nobody.on_task_start(),
         }
     }
 

@@ -32,7 +32,7 @@ impl Encoder {
                         run.data = profile.and_then(|body| body.into_profile().ok()).map(Box::new);
                         self.plan(Change::Guided { run: *run, motor }, context.services);
                     }
-                    Err(refusal) => context.services.tell(Severity::Error, vec![refusal], None),
+                    Err(refusal) => context.services.notify(Severity::Error, vec![refusal], None),
                 }
             }
             BissAction::ReadStatus => self.submit(BissJob::Status, services),

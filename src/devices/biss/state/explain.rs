@@ -64,11 +64,11 @@ pub fn encoder(error: &Error) -> Text {
         Error::Adapter(error) => adapter(error),
         Error::NoReply { asked, tries, echo_heard } => {
             let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
-            TEXTS.text(id).with_text("asked", self::asked(*asked)).with("tries", tries)
+            TEXTS.text(id).with_text("asked", self::item_text(*asked)).with("tries", tries)
         }
         Error::Damaged { asked, tries, cause } => TEXTS
             .text("biss.damaged")
-            .with_text("asked", self::asked(*asked))
+            .with_text("asked", self::item_text(*asked))
             .with("tries", tries)
             .with_text("why", damage(cause)),
         Error::NeverSilent => TEXTS.text("biss.never_silent"),
@@ -108,7 +108,7 @@ pub fn encoder(error: &Error) -> Text {
         Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
         Error::Changed { item } => TEXTS.text("biss.changed").with("item", item),
         Error::OtherReply { asked, reply } => {
-            TEXTS.text("biss.other_reply").with_text("asked", self::asked(*asked)).with("reply", reply)
+            TEXTS.text("biss.other_reply").with_text("asked", self::item_text(*asked)).with("reply", reply)
         }
         Error::FrameStatus { status } => TEXTS.text("biss.frame_status").with("status", byte(*status)),
         Error::Layout(error) => layout(error),
@@ -169,7 +169,7 @@ fn moving(rpm: Option<f64>) -> Text {
     TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
-pub fn asked(asked: RequestedItem) -> Text {
+pub fn item_text(asked: RequestedItem) -> Text {
     match asked {
         RequestedItem::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
         RequestedItem::Write(address, value) => {

@@ -82,7 +82,7 @@ impl Guide {
         &self.ops
     }
 
-    pub(super) fn tell(&mut self, news: ProcedureProgress) {
+    pub(super) fn take_progress(&mut self, news: ProcedureProgress) {
         self.progress = Some(news);
     }
 
@@ -180,7 +180,9 @@ mod tests {
 
     fn reached(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        reported.iter().for_each(|step| guide.tell(ProcedureProgress { op: 0, step: *step, detail: Detail::Begins }));
+        reported
+            .iter()
+            .for_each(|step| guide.take_progress(ProcedureProgress { op: 0, step: *step, detail: Detail::Begins }));
         guide.cut = cut;
         guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()
@@ -196,14 +198,14 @@ mod tests {
             (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
         ] {
             let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
-            guide.tell(ProcedureProgress {
+            guide.take_progress(ProcedureProgress {
                 op: 0,
                 step: ProcedureStep::Await(Task::Turn(task)),
                 detail: Detail::Begins,
             });
             guide.answer(Task::Turn(task), Answer::Skip);
             let next = ProcedureStep::Await(Task::Turn(Run::WiegandClockwise));
-            guide.tell(ProcedureProgress { op: 1, step: next, detail: Detail::Begins });
+            guide.take_progress(ProcedureProgress { op: 1, step: next, detail: Detail::Begins });
             assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
             guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
             assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
@@ -231,7 +233,7 @@ mod tests {
     #[test]
     fn who_cancels_has_not_failed() {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        guide.tell(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
+        guide.take_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
         guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });

@@ -105,7 +105,7 @@ impl Meaning {
                 }
                 meaning
             }
-            ref other => adapter::asked(other),
+            ref other => adapter::request_text(other),
         }
     }
 }

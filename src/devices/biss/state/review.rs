@@ -96,7 +96,7 @@ impl Reviewed for Biss {
         words::written(written)
     }
 
-    fn manner(prepared: &Prepared) -> ExecutionMode {
+    fn execution_mode(prepared: &Prepared) -> ExecutionMode {
         match prepared.plan.ops.iter().any(is_guided) {
             false => ExecutionMode::Writes,
             true if prepared.plan.write_cycles() == 0 => ExecutionMode::Tests,

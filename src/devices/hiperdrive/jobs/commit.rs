@@ -10,12 +10,12 @@ use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
     device: &mut Hiperdrive,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     commit: &Commit,
     tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-    let mut write = DeviceWrite { master: device.master(desk), identity: &commit.prepared.identity };
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let mut write = DeviceWrite { master: device.master(context), identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
         tell(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })

@@ -62,8 +62,8 @@ type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
     /// The host's side of explicit messages.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+        Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 }
 
@@ -118,57 +118,57 @@ impl Device for Hiperdrive {
 
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: HiperdriveJob,
         tell: ProgressSink<'_>,
     ) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
-        self.let_go_of_lost(desk);
+        self.let_go_of_lost(context);
         let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, what }));
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
-            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),
-            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(desk, &commit, tell)?)),
-            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
-            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)),
+            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(context, &commit, tell)?)),
+            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(context), &mut parameter)?)),
+            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Survey => {
-                let began = desk.clock.now();
-                let survey = survey(&mut self.master(desk), &mut parameter)?;
+                let began = context.clock.now();
+                let survey = survey(&mut self.master(context), &mut parameter)?;
                 self.control.rule_by(&survey, began);
                 Out::Surveyed(Box::new(survey))
             }
-            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Check => {
                 let report = &mut |done, total, what| step(done, total, JobStep::Step(what));
-                Out::Check(check_device(&mut self.master(desk), report)?)
+                Out::Check(check_device(&mut self.master(context), report)?)
             }
-            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(desk), drive)?),
-            HiperdriveJob::Read(number) => Out::Value(number, self.master(desk).read(number)?),
-            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(desk))?)),
-            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(context), drive)?),
+            HiperdriveJob::Read(number) => Out::Value(number, self.master(context).read(number)?),
+            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(context))?)),
+            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Take => {
-                self.take(desk, &mut parameter)?;
+                self.take(context, &mut parameter)?;
                 Out::Taken
             }
             HiperdriveJob::Give => {
-                self.give(desk)?;
+                self.give(context)?;
                 Out::Given
             }
             HiperdriveJob::Watch(drive) => {
                 self.watched = drive;
-                self.look_anew(desk, drive);
+                self.look_anew(context, drive);
                 Out::Watched(drive)
             }
         })
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<DriveReading, JobError> {
-        self.let_go_of_lost(desk);
+    fn sample(&mut self, context: &mut SessionContext) -> Result<DriveReading, JobError> {
+        self.let_go_of_lost(context);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
-            return Ok(DriveReading { at: desk.clock.now(), drive, actual });
+            return Ok(DriveReading { at: context.clock.now(), drive, actual });
         }
-        Ok(position(&mut self.master(desk), drive)?)
+        Ok(position(&mut self.master(context), drive)?)
     }
 
     fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<DriveReading>, JobError> {
@@ -187,15 +187,15 @@ impl Device for Hiperdrive {
         if self.control.held().is_some() { IDLE_IN_CONTROL } else { IDLE }
     }
 
-    fn idle(&mut self, desk: &mut SessionContext) -> Option<DeviceMessage> {
-        self.let_go_of_lost(desk);
-        self.look_at_rules(desk);
+    fn idle(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {
+        self.let_go_of_lost(context);
+        self.look_at_rules(context);
         self.remark.take()
     }
 
     /// Drives that are in control are stopped and let go.
-    fn leave(&mut self, desk: &mut SessionContext) {
-        self.end(desk);
+    fn leave(&mut self, context: &mut SessionContext) {
+        self.end(context);
     }
 
     fn is_urgent(&self) -> bool {

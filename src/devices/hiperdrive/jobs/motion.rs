@@ -33,7 +33,7 @@ struct Cell {
     punctual: bool,
     view: MotionSnapshot,
     /// The program ends: nothing moves any more.
-    leaving: bool,
+    is_shutting_down: bool,
     /// The target holds a cyclic connection that was opened here.
     connected: bool,
 }
@@ -91,7 +91,7 @@ impl Motion {
             session: SessionWatch::default(),
             punctual: false,
             view: MotionSnapshot::default(),
-            leaving: false,
+            is_shutting_down: false,
             connected: false,
         };
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
@@ -268,12 +268,12 @@ impl Motion {
 
     /// The program ends: all drives stop, are switched off, and their connection is closed. Nothing moves any more.
     pub fn leave(&self) {
-        self.lock().leaving = true;
+        self.lock().is_shutting_down = true;
     }
 
     /// The program ends.
-    pub(super) fn is_leaving(&self) -> bool {
-        self.lock().leaving
+    pub(super) fn is_shutting_down(&self) -> bool {
+        self.lock().is_shutting_down
     }
 
     /// The target holds a cyclic connection that was opened here and has not been closed.

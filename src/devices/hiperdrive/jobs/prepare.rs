@@ -13,12 +13,12 @@ use crate::worker::{JobReport, Progress, SessionContext};
 
 pub(super) fn prepare(
     device: &mut Hiperdrive,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-    let mut master = device.master(desk);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let mut master = device.master(context);
     let report = &mut |done, total, number| {
         tell(JobReport::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
     };

@@ -340,7 +340,7 @@ impl<'a> Master<'a> {
                     Ok(Some(answer)) => {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&answer.emit()));
-                        self.station.heard(u64::from_le_bytes(answer.context), now);
+                        self.station.note_reply(u64::from_le_bytes(answer.context), now);
                         let recorded = self.station.recorded && answer.command == frame.command;
                         if !recorded && !answer.answers(&frame) {
                             self.station.late += 1;

@@ -130,7 +130,7 @@ impl Station {
     }
 
     /// A frame with this number has come, which answers the request of that number, in time or not.
-    pub(super) fn heard(&mut self, number: u64, at: Moment) {
+    pub(super) fn note_reply(&mut self, number: u64, at: Moment) {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)
         {

@@ -179,7 +179,7 @@ impl Drive {
             (StatusBit::Warning, self.faults > 0),
             (StatusBit::TargetReached, self.target_reached),
             (StatusBit::SetpointAcknowledged, self.acknowledged),
-            (StatusBit::StandingStill, self.stands()),
+            (StatusBit::StandingStill, self.is_standing()),
             (StatusBit::OverCurrent, self.over_current),
             (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]
@@ -188,8 +188,8 @@ impl Drive {
     }
 
     /// Returns whether nothing moves or is about to.
-    pub(super) fn stands(&self) -> bool {
-        self.axis.stands() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
+    pub(super) fn is_standing(&self) -> bool {
+        self.axis.is_standing() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
 
     /// Returns the position in scaled steps.
@@ -260,7 +260,7 @@ impl Drive {
     /// Returns whether nothing but its temperature changes by itself.
     fn is_settled(&self) -> bool {
         let begins = self.control.begins(self.control, self.status()).is_some();
-        self.motion == Motion::Rest && self.axis.stands() && !begins && self.next(self.control) == self.state
+        self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
     }
 
     /// The state that the word leads to behind another one.
@@ -286,7 +286,7 @@ impl Drive {
         let weak = wants && torque < self.load.percent;
         let wanted = if weak { AxisDemand::Rest } else { self.wanted() };
         let came = self.axis.tick(wanted, &self.load);
-        self.warm(if self.stands() { 0 } else { torque }, ticks);
+        self.warm(if self.is_standing() { 0 } else { torque }, ticks);
         let stuck = weak || matches!(came, TickOutcome::Held { .. });
         self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
         match came {

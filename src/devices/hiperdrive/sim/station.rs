@@ -320,20 +320,20 @@ impl Station {
             self.answers_at = Some(self.busy_until);
             return;
         }
-        let mut keep: fn(&mut Memory) = Memory::keep;
+        let mut save: fn(&mut Memory) = Memory::save;
         if matches!(value, 1 | -3) {
             self.store.count = self.store.count.saturating_add(1);
             if self.store.dies_in == Some(self.store.count) {
-                (self.store.dies_at, keep) = (Some(now + SAVES / 2), Memory::keep_half);
+                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::keep_half);
             }
         }
         let each = |memory: &mut Memory| match value {
-            1 => keep(memory),
+            1 => save(memory),
             -1 => memory.forget_own(),
             -2 => memory.recall(),
             -3 => {
                 memory.forget();
-                keep(memory);
+                save(memory);
             }
             _ => {}
         };

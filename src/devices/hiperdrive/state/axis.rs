@@ -189,7 +189,7 @@ impl AxisStep {
         self as usize
     }
 
-    fn beside(self, by: isize) -> Option<AxisStep> {
+    fn neighbour(self, by: isize) -> Option<AxisStep> {
         AxisStep::ALL.get(self.index().checked_add_signed(by)?).copied()
     }
 }

@@ -27,7 +27,7 @@ impl Unit {
         let known = self.survey.as_ref().map(|own| own.wrong_lengths.as_slice()).unwrap_or_default();
         for error in survey.wrong_lengths.iter().filter(|error| !known.contains(error)) {
             let text = words::wrong_length(error);
-            services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
         }
         let drives = survey.identity.drives.iter();
         self.staged.know(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());

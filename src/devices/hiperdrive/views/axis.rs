@@ -196,7 +196,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
         ui.add_space(theme.space.groups);
-        foot(ui, theme, shown, actions);
+        buttons_ui(ui, theme, shown, actions);
         ui.add_space(theme.space.between);
         messages(ui, theme, shown, &entries);
     });
@@ -253,7 +253,7 @@ fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
 }
 
 /// Draws the buttons Back, Cancel and Next. Before a step is settled it can only be cancelled, which stops the motion.
-fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
     let step = axis.step();

@@ -128,13 +128,13 @@ impl Search<'_> {
         let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
-        self.tell(0, total, &Attempt::Listening);
+        self.report(0, total, &Attempt::Listening);
         let heard = master.drain(LISTEN)?;
         if !heard.is_empty() {
             return Ok(Some(heard.len()));
         }
         if let Some(patience) = options.power_cycle {
-            self.tell(0, total, &Attempt::DefaultWindow);
+            self.report(0, total, &Attempt::DefaultWindow);
             let hit = catch_default_window(master, patience, options.one_encoder)?;
             self.add(hit);
         }
@@ -144,7 +144,7 @@ impl Search<'_> {
             let found_before = self.found.len();
             let broadcast = options.one_encoder.then_some(BROADCAST);
             for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
-                self.tell(done, total, &Attempt::Probing { address, format });
+                self.report(done, total, &Attempt::Probing { address, format });
                 done += 1;
                 if address == BROADCAST && self.found.len() > found_before {
                     continue;
@@ -156,7 +156,7 @@ impl Search<'_> {
         Ok(None)
     }
 
-    fn tell(&mut self, done: u64, total: u64, attempt: &Attempt) {
+    fn report(&mut self, done: u64, total: u64, attempt: &Attempt) {
         (self.watch)(SearchProgress::Trying { done, total, attempt });
     }
 

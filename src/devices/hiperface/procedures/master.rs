@@ -138,7 +138,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five tries.
-    pub(super) fn tell(
+    pub(super) fn send_until_done(
         &mut self,
         request: &Request,
         mut is_done: impl FnMut(&mut Self) -> Result<bool, Error>,

@@ -100,7 +100,7 @@ impl Commutation {
     }
 
     /// Returns the position that is being read.
-    pub fn asked(&self) -> Option<Slot> {
+    pub fn pending_slot(&self) -> Option<Slot> {
         self.asked.as_ref().map(|asked| asked.slot)
     }
 

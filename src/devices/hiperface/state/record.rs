@@ -52,8 +52,8 @@ impl Record {
     }
 
     /// Records these values too, and no others beside the position.
-    pub(super) fn watch(&mut self, wished: &[Watch]) {
-        self.track.watch(wished);
+    pub(super) fn watch(&mut self, watched: &[Watch]) {
+        self.track.watch(watched);
     }
 
     /// Returns the values recorded with the position.

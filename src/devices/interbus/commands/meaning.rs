@@ -55,7 +55,7 @@ pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>,
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
     let meaning = |command: Command, modes: Vec<Mode>| {
-        let (words, value) = asked(command);
+        let (words, value) = command_words(command);
         WordMeaning { direction: "OUT", modes, words, value, legal: true }
     };
     let legal = |command: Command| Mode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
@@ -84,7 +84,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
             direction: "OUT",
             modes: vec![refused.mode],
             words: format!("not legal, {}", elsewhere(refused.command)),
-            value: asked(refused.command).1,
+            value: command_words(refused.command).1,
             legal: false,
         })
         .into_iter()
@@ -94,7 +94,7 @@ pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
 /// Returns the modes in which a command is legal.
 fn elsewhere(command: Command) -> String {
     let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
-    format!("\"{}\" is for {} mode", asked(command).0, modes.join(" or "))
+    format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))
 }
 
 /// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
@@ -153,7 +153,7 @@ fn stray(bits: u32, place: &str) -> String {
 }
 
 /// A command, and the number in it.
-fn asked(command: Command) -> (String, Option<u32>) {
+fn command_words(command: Command) -> (String, Option<u32>) {
     let with = |words: String, value: u32| (words, Some(value));
     match command {
         Command::Set(Parameter::Default, _) => {
@@ -229,10 +229,10 @@ fn echo(reply: Reply, mode: Mode) -> String {
     let with = if manufacturer { ", manufacturer bit" } else { "" };
     match (reply.echoed(mode), code) {
         (Some(command), 0) if !matches!(command, Command::CamStart(..) | Command::CamStop(..)) => {
-            format!("echo of \"{}\"", asked(command).0)
+            format!("echo of \"{}\"", command_words(command).0)
         }
-        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", asked(command).0),
-        (Some(command), _) => format!("echo of \"{}\"", asked(command).0),
+        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", command_words(command).0),
+        (Some(command), _) => format!("echo of \"{}\"", command_words(command).0),
         (None, 0) if data == Value::default() => format!("busy{with}"),
         (None, 0) => format!("busy{with}, data {}", data.get()),
         (None, code) => format!("echo of code {code}{with}, data {}", data.get()),

@@ -12,14 +12,14 @@ use crate::worker::{JobReport, Progress, SessionContext};
 
 pub(super) fn prepare(
     encoder: &mut Interbus,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
     let mut master =
-        encoder.master(desk, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+        encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
     let report = &mut |done, total, program| {
         (tell.borrow_mut())(JobReport::Progress(Progress { done, total, what: JobStep::Program(program) }));
     };

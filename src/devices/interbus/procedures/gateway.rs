@@ -222,7 +222,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     if received.len() < SHORTEST || length != Ok(received.len()) {
         return broken(Damage::NoFrame { bytes: received.len() });
     }
-    let (number, unit, asked) = asked(sent, order)?;
+    let (number, unit, asked) = requested_item(sent, order)?;
     let (request, _) = request(asked, unit, number, order)?;
     match judge(&request, asked, received.to_vec()) {
         Err(ExchangeError::Damage(damage)) => broken(damage),
@@ -232,7 +232,7 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
 }
 
 /// Parses the request of a frame in the trace, with its number and its unit.
-fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
+fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
     let asked = match (function, carried(true, sent, order)) {

@@ -166,9 +166,9 @@ impl<'a> Master<'a> {
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
         self.until(command, Awaited::Value, self.patience, |CycleResult { word, same, .. }| match Reply::parse(word) {
-            Reply::ReadOut(value) if same.stands() => Some(Ok(value)),
-            Reply::UnknownReadOut(_) if same.stands() => Some(Err(Error::UnknownReadOut { command })),
-            Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
+            Reply::ReadOut(value) if same.is_stable() => Some(Ok(value)),
+            Reply::UnknownReadOut(_) if same.is_stable() => Some(Err(Error::UnknownReadOut { command })),
+            Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
                 Some(Err(Error::Refused { sent: command, error }))
             }
             _ => None,
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
         let (mut runs, found) = (Held::new(self.recorded), self.found_error);
         self.until(command, Awaited::Run, patience, |CycleResult { now, word, same }| {
             runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
-            (runs.stands() || Some(word) == found && same.stays()).then_some(Ok(()))
+            (runs.is_stable() || Some(word) == found && same.is_settled()).then_some(Ok(()))
         })
     }
 
@@ -226,7 +226,7 @@ impl<'a> Master<'a> {
         let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |CycleResult { now, word, .. }| {
             sent.go_on(true, now);
             there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
-            (sent.stays() && there.stands()).then_some(Ok(()))
+            (sent.is_settled() && there.is_stable()).then_some(Ok(()))
         });
         self.shielded(Self::normal).and(fired)
     }

@@ -54,7 +54,7 @@ impl Record {
         match reading.mode {
             Some(StartupMode::Velocity) => {
                 self.track.watch(&[RecordedValue::Speed]);
-                self.beside(at, RecordedValue::Speed, reading.rpm().map(i64::from));
+                self.add_value(at, RecordedValue::Speed, reading.rpm().map(i64::from));
             }
             Some(StartupMode::Cams(_)) => {
                 let cams: Vec<RecordedValue> = CamNumber::all().map(RecordedValue::Cam).collect();
@@ -62,7 +62,7 @@ impl Record {
                 let output = reading.cams();
                 for cam in CamNumber::all() {
                     let on = output.map(|own| i64::from(own.outputs >> cam.get() & 1));
-                    self.beside(at, RecordedValue::Cam(cam), on);
+                    self.add_value(at, RecordedValue::Cam(cam), on);
                 }
             }
             _ => self.track.watch(&[]),
@@ -82,7 +82,7 @@ impl Record {
         }
     }
 
-    fn beside(&mut self, at: Moment, what: RecordedValue, value: Option<i64>) {
+    fn add_value(&mut self, at: Moment, what: RecordedValue, value: Option<i64>) {
         let value = value.map(Value::Whole);
         self.track.add_watched(&what, &Watching { at, value, is_warned: false, never: None });
     }

@@ -30,16 +30,16 @@ impl WordContext {
 /// Returns the request of an OUT word in a mode, or that it must not be sent.
 pub fn out(word: u32, mode: Mode) -> Text {
     match Command::in_mode(word, mode) {
-        Ok(command) => asked(command),
+        Ok(command) => command_text(command),
         Err(refused) if matches!(refused.command, Command::Unknown(_)) => TEXTS.text("ib_word.unknown"),
         Err(refused) => TEXTS
             .text("ib_word.illegal")
             .with_text("mode", words::mode(refused.mode))
-            .with_text("elsewhere", asked(refused.command)),
+            .with_text("elsewhere", command_text(refused.command)),
     }
 }
 
-pub fn asked(command: Command) -> Text {
+pub fn command_text(command: Command) -> Text {
     let cam = |id, number: u8| TEXTS.text(id).with("cam", number);
     match command {
         Command::Normal => TEXTS.text("ib_word.normal"),
@@ -126,7 +126,7 @@ fn error(error: ErrorWord) -> Text {
 fn echo(reply: Reply, mode: Mode) -> Text {
     let in_mode = if mode == Mode::Cam { Mode::Cam } else { Mode::Parameterisation };
     match reply.echoed(in_mode) {
-        Some(command) => TEXTS.text("ib_word.echo").with_text("command", asked(command)),
+        Some(command) => TEXTS.text("ib_word.echo").with_text("command", command_text(command)),
         None if matches!(reply, Reply::Busy { .. }) => TEXTS.text("ib_word.busy"),
         None => TEXTS.text("ib_word.other_echo"),
     }

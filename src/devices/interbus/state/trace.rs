@@ -64,7 +64,7 @@ impl Meaning {
             Some(Carried::Out(word)) => {
                 let command = self.command(word);
                 self.follow(command);
-                vec![word_of("ib_trace.out", word), said::asked(command)]
+                vec![word_of("ib_trace.out", word), said::command_text(command)]
             }
             Some(Carried::In(word)) => {
                 let known = WordContext { mode: self.mode, read_out: self.read_out, shift: self.shift };

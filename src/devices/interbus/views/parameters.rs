@@ -208,7 +208,7 @@ fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
                     ui.label(theme.mono(format!("0x{:08X}", step.out)));
-                    ui.label(theme.label(theme.words(&said::asked(step.command))));
+                    ui.label(theme.label(theme.words(&said::command_text(step.command))));
                     ui.label(theme.mono(format!("0x{:08X}", step.input)));
                     let known = said::WordContext::of(step.command, encoder.shift());
                     ui.add(egui::Label::new(theme.label(theme.words(&said::word_text(step.input, &known)))).truncate());

@@ -44,7 +44,7 @@ pub enum CheckFinding {
     /// Millivolts wished and measured, and milliamperes.
     Supply {
         /// Millivolts wished.
-        wished: u16,
+        requested: u16,
         /// Millivolts measured.
         measured: u16,
         /// Milliamperes measured.
@@ -173,11 +173,11 @@ fn adapter(identity: &Identity) -> SsiStepResult {
 fn supply(identity: &Identity) -> SsiStepResult {
     let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
     let (verdict, finding) = match supplied {
-        Some((wished, (measured, milliampere))) => {
+        Some((requested, (measured, milliampere))) => {
             // A tenth is what encoders for 5 V stand.
-            let is_near = measured.abs_diff(wished) <= wished / 10;
+            let is_near = measured.abs_diff(requested) <= requested / 10;
             let verdict = if is_near && milliampere > 0 { Verdict::Good } else { Verdict::Attention };
-            (verdict, CheckFinding::Supply { wished, measured, milliampere })
+            (verdict, CheckFinding::Supply { requested, measured, milliampere })
         }
         None => (Verdict::Good, CheckFinding::SuppliedElsewhere),
     };

@@ -176,7 +176,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
         return search(Some(Uncertainty::Stuck { high }), Vec::new());
     }
-    if different < 8 || seen.stands() {
+    if different < 8 || seen.is_standing() {
         return search(Some(Uncertainty::Standing), Vec::new());
     }
     let repeat = seen.repeat();

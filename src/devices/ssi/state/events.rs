@@ -134,6 +134,6 @@ impl SessionEvents for Encoder {
 
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         services.job_ends(self.session.id, id, JobEnd::Cancelled);
-        services.tell(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
+        services.notify(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
     }
 }

@@ -31,7 +31,7 @@ impl DeviceModel for Encoder {
         self.motor = opened.aside.clone();
         self.requested = None;
         self.session.take_line(opened, services);
-        if !self.session.drafting.has_looked() {
+        if !self.session.drafting.is_loaded() {
             self.load_draft(services);
         }
         self.submit(SsiJob::Hello, services);
@@ -51,7 +51,7 @@ impl DeviceModel for Encoder {
             Done::Written(path, Ok(())) => {
                 services.log.settle_file(&path);
                 let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
             Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
         }

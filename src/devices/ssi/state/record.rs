@@ -101,15 +101,15 @@ impl Record {
         for run in runs {
             self.follow(&run);
             self.see(&run);
-            self.keep(run);
+            self.buffer(run);
         }
     }
 
     /// Appends a run to the previous one: missing words are counted and never joined.
     fn follow(&mut self, run: &Words) {
-        let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
+        let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
-        if run.is_streamed() && (run.begins() || missing > 0) {
+        if run.is_streamed() && (run.is_stream_start() || missing > 0) {
             self.track.gap();
         }
         self.lost += missing;
@@ -144,7 +144,7 @@ impl Record {
         }
     }
 
-    fn keep(&mut self, run: Words) {
+    fn buffer(&mut self, run: Words) {
         self.held += run.words.len();
         self.kept.push_back(run);
         while self.held > KEPT && self.kept.len() > 1 {
@@ -196,7 +196,7 @@ impl Record {
         self.kept.iter().rev().take_while(move |run| {
             let goes_on = later.is_none_or(|later| {
                 let ends = run.first + run.words.len() as u64;
-                !later.begins() && later.first == ends && later.period_ns == run.period_ns
+                !later.is_stream_start() && later.first == ends && later.period_ns == run.period_ns
             });
             later = Some(run);
             goes_on && run.clocks == clocks

@@ -15,7 +15,7 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
     }
     let packet = traced::packet(&bytes);
     let meaning = packet.and_then(|packet| match Request::parse(&packet) {
-        Ok(request) => Some(traced::asked(&request)),
+        Ok(request) => Some(traced::request_text(&request)),
         Err(_) => traced::message_text(&packet),
     });
     meaning.into_iter().collect::<Vec<_>>().into()

@@ -116,10 +116,10 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     pub(super) fn step(&mut self, step: ProcedureStep) {
         self.step = step;
-        self.say(Detail::Begins);
+        self.report(Detail::Begins);
     }
 
-    pub(super) fn say(&mut self, detail: Detail) {
+    pub(super) fn report(&mut self, detail: Detail) {
         (self.tell)(ProcedureProgress { op: self.op, step: self.step, detail });
     }
 
@@ -267,7 +267,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             } else if elapsed >= course.limit {
                 return Err(Failure::TooLong { run: course.run, seconds: elapsed.as_secs() });
             }
-            self.say(Detail::Lasts { elapsed, expected: Some(course.expected) });
+            self.report(Detail::Lasts { elapsed, expected: Some(course.expected) });
             self.master.wait(course.every)?;
         }
         self.does(Activity::Nothing);
@@ -300,11 +300,11 @@ impl<'g, 'm> Guide<'g, 'm> {
             let measured = self.measure(task, &mut gauge)?;
             if !is_told {
                 // Answers from before the question was displayed are void.
-                self.operator.begins();
+                self.operator.on_task_start();
                 is_told = true;
             }
             let demand = Demand::new(task, measured, self.master.now().since(begun));
-            self.say(Detail::Demand(demand.clone()));
+            self.report(Detail::Demand(demand.clone()));
             match self.operator.attend(&demand) {
                 Answer::Go if demand.is_ready() => return Ok(Attended::Go(demand.motion)),
                 Answer::Go | Answer::Wait => {}

@@ -78,8 +78,8 @@ impl StepOutcomes {
 
     /// Lets fall what does not rest on the facts of now any more: the first step of those.
     pub(super) fn fall(&mut self, now: &Preconditions) -> Option<AxisStep> {
-        let stands = |(step, made): (&AxisStep, &StepOutcome)| stands(*step, &made.on, now);
-        let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| stands(*own)).count();
+        let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
+        let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
         let fallen = (left < self.0.len()).then(|| AxisStep::ALL.get(left).copied()).flatten();
         self.0.truncate(left);
         fallen
@@ -87,7 +87,7 @@ impl StepOutcomes {
 }
 
 /// Returns whether the drive's own facts of a step are unchanged. Those of earlier steps are checked there.
-fn stands(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
+fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
     match step {
         AxisStep::Request => now.requested == Some(true),
         AxisStep::Scale => (on.scale, on.pitch) == (now.scale, now.pitch),
@@ -100,5 +100,5 @@ fn stands(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
 
 /// Returns whether a result equals the previous one.
 fn is_same(step: AxisStep, before: &Preconditions, now: &Preconditions) -> bool {
-    stands(step, before, now) && (step != AxisStep::Lower || before.lower == now.lower)
+    is_unchanged(step, before, now) && (step != AxisStep::Lower || before.lower == now.lower)
 }

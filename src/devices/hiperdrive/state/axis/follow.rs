@@ -53,7 +53,7 @@ impl Axis {
             // The person has set it, or said that it is right.
             self.unexplained = None;
         }
-        let next = self.step.beside(1);
+        let next = self.step.neighbour(1);
         if self.chain.make(self.step, self.basis(seen), skipped)
             && let Some(next) = next
         {
@@ -70,7 +70,7 @@ impl Axis {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;
         }
-        if let Some(step) = self.fallen().or_else(|| self.step.beside(-1)) {
+        if let Some(step) = self.fallen().or_else(|| self.step.neighbour(-1)) {
             self.enter(step, seen);
         }
     }

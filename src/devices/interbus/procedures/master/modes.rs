@@ -283,7 +283,7 @@ impl Master<'_> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
-            (!asks && same.stands()).then_some(Ok(()))
+            (!asks && same.is_stable()).then_some(Ok(()))
         });
         match ended {
             Err(Error::TimeOut { .. }) => Ok(()),

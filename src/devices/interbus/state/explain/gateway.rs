@@ -5,7 +5,7 @@ use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::state::TEXTS;
 
 /// Returns the text of a request to a gateway, as a part of a sentence.
-pub(super) fn asked(asked: RequestedItem) -> Text {
+pub(super) fn item_text(asked: RequestedItem) -> Text {
     let id = match asked {
         RequestedItem::Input { .. } => "ib_asked.input",
         RequestedItem::Output { .. } => "ib_asked.output",

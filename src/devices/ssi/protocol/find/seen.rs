@@ -74,7 +74,7 @@ impl FrameSet {
     }
 
     /// Nearly all frames are among a few: the shaft stood or trembled, whatever else disturbances made of it.
-    pub(super) fn stands(&self) -> bool {
+    pub(super) fn is_standing(&self) -> bool {
         let mut counts: Vec<usize> = self.counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
         let few: usize = counts.iter().take(8).sum();
