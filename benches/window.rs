@@ -95,7 +95,7 @@ fn stream() {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
             let ready = studio
-                .shown_as::<encoder_studio::devices::biss::state::Encoder>()
+                .selected_model::<encoder_studio::devices::biss::state::Encoder>()
                 .filter(|own| own.session.is_ready() && own.survey.is_some());
             if let (None, Some(encoder)) = (self.began, ready) {
                 let poll = DeviceCommand::Poll(Some(Duration::from_micros(50)));
@@ -109,7 +109,8 @@ fn stream() {
                 return;
             }
             self.took.push(begun.elapsed().as_micros() as u64);
-            let Some(encoder) = self.window.studio().shown_as::<encoder_studio::devices::biss::state::Encoder>() else {
+            let Some(encoder) = self.window.studio().selected_model::<encoder_studio::devices::biss::state::Encoder>()
+            else {
                 return;
             };
             if self.began.is_some_and(|began| began.elapsed() >= STREAMED) {

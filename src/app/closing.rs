@@ -122,7 +122,7 @@ impl Studio {
         match question.then {
             Then::OpenLink(id) => {
                 let why = Text::new("session.maybe_drive");
-                self.with_device(id, |device, services| device.lose(why, services));
+                self.with_device(id, |device, services| device.connection_lost(why, services));
             }
             Then::Find(_) => {
                 if let Some(connect) = &mut self.connect {

@@ -123,7 +123,7 @@ impl Studio {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
             Some(RecorderOwner::Tool(_)) => None,
-            None => self.shown(),
+            None => self.selected_device(),
         };
         let stem = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
         let stem = stem.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());

@@ -172,7 +172,7 @@ impl Studio {
             }
             Err(failed) => {
                 let why = device.open_failed(&failed);
-                device.lose(why, &mut self.services);
+                device.connection_lost(why, &mut self.services);
             }
         }
     }

@@ -14,7 +14,7 @@ use crate::worker::{Committed, is_uncounted};
 
 /// A write on its way.
 pub struct Review<K: Reviewed> {
-    pub what: Text,
+    pub title: Text,
     pub state: ReviewState<K>,
     /// Write although the device counts as worn.
     pub force_wear: bool,
@@ -54,7 +54,7 @@ impl<K: Reviewed> Review<K> {
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
         let what = K::change(&change);
         Review {
-            what,
+            title: what,
             state: ReviewState::Planning,
             force_wear: false,
             is_for_another,
@@ -153,7 +153,7 @@ impl OpWords {
 /// Something about a plan that has to be answered, and makes another plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
-    pub what: Text,
+    pub title: Text,
     /// The answer that allows nothing.
     pub no: Text,
     /// The answer that allows it.
@@ -198,7 +198,7 @@ impl ExecutionMode {
 /// A review as a person sees it, whatever the device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
-    pub what: Text,
+    pub title: Text,
     pub stage: Stage,
     /// The operations.
     pub lines: Vec<OpWords>,
@@ -378,7 +378,7 @@ impl<K: Reviewed> Review<K> {
         let uncounted = |own: &K::Prepared| is_uncounted(own.cycles_seen(), own.plan().write_cycles());
         let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
         ReviewSheet {
-            what: self.what.clone(),
+            title: self.title.clone(),
             stage,
             lines: carried.map(lines).unwrap_or_default(),
             warnings: shown.map(K::warnings).unwrap_or_default(),

@@ -75,7 +75,7 @@ pub struct JobRecord {
     pub until: Option<Zoned>,
     /// Whose it is.
     pub about: String,
-    pub what: Text,
+    pub title: Text,
     pub end: JobEnd,
     key: (SessionId, JobId),
 }
@@ -171,7 +171,14 @@ impl Services {
     pub(super) fn job_begins(&mut self, session: SessionId, id: JobId, about: &str, what: Text) {
         let about = about.to_owned();
         let since = self.now();
-        self.jobs.push_back(JobRecord { since, until: None, about, what, end: JobEnd::Running, key: (session, id) });
+        self.jobs.push_back(JobRecord {
+            since,
+            until: None,
+            about,
+            title: what,
+            end: JobEnd::Running,
+            key: (session, id),
+        });
         if self.jobs.len() > Self::JOBS {
             self.jobs.pop_front();
         }

@@ -211,14 +211,14 @@ impl Studio {
     }
 
     /// The device that the open tab shows; where that shows none, the one that was shown last.
-    pub fn shown(&self) -> Option<&AnyDevice> {
+    pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
     /// The device of that type which its tab shows.
-    pub fn shown_as<M: DeviceType>(&self) -> Option<&M> {
+    pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
 
@@ -384,7 +384,7 @@ impl Studio {
             self.close_dialog();
             return;
         }
-        if let Some(id) = self.shown().filter(|device| device.is_reviewing()).map(|device| device.id()) {
+        if let Some(id) = self.selected_device().filter(|device| device.is_reviewing()).map(|device| device.id()) {
             self.with_device(id, |device, _| device.close_review());
             return;
         }

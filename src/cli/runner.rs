@@ -164,12 +164,12 @@ impl<D: Runs> Runner<D> {
             };
             match event {
                 Event::Progress(of, progress) if of == id => {
-                    let words = D::announce(&progress.what);
+                    let words = D::announce(&progress.step);
                     if let Some(words) = words.as_ref().filter(|_| words != announced) {
                         bar.print_above(words);
                     }
                     announced = words;
-                    bar.show(progress.done, progress.total, &D::step(&progress.what));
+                    bar.show(progress.done, progress.total, &D::step(&progress.step));
                 }
                 Event::Remark(remark) => {
                     D::print_message(&remark);

@@ -58,5 +58,5 @@ pub trait Broadcast: Send {
     ///
     /// # Errors
     /// When the network is gone.
-    fn hear(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError>;
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError>;
 }

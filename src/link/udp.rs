@@ -252,7 +252,7 @@ impl Broadcast for UdpBroadcast {
         }
     }
 
-    fn hear(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
         let mut buffer = [0; LONGEST];
         loop {
             let left = until.since(self.clock.now());
@@ -338,9 +338,9 @@ mod tests {
         assert_eq!(&buffer[..count], b"who?");
         target.send_to(b"me", from).unwrap();
         let mut heard = Vec::new();
-        let by = shout.hear(clock.now() + Duration::from_secs(5), &mut heard).unwrap();
+        let by = shout.receive(clock.now() + Duration::from_secs(5), &mut heard).unwrap();
         assert_eq!((by, heard.as_slice()), (Some(Ipv4Addr::LOCALHOST), &b"me"[..]));
-        assert_eq!(shout.hear(clock.now() + Duration::from_millis(20), &mut heard).unwrap(), None);
+        assert_eq!(shout.receive(clock.now() + Duration::from_millis(20), &mut heard).unwrap(), None);
     }
 
     #[test]

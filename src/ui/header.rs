@@ -15,7 +15,7 @@ const STOP: f32 = 72.0;
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         sessions(ui, theme, studio, actions);
-        if let Some(device) = studio.shown() {
+        if let Some(device) = studio.selected_device() {
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
             status(ui, theme, device, motion);
         }
@@ -56,9 +56,9 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
     if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
     }
-    let savable = studio.shown().is_some_and(AnyDevice::is_savable);
+    let savable = studio.selected_device().is_some_and(AnyDevice::is_savable);
     if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.say("shell.save_hint")).clicked() {
-        actions.extend(studio.shown().map(|own| Action::Save(own.id())));
+        actions.extend(studio.selected_device().map(|own| Action::Save(own.id())));
     }
     if tool(ui, true, icons::PLUGS_CONNECTED, "shell.connect").clicked() {
         actions.push(Action::Connect(connect::ConnectAction::Open));
@@ -94,7 +94,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
 
 /// The sessions, as a menu behind the name of the one that is shown.
 fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    let shown = studio.shown().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
+    let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
     let text = RichText::new(format!("{}  {}", shortened(&shown, most), icons::CARET_DOWN))
         .font(theme.strong(theme.sizes.section));
@@ -104,7 +104,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
         for device in studio.devices() {
             ui.horizontal(|ui| {
                 phase_dot(ui, theme, device.as_ref());
-                let is_shown = studio.shown().is_some_and(|own| own.id() == device.id());
+                let is_shown = studio.selected_device().is_some_and(|own| own.id() == device.id());
                 if ui.selectable_label(is_shown, device.name()).clicked() {
                     actions.push(Action::Select(device.id()));
                     ui.close();
@@ -180,7 +180,7 @@ fn is_read_only(device: &AnyDevice) -> bool {
 }
 
 fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
-    let Some(device) = studio.shown() else { return };
+    let Some(device) = studio.selected_device() else { return };
     let words = device.place();
     let label = egui::Label::new(theme.mono(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
     let hint = format!("{words}\n{}", theme.say("shell.copy_link"));

@@ -19,7 +19,7 @@ pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, 
     // As many operations as there is room for beside all that is said of them.
     let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
     modal(ctx, theme, "review", width, |ui| {
-        ui.label(theme.heading(theme.words(&sheet.what)));
+        ui.label(theme.heading(theme.words(&sheet.title)));
         ui.label(theme.label(device.name()));
         ui.add_space(theme.space.between);
         // The keyboard on a button of one stage is on none of the next: no key that cancels there writes here.
@@ -271,7 +271,7 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
 
 /// A question with its two answers; what it is about stands in front of them.
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
-    remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.what));
+    remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
     ui.horizontal(|ui| {
         ui.add_space(ICON);
         for (is_on, word) in [(false, &question.no), (true, &question.yes)] {

@@ -106,7 +106,7 @@ impl Window {
     }
 
     fn dialogs(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
-        if let Some(device) = self.studio.shown() {
+        if let Some(device) = self.studio.selected_device() {
             review::review_ui(ctx, theme, device, actions);
         }
         let forms = (self.views.tabs, &mut self.views.connect);
@@ -219,7 +219,7 @@ impl Window {
         let mut keys = vec![(Modifiers::COMMAND, Key::O, Action::AskOpen)];
         let tabs = TAB_KEYS.into_iter().zip(self.views.tabs.tabs());
         keys.extend(tabs.map(|(key, tab)| (Modifiers::COMMAND, key, Action::ShowTab(tab))));
-        if let Some(device) = self.studio.shown().filter(|device| device.tab() == self.studio.settings.tab) {
+        if let Some(device) = self.studio.selected_device().filter(|device| device.tab() == self.studio.settings.tab) {
             keys.push((Modifiers::NONE, Key::F5, device.command(DeviceCommand::Read)));
             // The one with more keys first: it would be taken for the other.
             keys.push((Modifiers::COMMAND | Modifiers::SHIFT, Key::S, device.command(DeviceCommand::AskSave)));
@@ -249,7 +249,7 @@ impl Window {
     /// A consent is asked for.
     fn asks(&self) -> bool {
         let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
-        asks || self.studio.shown().is_some_and(AnyDevice::is_reviewing)
+        asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
     /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half

@@ -133,7 +133,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
         tracing::warn!("{why}");
         return Err(NotBegun::WearUnknown { cost }.into());
     }
-    let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, what });
+    let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, step: what });
     let ended = confirmed.carry_out(write, tell);
     let (outcome, spent) = match &ended {
         Ok(written) => (Outcome::Done, written.write_cycles()),

@@ -84,7 +84,7 @@ mod tests {
     use crate::worker::{JobId, Progress};
 
     fn progress(job: u64) -> Event<TestDevice> {
-        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: () })
+        Event::Progress(JobId(job), Progress { done: 1, total: 2, step: () })
     }
 
     #[test]

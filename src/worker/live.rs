@@ -117,7 +117,7 @@ struct List<W> {
 }
 
 struct Entry<W> {
-    what: W,
+    value: W,
     interval: Duration,
     /// The device does not have it: it is not asked for again while it stays in the list.
     refused: bool,
@@ -134,11 +134,11 @@ impl<W: Clone + PartialEq> Watches<W> {
         let mut list = self.lock();
         let mut entries: Vec<Entry<W>> = Vec::with_capacity(watched.len());
         for (what, interval) in watched {
-            if entries.iter().any(|entry| entry.what == what) {
+            if entries.iter().any(|entry| entry.value == what) {
                 continue;
             }
-            let refused = list.entries.iter().any(|before| before.what == what && before.refused);
-            entries.push(Entry { what, interval: interval.min(LONGEST), refused });
+            let refused = list.entries.iter().any(|before| before.value == what && before.refused);
+            entries.push(Entry { value: what, interval: interval.min(LONGEST), refused });
         }
         list.entries = entries;
         list.number += 1;
@@ -164,7 +164,7 @@ impl<W: Clone + PartialEq> Watches<W> {
     pub(super) fn refuse(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;
-        if let Some(entry) = list.entries.iter_mut().find(|entry| entry.what == *what) {
+        if let Some(entry) = list.entries.iter_mut().find(|entry| entry.value == *what) {
             entry.refused = true;
         }
     }
@@ -177,7 +177,7 @@ impl<W: Clone + PartialEq> Watches<W> {
 impl<W: Clone> List<W> {
     fn asked_for(&self) -> Vec<(W, Duration)> {
         let asked = self.entries.iter().filter(|entry| !entry.refused);
-        asked.map(|entry| (entry.what.clone(), entry.interval)).collect()
+        asked.map(|entry| (entry.value.clone(), entry.interval)).collect()
     }
 }
 

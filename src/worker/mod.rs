@@ -141,13 +141,13 @@ pub struct Progress<W> {
     /// Steps in all.
     pub total: u64,
     /// The present step.
-    pub what: W,
+    pub step: W,
 }
 
 impl<W> Progress<W> {
     /// The same progress, with what is being done in other terms.
     pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
-        Progress { done: self.done, total: self.total, what: terms(self.what) }
+        Progress { done: self.done, total: self.total, step: terms(self.step) }
     }
 }
 

@@ -272,7 +272,7 @@ fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
         assert!(begun.elapsed() < Duration::from_secs(10), "{options:?}");
         let JobError::Device(error) = error else { panic!("{error}") };
         let is_expected = match error {
-            Error::NoReply { asked: RequestedItem::Parameter(_), .. } => options.contains(&"--silent-after=9"),
+            Error::NoReply { requested: RequestedItem::Parameter(_), .. } => options.contains(&"--silent-after=9"),
             Error::Link(_) => options.contains(&"--vanish-after=9"),
             Error::Damaged { .. } | Error::NeverSilent => options.contains(&"--garbage"),
             _ => false,

@@ -54,11 +54,11 @@ impl Desk {
     }
 
     pub(crate) fn shown(&self) -> &AnyDevice {
-        self.studio.shown().unwrap()
+        self.studio.selected_device().unwrap()
     }
 
     pub(crate) fn encoder(&self) -> &Encoder {
-        self.studio.shown_as().unwrap()
+        self.studio.selected_model().unwrap()
     }
 
     pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {

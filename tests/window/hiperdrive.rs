@@ -99,22 +99,22 @@ fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevi
 /// Reviews what is edited and writes it.
 #[track_caller]
 pub(crate) fn write(desk: &mut Desk) {
-    let action = desk.studio.shown().unwrap().command(DeviceCommand::Review);
+    let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     write_as_shown(desk);
 }
 
 #[track_caller]
 fn write_as_shown(desk: &mut Desk) {
-    let stage = |studio: &Studio| studio.shown().unwrap().sheet().map(|sheet| sheet.stage);
+    let stage = |studio: &Studio| studio.selected_device().unwrap().sheet().map(|sheet| sheet.stage);
     desk.until("there is a plan", |studio| {
-        matches!(stage(studio), Some(Stage::Ready(_))) && studio.shown().unwrap().is_ready()
+        matches!(stage(studio), Some(Stage::Ready(_))) && studio.selected_device().unwrap().is_ready()
     });
     let Some(Stage::Ready(plan)) = stage(&desk.studio) else { panic!() };
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
     desk.until("it is written", |studio| {
-        matches!(stage(studio), Some(Stage::Done { .. })) && studio.shown().unwrap().is_ready()
+        matches!(stage(studio), Some(Stage::Done { .. })) && studio.selected_device().unwrap().is_ready()
     });
     desk.act(Action::Review(id, ReviewAction::Close));
 }
@@ -172,13 +172,14 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
     assert!(matches!(unit(&desk).marks()[..], [Mark::Outside { position: 0, .. }]), "{:?}", unit(&desk).marks());
-    let action = desk.studio.shown().unwrap().command(DeviceCommand::Review);
+    let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     desk.until("it is refused", |studio| {
-        let sheet = studio.shown().unwrap().sheet();
+        let sheet = studio.selected_device().unwrap().sheet();
         sheet.is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { begun: false, .. }))
     });
-    let Some(Stage::Failed { texts, .. }) = desk.studio.shown().unwrap().sheet().map(|sheet| sheet.stage) else {
+    let Some(Stage::Failed { texts, .. }) = desk.studio.selected_device().unwrap().sheet().map(|sheet| sheet.stage)
+    else {
         panic!()
     };
     assert_eq!(texts[0].id(), "hd_plan.outside");

@@ -51,7 +51,7 @@ fn edit(desk: &mut Desk, edit: Edit) {
 }
 
 fn wish(desk: &mut Desk, wish: DeviceCommand) {
-    let action = desk.studio.shown().unwrap().command(wish);
+    let action = desk.studio.selected_device().unwrap().command(wish);
     desk.act(action);
 }
 
@@ -69,13 +69,13 @@ fn a_layout_needs_no_device() {
     assert_eq!(own.designer.family().unwrap().key, "ahm36");
     // Reference section 8: AHM36, MT 123h, ST 2A5Bh, binary and Gray.
     act(&mut desk, Ssi::Try(Try::Place(0x123, 0x2A5B)));
-    assert_eq!(encoder(&desk).shown().frame, 0x091_D4B6);
+    assert_eq!(encoder(&desk).displayed_frame().frame, 0x091_D4B6);
     act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
     assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
-    assert_eq!(encoder(&desk).shown().frame, 0x0D9_3EEC, "the position stays");
+    assert_eq!(encoder(&desk).displayed_frame().frame, 0x0D9_3EEC, "the position stays");
     act(&mut desk, Ssi::Try(Try::Bits("000110110010011111011101100".to_owned())));
     assert_eq!(
-        encoder(&desk).shown().place,
+        encoder(&desk).displayed_frame().place,
         Some((
             0x123 << 14 | 0x2A5B,
             Location::Shaft { turns: 0x123, steps: 0x2A5B, degrees: 10843.0 * 360.0 / 16384.0 }
@@ -276,7 +276,7 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
     // Nothing is written, and that is said.
     wish(&mut desk, DeviceCommand::Review);
-    assert!(!desk.studio.shown().unwrap().is_reviewing());
+    assert!(!desk.studio.selected_device().unwrap().is_reviewing());
 }
 
 #[test]
@@ -333,9 +333,9 @@ fn an_adapter_without_ssi_is_named() {
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.open("sim:?version=2");
     desk.until("it is told", |studio| {
-        studio.shown().is_some_and(|own| matches!(own.phase(), Phase::Silent(_) | Phase::Lost(_)))
+        studio.selected_device().is_some_and(|own| matches!(own.phase(), Phase::Silent(_) | Phase::Lost(_)))
     });
-    let Phase::Silent(why) = desk.studio.shown().unwrap().phase() else { panic!() };
+    let Phase::Silent(why) = desk.studio.selected_device().unwrap().phase() else { panic!() };
     assert_eq!(why.id(), "adapter.version");
 }
 

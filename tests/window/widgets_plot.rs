@@ -149,7 +149,7 @@ fn lines_are_hidden_and_seen_in_other_units() {
     let speed = screen.say("recorder.speed");
     screen.harness.get_by_role_and_label(Role::CheckBox, &speed).click();
     screen.steps();
-    assert_eq!(recorder(&screen).shown().count(), 1);
+    assert_eq!(recorder(&screen).visible_series().count(), 1);
     let degrees = format!("{}: °", screen.say("recorder.position"));
     screen.harness.get_by_role_and_label(Role::RadioButton, &degrees).click();
     screen.steps();

@@ -114,7 +114,7 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn stop(&mut self, services: &mut Services);
     #[doc(hidden)]
-    fn lose(&mut self, why: Text, services: &mut Services);
+    fn connection_lost(&mut self, why: Text, services: &mut Services);
     #[doc(hidden)]
     fn let_go(&mut self, end: JobEnd, services: &mut Services);
     #[doc(hidden)]
@@ -320,8 +320,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::stop(self, services);
     }
 
-    fn lose(&mut self, why: Text, services: &mut Services) {
-        SessionEvents::lose(self, why, services);
+    fn connection_lost(&mut self, why: Text, services: &mut Services) {
+        SessionEvents::connection_lost(self, why, services);
     }
 
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {

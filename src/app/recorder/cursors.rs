@@ -116,7 +116,7 @@ impl Recorder {
     /// it stands where it was put.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
         let nearest = |time: Time| {
-            let samples = self.shown().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
+            let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
             samples.min_by_key(|own| own.nanoseconds_since(time).saturating_abs()).unwrap_or(time)
         };
         let time = time.map(nearest);

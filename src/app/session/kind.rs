@@ -66,7 +66,7 @@ pub trait Kind: Device + Sized {
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
     /// The wire itself failed, so that nothing more can be asked over it: why.
-    fn loss(error: &Self::Error) -> Option<Text>;
+    fn connection_error(error: &Self::Error) -> Option<Text>;
 
     /// Returns the last message about the job in an event of a released session.
     fn job_endings(event: &Event<Self>) -> Option<JobEnding> {

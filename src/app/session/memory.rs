@@ -199,7 +199,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn begin_write(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         let Some(review) = self.review_mut() else { return false };
         let ReviewState::Ready(prepared) = &review.state else { return false };
-        let (prepared, what) = (prepared.clone(), review.what.clone());
+        let (prepared, what) = (prepared.clone(), review.title.clone());
         review.state = ReviewState::Writing(prepared.clone());
         let begins = self.try_submit(job, services);
         if begins {

@@ -289,7 +289,7 @@ impl<D: Kind> Session<D> {
     }
 
     /// The connection is gone.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
+    pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // It stands where the session is shown.
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.let_go(JobEnd::Failed(why.clone()), services);

@@ -142,7 +142,7 @@ mod tests {
     use crate::analysis::history::Flags;
 
     fn names(scope: &Scope) -> Vec<&'static str> {
-        scope.recorder.shown().map(|line| line.name.id()).collect()
+        scope.recorder.visible_series().map(|line| line.name.id()).collect()
     }
 
     fn value(scope: &Scope, line: usize, nanoseconds: i64) -> f64 {

@@ -50,7 +50,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
                     ui.label(RichText::new(icon).color(colour));
                 });
                 row.col(|ui| {
-                    ui.label(theme.words(&job.what)).on_hover_text(&job.about);
+                    ui.label(theme.words(&job.title)).on_hover_text(&job.about);
                 });
                 row.col(|ui| {
                     ui.label(RichText::new(&words).color(colour)).on_hover_text(&words);

@@ -32,7 +32,7 @@ pub(in crate::ui) fn live_ui(
     views: &mut Views,
     actions: &mut Vec<Action>,
 ) {
-    let Some(device) = studio.shown() else {
+    let Some(device) = studio.selected_device() else {
         empty(ui, theme, &theme.say("live.nothing"), None);
         return;
     };

@@ -70,11 +70,11 @@ impl Reduced {
 
     /// Makes the pictures of what is shown, as far as something has changed.
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
-        let shown = |id: &LineId| recorder.shown().any(|line| line.id == *id);
+        let shown = |id: &LineId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
         self.made.retain(|(id, _)| shown(id));
         let mut cuts: Vec<(PictureInputs, GridCut)> = Vec::new();
-        for line in recorder.shown() {
+        for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
             let wanted = PictureInputs { samples: recorder.stamp(line), all: history.all(), grid: *grid };
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
@@ -150,7 +150,7 @@ fn letters(lanes: &[Lane]) -> usize {
 
 /// The lines of each lane.
 fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
-    let shown: Vec<&Series> = recorder.shown().collect();
+    let shown: Vec<&Series> = recorder.visible_series().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
 }
 

@@ -121,7 +121,7 @@ fn chart_ui(
     if size.x < 80.0 {
         return None;
     }
-    if recorder.is_empty() || recorder.shown().next().is_none() {
+    if recorder.is_empty() || recorder.visible_series().next().is_none() {
         let words = if recorder.is_empty() { invitation.to_owned() } else { theme.say("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));

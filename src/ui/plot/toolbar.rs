@@ -94,7 +94,7 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
 
 fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
     let icon = icons::LIGHTNING;
-    let lines = context.recorder.shown().next().is_some();
+    let lines = context.recorder.visible_series().next().is_some();
     if !lines {
         icon_button(ui, false, icon, &context.theme.say("recorder.trigger"));
         return;

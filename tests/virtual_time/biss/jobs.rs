@@ -230,7 +230,7 @@ fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
     let mut told = Vec::new();
     let end = bench.session.run(JobId::default(), BissJob::Save, &mut |event| {
         if let Event::Progress(_, progress) = event {
-            told.push((progress.done, progress.total, progress.what));
+            told.push((progress.done, progress.total, progress.step));
         }
     });
     assert!(matches!(end, Event::Finished(..)));
@@ -299,7 +299,7 @@ fn samples_and_watched_registers_come_one_by_one() {
         assert!(first.at < second.at && first.position() < second.position(), "{way:?}");
         let watched = bench.session.watch_value(&"0x66".parse().unwrap()).unwrap();
         let Watched::Sample(Sample::Watched(reading)) = watched else { panic!("{watched:?}") };
-        assert_eq!((reading.what.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
+        assert_eq!((reading.range.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
         assert!(matches!(refused, Watched::Refused(Sample::Watched(_))), "{refused:?}");
         // Manual 6.5: data are not accessed while the shaft turns.

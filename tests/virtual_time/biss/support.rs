@@ -303,7 +303,7 @@ impl Bench {
         told: &mut dyn FnMut(&ProcedureProgress),
     ) -> Result<BissOutput, Box<JobError>> {
         let event = self.session.run(JobId::default(), job, &mut |event| {
-            if let Event::Progress(_, Progress { what: JobStep::Operation { progress, .. }, .. }) = event {
+            if let Event::Progress(_, Progress { step: JobStep::Operation { progress, .. }, .. }) = event {
                 told(&progress);
             }
         });

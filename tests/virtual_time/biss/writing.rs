@@ -74,7 +74,7 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
     assert_eq!(written.outcomes, [Outcome::Stored { registers: 3 }]);
     let entry = &history(&mut bench)[0];
     assert_eq!(
-        (entry.what.as_str(), entry.planned_cycles),
+        (entry.description.as_str(), entry.planned_cycles),
         ("0x24:0x10+2 OEM data: 0000 → 0102, 0x24:0x30 OEM data: 00 → 03", 1)
     );
     let conclusion = entry.conclusion.as_ref().unwrap();

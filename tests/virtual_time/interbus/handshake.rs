@@ -235,7 +235,7 @@ fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
         let (ended, _, sent) = carry_out(script, worked_example());
         let interrupted = ended.unwrap_err();
         let asked = RequestedItem::Write { register: 0, word: STEPS };
-        assert_eq!(interrupted.cause, Error::Exception { asked, exception: Exception::new(code) });
+        assert_eq!(interrupted.cause, Error::Exception { requested: asked, exception: Exception::new(code) });
         assert_eq!(interrupted.left, EndState::AsFound, "{code:02X}");
         assert_eq!(sent.contains(&STEPS), wrote, "{sent:08X?}");
         assert!(sent.ends_with(&[RUN, 0]), "{code:02X}: {sent:08X?}");

@@ -80,10 +80,10 @@ pub(super) fn begun(link: &str) -> Desk {
 #[track_caller]
 pub(super) fn consent(desk: &mut Desk) {
     desk.until("the plan is there", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     until_ready(desk);
-    let Stage::Ready(plan) = desk.studio.shown().unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    let Stage::Ready(plan) = desk.studio.selected_device().unwrap().sheet().unwrap().stage else { panic!("no plan") };
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
@@ -93,7 +93,7 @@ pub(super) fn consent(desk: &mut Desk) {
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
     desk.until("it is written", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
     });
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Close));
@@ -163,14 +163,14 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
             number => ParameterNumber::of_drive(number, unit(desk).drive()).unwrap(),
         };
         let target = unit(desk).target.clone().unwrap();
-        target.with(|station| station.hinder(Some((own, hindrance))));
+        target.with(|station| station.set_write_fault(Some((own, hindrance))));
         let step = axis(desk).step();
         run(desk, Run::Press(Button::Do));
         consent(desk);
         desk.until("it has failed", |studio| {
-            studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
+            studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
         });
-        target.with(|station| station.hinder(None));
+        target.with(|station| station.set_write_fault(None));
         let id = unit(desk).session.id;
         desk.act(Action::Review(id, ReviewAction::Close));
         desk.until("it can be asked", |studio| studio.hiperdrive().is_some_and(|own| !own.session.is_busy()));

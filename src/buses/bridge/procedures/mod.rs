@@ -118,9 +118,9 @@ pub enum AdapterError {
         cause: BodyError,
     },
     /// It answers another question.
-    #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", asked.byte(), got.byte())]
+    #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", requested.byte(), got.byte())]
     Other {
-        asked: Operation,
+        requested: Operation,
         /// The operation of the reply.
         got: Operation,
     },
@@ -135,8 +135,8 @@ pub(crate) enum Failure {
 
 impl AdapterError {
     /// Returns the error for a reply to another operation than the one requested.
-    pub fn other(asked: Operation, reply: &Reply) -> Self {
-        AdapterError::Other { asked, got: reply.operation() }
+    pub fn other(requested: Operation, reply: &Reply) -> Self {
+        AdapterError::Other { requested, got: reply.operation() }
     }
 }
 

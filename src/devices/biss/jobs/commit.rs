@@ -22,9 +22,9 @@ pub(super) fn commit(
     let report = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
-        tell(Progress { done, total, what: JobStep::Operation { item, progress: Box::new(news) } });
+        tell(Progress { done, total, step: JobStep::Operation { item, progress: Box::new(news) } });
     };
-    encoder.know(context)?;
+    encoder.ensure_identified(context)?;
     let mut master = encoder.master(context);
     let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, report)?;
     let ended = write_plan(&store, is_virtual, &agreed, &mut write, &mut |_| {});

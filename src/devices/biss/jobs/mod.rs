@@ -61,7 +61,7 @@ impl Biss {
     }
 
     /// Identifies the encoder if it is not known in this session yet: frame and registers depend on it.
-    fn know(&mut self, context: &mut SessionContext) -> Result<(), Error> {
+    fn ensure_identified(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
             identify(&mut self.master(context), &types)?;
@@ -117,7 +117,7 @@ impl Device for Biss {
         tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<BissOutput, JobError> {
         let types = self.types.clone();
-        let steps = &mut |done, total, what| tell(JobReport::Progress(Progress { done, total, what }));
+        let steps = &mut |done, total, what| tell(JobReport::Progress(Progress { done, total, step: what }));
         Ok(match job {
             BissJob::Survey => {
                 let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
@@ -125,7 +125,7 @@ impl Device for Biss {
             }
             BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.master(context), &types)?)),
             BissJob::Status => {
-                self.know(context)?;
+                self.ensure_identified(context)?;
                 BissOutput::Status(Box::new(read_status(&mut self.master(context))?))
             }
             BissJob::Check => {
@@ -139,7 +139,7 @@ impl Device for Biss {
                 BissOutput::Check(procedures::check::check(&mut self.master(context), &types, wear, progress)?)
             }
             BissJob::Position => {
-                self.know(context)?;
+                self.ensure_identified(context)?;
                 BissOutput::Position(read_position(&mut self.master(context))?)
             }
             BissJob::Read(range) => self.read(context, range.start(), range.count())?,
@@ -148,7 +148,7 @@ impl Device for Biss {
                 self.read(context, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE)?
             }
             BissJob::ReadArea(area) => {
-                self.know(context)?;
+                self.ensure_identified(context)?;
                 let first = area.first;
                 let total = area.banks().count() as u64;
                 let report = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
@@ -188,7 +188,7 @@ impl Device for Biss {
     }
 
     fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
-        self.know(context)?;
+        self.ensure_identified(context)?;
         if let Some(period_us) = self.streamed_us
             && let Some(run) = self.master(context).frames(period_us)?
         {
@@ -199,7 +199,7 @@ impl Device for Biss {
 
     fn watch(&mut self, context: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
         // Determines the data areas, which must not be read while the shaft turns.
-        self.know(context)?;
+        self.ensure_identified(context)?;
         let reading = read_watched(&mut self.master(context), *what)?;
         let refused = reading.value.is_err();
         let sample = Sample::Watched(reading);
@@ -231,7 +231,7 @@ impl Biss {
         start: RegisterAddress,
         count: u8,
     ) -> Result<BissOutput, JobError> {
-        self.know(context)?;
+        self.ensure_identified(context)?;
         let bytes = read_registers(&mut self.master(context), start, count)?;
         // Direct registers hold nothing that is entered first and saved later.
         let unsaved = if start.bank().is_some() { self.unsaved(context)? } else { None };

@@ -44,7 +44,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
 
 /// The line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
-    let way = way(url)?;
+    let way = transport(url)?;
     let is_virtual = url.scheme == Scheme::Sim;
     if is_virtual {
         check_virtual(&url.query, way)?;
@@ -65,7 +65,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     Ok((station, Simulated::new(way, &settings)?))
 }
 
-fn way(url: &LinkUrl) -> Result<Transport, OpenError> {
+fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     const WAYS: Words<Transport> = Words(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
         Scheme::Bridge => Ok(Transport::Adapter),

@@ -78,7 +78,7 @@ fn state(
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<crate::devices::biss::profile::DeviceState, Error> {
     let total = banks.len() as u64;
-    let report = &mut |done, bank| tell(Progress { done, total, what: JobStep::Bank(bank) });
+    let report = &mut |done, bank| tell(Progress { done, total, step: JobStep::Bank(bank) });
     read_state(master, identity, banks, report)
 }
 

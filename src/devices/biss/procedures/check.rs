@@ -101,7 +101,7 @@ pub enum CheckFinding {
     /// Readings of the position that were asked for, and frames or replies that came damaged.
     Readings {
         /// Number requested.
-        asked: u32,
+        requested: u32,
         /// Number damaged.
         damaged: u64,
     },
@@ -278,7 +278,10 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
-    Ok(BissStepResult::of(CheckStep::Readings, vec![(verdict, CheckFinding::Readings { asked: READINGS, damaged })]))
+    Ok(BissStepResult::of(
+        CheckStep::Readings,
+        vec![(verdict, CheckFinding::Readings { requested: READINGS, damaged })],
+    ))
 }
 
 fn worn(wear: Wear) -> Option<BissStepResult> {

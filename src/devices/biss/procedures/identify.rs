@@ -59,7 +59,7 @@ pub enum FrameSource {
 
 impl FrameSource {
     /// Returns whether it states how many bits of a position are turns.
-    pub const fn is_told(self) -> bool {
+    pub const fn is_known(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
             FrameSource::Checksum | FrameSource::Assumed => false,
@@ -115,7 +115,7 @@ impl Identity {
     }
 
     fn is_told(&self) -> bool {
-        self.source.is_told()
+        self.source.is_known()
     }
 }
 

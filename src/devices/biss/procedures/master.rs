@@ -124,8 +124,8 @@ impl<'a> Master<'a> {
     /// When every try failed, when there is no such register, or when the user wished an end.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
         self.be_ready()?;
-        let asked = RequestedItem::Read(address);
-        match self.read_confirmed(asked, |master| master.read_once(address)) {
+        let requested = RequestedItem::Read(address);
+        match self.read_confirmed(requested, |master| master.read_once(address)) {
             Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
             Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose(failed)),
             result => result,
@@ -153,7 +153,7 @@ impl<'a> Master<'a> {
     /// taken after five tries. With [`Error::Cancelled`] it was not.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.be_ready()?;
-        let asked = RequestedItem::Write(address, value);
+        let requested = RequestedItem::Write(address, value);
         let unclear = |cause| Error::Unclear { address, value, cause: Box::new(cause) };
         let mut tries = 0;
         loop {
@@ -178,7 +178,7 @@ impl<'a> Master<'a> {
                 }
                 Err(trouble) => trouble,
             };
-            let failed = self.failed(asked, tries, &trouble);
+            let failed = self.failed(requested, tries, &trouble);
             let failure = self.may_try_again(tries, trouble, failed.clone());
             if !self.station.tells_back(address) {
                 return Err(unclear(failed));
@@ -237,15 +237,15 @@ impl<'a> Master<'a> {
     }
 
     fn probe_order(&mut self) -> Result<(), Error> {
-        let asked = RequestedItem::Read(asked_register(Request::PROBE_REGISTER));
-        let answer = self.read_confirmed(asked, |master| master.probe_once())?;
+        let requested = RequestedItem::Read(asked_register(Request::PROBE_REGISTER));
+        let answer = self.read_confirmed(requested, |master| master.probe_once())?;
         let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
         self.station.order = Some(order);
         Ok(())
     }
 
     /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
-    fn ask<T>(&mut self, asked: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
+    fn ask<T>(&mut self, requested: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -255,7 +255,7 @@ impl<'a> Master<'a> {
                     return Ok(answer);
                 }
                 Err(trouble) => {
-                    let failed = self.failed(asked, tries, &trouble);
+                    let failed = self.failed(requested, tries, &trouble);
                     self.may_try_again(tries, trouble, failed)?;
                 }
             }
@@ -265,28 +265,28 @@ impl<'a> Master<'a> {
     /// Asks like [`ask`](Self::ask); on a line that has damaged something before, the reply has to come twice.
     fn read_confirmed(
         &mut self,
-        asked: RequestedItem,
+        requested: RequestedItem,
         mut once: impl FnMut(&mut Self) -> Attempt<u8>,
     ) -> Result<u8, Error> {
-        let mut value = self.ask(asked, &mut once)?;
+        let mut value = self.ask(requested, &mut once)?;
         for _ in 0..TRIES {
             if !self.station.reads_twice() {
                 return Ok(value);
             }
-            let again = self.ask(asked, &mut once)?;
+            let again = self.ask(requested, &mut once)?;
             if again == value {
                 return Ok(value);
             }
             value = again;
         }
-        Err(Error::Damaged { asked, tries: TRIES, cause: Damage::Inconsistent })
+        Err(Error::Damaged { requested, tries: TRIES, cause: Damage::Inconsistent })
     }
 
     /// Returns the error of a failed attempt that is the last.
-    fn failed(&self, asked: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
+    fn failed(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
-            ExchangeError::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
-            ExchangeError::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
+            ExchangeError::Silence { echo_heard } => Error::NoReply { requested, tries, echo_heard: *echo_heard },
+            ExchangeError::Damage(cause) => Error::Damaged { requested, tries, cause: cause.clone() },
             ExchangeError::NoFrame(cause) => self.no_frame(*cause, tries),
         }
     }

@@ -252,7 +252,7 @@ impl Station {
 
     /// Returns whether the number of turn bits is known.
     pub(super) fn is_split_known(&self) -> bool {
-        self.source.is_none_or(FrameSource::is_told)
+        self.source.is_none_or(FrameSource::is_known)
     }
 
     /// Once is not enough: a sum lets some pairs of flipped bits through.

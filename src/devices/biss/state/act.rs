@@ -104,7 +104,7 @@ impl Encoder {
     }
 
     /// Returns the part of an area that can be shown: of a profile what it contains, of an encoder only the whole.
-    pub fn shown(&self, area: &Area) -> Option<Area> {
+    pub fn visible_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
 

@@ -59,7 +59,7 @@ impl Kind for Biss {
         explained::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
 }

@@ -78,7 +78,7 @@ impl Record {
         match self.stream {
             // Whatever was dropped, the numbers of the frames show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
-            _ => self.track.lose(dropped),
+            _ => self.track.note_dropped(dropped),
         }
         // Thousands a second, with the same widths: recorded together.
         let mut batch = Batch::default();
@@ -165,7 +165,7 @@ impl Record {
     }
 
     fn add_watched(&mut self, reading: &WatchedReading) {
-        let watched = self.track.watched().into_iter().find(|own| own.address == reading.what.start());
+        let watched = self.track.watched().into_iter().find(|own| own.address == reading.range.start());
         let Some(register) = watched else { return };
         let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
         let never = match &reading.value {
@@ -346,7 +346,7 @@ mod tests {
             (Error::NotWatched { address }, Some("recorder.data")),
             (Error::NeverSilent, None),
         ] {
-            let reading = WatchedReading { at: Moment::START, what, value: Err(error) };
+            let reading = WatchedReading { at: Moment::START, range: what, value: Err(error) };
             record.add(vec![Sample::Watched(reading)], 0);
             let line = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
             assert_eq!(line.unwrap().remark, said.map(|id| TEXTS.text(id)));

@@ -55,7 +55,7 @@ impl Control {
     }
 
     /// The device and its drives, while drives may be moved.
-    pub(super) fn held(&self) -> Option<Identity> {
+    pub(super) fn controlled_device(&self) -> Option<Identity> {
         self.open.as_ref().and(self.identity.clone())
     }
 
@@ -131,7 +131,7 @@ impl Hiperdrive {
     }
 
     /// Stops all drives and closes the cyclic connection.
-    pub(super) fn give(&mut self, context: &mut SessionContext) -> Result<(), Error> {
+    pub(super) fn release(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
         let closed = self.master(context).forward_close(&close);
@@ -142,7 +142,7 @@ impl Hiperdrive {
     /// The session ends: drives that are in control are stopped and let go, and a device that had a master is told.
     pub(super) fn end(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
-        if let Err(why) = self.give(context) {
+        if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
         // Nothing answers that, and a device that is gone needs not to know.
@@ -170,7 +170,7 @@ impl Hiperdrive {
         }
         self.remark = Some(DeviceMessage::ControlLost);
         // It may have ended there already, or there is no answer: it then ends there by itself.
-        if let Err(why) = self.give(context) {
+        if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
     }

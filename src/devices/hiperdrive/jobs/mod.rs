@@ -124,7 +124,7 @@ impl Device for Hiperdrive {
     ) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
         self.let_go_of_lost(context);
-        let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, what }));
+        let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, step: what }));
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
             HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)),
@@ -151,7 +151,7 @@ impl Device for Hiperdrive {
                 Out::Taken
             }
             HiperdriveJob::Give => {
-                self.give(context)?;
+                self.release(context)?;
                 Out::Given
             }
             HiperdriveJob::Watch(drive) => {
@@ -184,7 +184,7 @@ impl Device for Hiperdrive {
     }
 
     fn idle_interval(&self) -> Duration {
-        if self.control.held().is_some() { IDLE_IN_CONTROL } else { IDLE }
+        if self.control.controlled_device().is_some() { IDLE_IN_CONTROL } else { IDLE }
     }
 
     fn idle(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {

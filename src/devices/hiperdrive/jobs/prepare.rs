@@ -20,7 +20,7 @@ pub(super) fn prepare(
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let mut master = device.master(context);
     let report = &mut |done, total, number| {
-        tell(JobReport::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
+        tell(JobReport::Progress(Progress { done, total, step: JobStep::Parameter(number) }));
     };
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
     let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {

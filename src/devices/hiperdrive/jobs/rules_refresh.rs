@@ -44,7 +44,7 @@ impl Hiperdrive {
     /// Reads the parameters that limit the motion, if that is due while drives may be moved. If they cannot be read,
     /// nothing moves until they can, which is reported once.
     pub(super) fn look_at_rules(&mut self, context: &mut SessionContext) {
-        let Some(identity) = self.control.held() else { return };
+        let Some(identity) = self.control.controlled_device() else { return };
         if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {
             return;
         }

@@ -76,7 +76,7 @@ pub enum CheckFinding {
     /// A value was read so often, within so long a reply each.
     Replies {
         /// Number of requests.
-        asked: u32,
+        requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
         /// Frames that arrived after their time limit.
@@ -237,7 +237,7 @@ fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     }
     let late = master.station().late();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
-    let replies = CheckFinding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
+    let replies = CheckFinding::Replies { requested: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
     Ok(HiperdriveStepResult::of(CheckStep::Messages, vec![(verdict, replies)]))
 }
 

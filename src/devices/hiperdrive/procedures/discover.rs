@@ -43,7 +43,7 @@ pub fn discover(shout: &mut dyn Broadcast, clock: &dyn Clock, cancel: &Cancel) -
         if cancel.is_requested() {
             return Err(Error::Cancelled);
         }
-        let Some(address) = shout.hear((clock.now() + SLICE).min(until), &mut packet)? else { continue };
+        let Some(address) = shout.receive((clock.now() + SLICE).min(until), &mut packet)? else { continue };
         let identity =
             answer(&packet).map(|identity| DiscoveredDevice { address, port: identity.socket.port, identity });
         found

@@ -31,7 +31,7 @@ impl Identity {
     }
 
     /// All that a device keeps of itself and of the drives that are plugged in.
-    pub fn kept(&self) -> impl Iterator<Item = ParameterNumber> {
+    pub fn stored_parameters(&self) -> impl Iterator<Item = ParameterNumber> {
         let rows = || PARAMETERS.iter().filter(|row| Image::holds(row));
         let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
         let drives = self
@@ -48,7 +48,7 @@ impl Identity {
 /// [`Error::NotHiperdrive`]; the way.
 pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
     let identity = identify(master, progress)?;
-    let image = read_image(master, identity.kept().collect(), progress)?;
+    let image = read_image(master, identity.stored_parameters().collect(), progress)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
@@ -63,7 +63,7 @@ pub fn read_state(
     progress: IdentifyProgress<'_>,
 ) -> Result<(Identity, DeviceState), Error> {
     let identity = identify(master, progress)?;
-    let mut numbers: Vec<ParameterNumber> = identity.kept().chain(beside).collect();
+    let mut numbers: Vec<ParameterNumber> = identity.stored_parameters().chain(beside).collect();
     numbers.sort();
     numbers.dedup();
     let image = read_image(master, numbers, progress)?;

@@ -9,9 +9,9 @@ use std::time::Duration;
 use super::axis::{Axis, SpindleLoad};
 use super::config::Config;
 use super::drive::Drive;
-use super::hindrance::{ActiveWriteFault, WriteFault};
 use super::memory::Memory;
 use super::parameters::Refused;
+use super::write_fault::{ActiveWriteFault, WriteFault};
 use crate::devices::hiperdrive::protocol::{
     Access, Actual, DriveNumber, Family, InImage, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Topology,
     Travel, Value, Variant,
@@ -158,7 +158,7 @@ impl Station {
     }
 
     /// Injects a failure from now on; `None` removes it and repairs a lost line.
-    pub const fn hinder(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
+    pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
         self.hindered = ActiveWriteFault::by(what);
     }
 

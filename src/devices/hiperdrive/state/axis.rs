@@ -10,14 +10,14 @@
 //! but one. The manual does not promise that what was not saved is gone without supply: what is wanted back is written back.
 
 mod act;
-mod chain;
 mod differences;
+mod drive_facts;
 mod entries;
 mod follow;
 mod gate;
 mod report;
-mod seen;
 mod standstill;
+mod step_outcomes;
 mod supply;
 mod test_targets;
 pub mod words;
@@ -26,14 +26,14 @@ pub mod words;
 mod tests;
 
 pub use act::{AxisAction, Button, DriveRequest};
+pub use drive_facts::DriveFacts;
 pub use entries::{Entries, Preview, Reference};
 pub use report::{Device, end_lines, report};
-pub use seen::DriveFacts;
 pub use supply::{Power, Restart};
 pub use test_targets::{Outcome, TestTarget, Travel};
 
-use chain::{Origin, Preconditions, StepOutcomes};
 use standstill::Standstill;
+use step_outcomes::{Origin, Preconditions, StepOutcomes};
 
 use super::ruler::Ruler;
 use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};

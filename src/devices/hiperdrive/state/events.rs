@@ -84,7 +84,7 @@ impl Kind for Hiperdrive {
         words::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         words::loss(error)
     }
 }

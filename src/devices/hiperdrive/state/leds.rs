@@ -114,7 +114,7 @@ impl Leds {
     }
 
     /// Returns the state of an LED in words.
-    pub fn shown(&self, lamp: Led) -> Text {
+    pub fn state_text(&self, lamp: Led) -> Text {
         TEXTS.text(match lamp {
             Led::Drives => match self.drives {
                 DriveLight::Off => "hd_led.off",

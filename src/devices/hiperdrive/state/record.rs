@@ -36,7 +36,7 @@ impl Record {
 
     /// Records that readings were dropped before the next ones.
     pub(super) fn lose(&mut self, dropped: u64) {
-        self.track.lose(dropped);
+        self.track.note_dropped(dropped);
     }
 
     /// Takes a reading, with the drive's target at that time.

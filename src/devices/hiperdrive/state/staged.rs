@@ -79,7 +79,7 @@ impl Staged {
     }
 
     /// The drives are these: what they turn bounds their limits from now on.
-    pub(super) fn know(&mut self, families: Families) {
+    pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }
 
@@ -90,7 +90,7 @@ impl Staged {
             self.base = Some(image);
             return;
         }
-        let edits = self.kept();
+        let edits = self.saved_edits();
         self.waiting.clear();
         self.history.forget();
         (self.base, self.wanted) = (Some(image.clone()), Some(image));
@@ -188,7 +188,7 @@ impl Staged {
     }
 
     /// The edits, for a draft on disk; also those that wait for their parameter to be read.
-    pub fn kept(&self) -> Vec<SavedEdit> {
+    pub fn saved_edits(&self) -> Vec<SavedEdit> {
         let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()
     }

@@ -30,7 +30,7 @@ impl Unit {
             services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
         }
         let drives = survey.identity.drives.iter();
-        self.staged.know(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());
+        self.staged.set_families(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();

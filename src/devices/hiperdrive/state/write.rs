@@ -101,7 +101,7 @@ impl Saved for Unit {
         if !missing.is_empty() {
             return Some(Err(missing));
         }
-        let kept = survey.identity.kept().filter_map(|number| Some((number, base.get(number)?)));
+        let kept = survey.identity.stored_parameters().filter_map(|number| Some((number, base.get(number)?)));
         let image = Image { values: kept.collect() };
         let profile = HiperdriveProfile::of(survey.identity.profile(), image);
         let remarks = without_edits(self.staged.count()).into_iter().collect();

@@ -73,7 +73,7 @@ fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
 
 /// Pressed, it shows the next of what it can.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
-    let shown = theme.words(&leds.shown(lamp));
+    let shown = theme.words(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());
     let middle = pos2(rect.left() + 24.0, rect.center().y);

@@ -204,7 +204,7 @@ impl Hiperface {
             }
             HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, context, &commit, steps)?),
             HiperfaceJob::Survey => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: JobStep::Field(done) });
+                let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
                 let survey = procedures::survey(&mut self.master(context), &types, progress)?;
                 self.identified(context, &survey.identity);
                 HiperfaceOutput::Surveyed(Box::new(survey))
@@ -228,7 +228,7 @@ impl Hiperface {
             }
             HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(context), item)?),
             HiperfaceJob::Save(options) => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: JobStep::Field(done) });
+                let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
                 let profile = procedures::save(&mut self.master(context), &types, options, progress)?;
                 let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
                 let locked = locked.map(|field| (field.number, field.status.code())).collect();
@@ -253,7 +253,7 @@ impl Hiperface {
 fn message_of(news: SearchProgress<'_>) -> JobReport<DeviceMessage, JobStep> {
     match news {
         SearchProgress::Trying { done, total, attempt } => {
-            JobReport::Progress(Progress { done, total, what: JobStep::Attempt(attempt.clone()) })
+            JobReport::Progress(Progress { done, total, step: JobStep::Attempt(attempt.clone()) })
         }
         SearchProgress::Found(found) => JobReport::Remark(DeviceMessage::Found(found.clone())),
     }

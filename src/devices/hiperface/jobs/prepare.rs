@@ -125,7 +125,7 @@ fn restore(
     // Known before the fields are read.
     check_allowed(profile, &serial_number, encoder_type, &options)?;
     let memory = read_memory(master)?;
-    let progress = &mut |done, total| tell(Progress { done, total, what: JobStep::Field(done) });
+    let progress = &mut |done, total| tell(Progress { done, total, step: JobStep::Field(done) });
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     let Restore { common, unknown_fields, created_left } = restore;

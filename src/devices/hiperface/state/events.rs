@@ -64,7 +64,7 @@ impl Kind for Hiperface {
         explained::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
 }
@@ -289,7 +289,7 @@ impl SessionEvents for Encoder {
             return;
         }
         self.session.save_to = None;
-        let gone = Hiperface::loss(error);
+        let gone = Hiperface::connection_error(error);
         self.follow_what_was_done(error, services);
         let silent = gone.is_none() && self.is_silence(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
@@ -302,7 +302,7 @@ impl SessionEvents for Encoder {
                 if is_shown {
                     services.note(Severity::Error, texts, Some(&self.session.name()));
                 }
-                self.lose(why, services);
+                self.connection_lost(why, services);
             }
             None if silent => self.session.fall_silent(texts, services),
             None => {

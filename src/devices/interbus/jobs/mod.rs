@@ -171,7 +171,8 @@ impl Interbus {
         let tell = std::cell::RefCell::new(tell);
         let mut master =
             self.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
-        let mut steps = |done, total, what| (tell.borrow_mut())(JobReport::Progress(Progress { done, total, what }));
+        let mut steps =
+            |done, total, what| (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: what }));
         Ok(ask(&mut master, &mut steps)?)
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn prepare(
     let mut master =
         encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
     let report = &mut |done, total, program| {
-        (tell.borrow_mut())(JobReport::Progress(Progress { done, total, what: JobStep::Program(program) }));
+        (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: JobStep::Program(program) }));
     };
     let identity = identify(&mut master)?;
     let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, report);

@@ -2,14 +2,14 @@
 //! What may be sent is what the encoder takes for what it is in its mode; anything else is refused here.
 
 mod acknowledge;
-mod held;
 mod modes;
 mod notes;
+mod stability;
 
 use std::time::Duration;
 
-use held::{CycleResult, Held, LEAST_PATIENCE};
 use notes::Notes;
+use stability::{CycleResult, Held, LEAST_PATIENCE};
 
 use super::data::ProcessData;
 use super::error::{Awaited, RequestedItem};
@@ -241,7 +241,7 @@ impl<'a> Master<'a> {
         mut judge: impl FnMut(CycleResult) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
-        let least = held::least_cycles(self.recorded);
+        let least = stability::least_cycles(self.recorded);
         let (mut last, mut same, mut cycles) = (None, Held::new(self.recorded), 0);
         let mut at_work = Held::new(self.recorded);
         loop {
@@ -338,5 +338,5 @@ impl<'a> Master<'a> {
 
 /// The gateway refuses the word as such: it was not written. With any other exception it may have been.
 fn is_unwritten(error: &Error) -> bool {
-    matches!(error, Error::Exception { asked: RequestedItem::Write { .. }, exception } if !exception.passes())
+    matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

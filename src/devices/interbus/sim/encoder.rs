@@ -170,7 +170,7 @@ impl Encoder {
     }
 
     /// Returns the settings that survive a loss of power.
-    pub const fn kept(&self) -> &Memory {
+    pub const fn stored(&self) -> &Memory {
         &self.eeprom.kept
     }
 

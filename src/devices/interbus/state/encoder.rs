@@ -20,7 +20,7 @@ use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMo
 use crate::devices::interbus::state::TEXTS;
 use crate::sim::Motor;
 
-use super::said::WordContext;
+use super::word_meaning::WordContext;
 
 /// Steps of the handshake that are shown.
 const STEPS: usize = 200;

@@ -59,7 +59,7 @@ impl Kind for Interbus {
         words::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         words::loss(error)
     }
 }

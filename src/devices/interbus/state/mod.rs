@@ -19,11 +19,11 @@ mod record;
 #[cfg(test)]
 mod recorded;
 mod review;
-pub mod said;
 pub mod staged;
 mod table;
 mod texts;
 mod trace;
+pub mod word_meaning;
 pub mod words;
 mod write;
 

@@ -1,6 +1,6 @@
 //! The reader of typed words, from a controller's monitor or a note: the meaning of each, without a device.
 
-use super::said::{self, WordContext};
+use super::word_meaning::{self, WordContext};
 use crate::app::Text;
 use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
@@ -97,8 +97,8 @@ impl Reading {
         };
         let known = WordContext { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
         let (meaning, warning) = match self.source {
-            WordSource::Out => (said::out(number, self.mode), None),
-            WordSource::In => (said::word_text(number, &known), said::stray(number)),
+            WordSource::Out => (word_meaning::out(number, self.mode), None),
+            WordSource::In => (word_meaning::word_text(number, &known), word_meaning::stray(number)),
             // Four digits.
             WordSource::K1 => single(Single::parse_k1(number as u16)),
             WordSource::K2 => single(Single::parse_k2(number)),

@@ -37,7 +37,7 @@ impl Record {
 
     /// Takes new readings; `dropped` were not taken in time.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
-        self.track.lose(dropped);
+        self.track.note_dropped(dropped);
         for reading in readings {
             self.see(&reading);
             self.last = Some(reading);

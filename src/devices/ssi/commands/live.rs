@@ -39,7 +39,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
             let decoded = DecodedFrame::new(&chosen.layout, word);
             let first = *first.get_or_insert(Time::from(at));
             let begun = tally.note(&chosen.layout, decoded.reading, at.into());
-            for finding in begun.iter().filter(|one| is_told(one, first == at.into())) {
+            for finding in begun.iter().filter(|one| is_reported(one, first == at.into())) {
                 say(&format!("{}: {}\n", seconds(at.into()), explained::finding(finding).terminal()));
             }
             if position.csv {
@@ -50,7 +50,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
         }
         Ok(())
     });
-    for noted in tally.noted().iter().filter(|noted| is_told(&noted.finding, Some(noted.first) == first)) {
+    for noted in tally.noted().iter().filter(|noted| is_reported(&noted.finding, Some(noted.first) == first)) {
         let times = count(usize::try_from(noted.count).unwrap_or(usize::MAX), "time");
         say(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));
     }
@@ -58,7 +58,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
 }
 
 /// Returns whether a finding is reported: passing a position that looks like an idle line is not, starting with one is.
-fn is_told(finding: &FrameFinding, is_first: bool) -> bool {
+fn is_reported(finding: &FrameFinding, is_first: bool) -> bool {
     is_first || !matches!(finding, FrameFinding::StuckHigh { sure: false } | FrameFinding::StuckLow { sure: false })
 }
 

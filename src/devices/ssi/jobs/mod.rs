@@ -136,7 +136,7 @@ impl Device for Ssi {
             SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
             SsiJob::Read => SsiOutput::Read(master.word()?),
             SsiJob::Check(layout) => {
-                let progress = &mut |done, total| tell(JobReport::Progress(Progress { done, total, what: JobStep }));
+                let progress = &mut |done, total| tell(JobReport::Progress(Progress { done, total, step: JobStep }));
                 SsiOutput::Check(check::check(&mut master, &layout, progress)?)
             }
         })

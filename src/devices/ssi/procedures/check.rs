@@ -61,7 +61,7 @@ pub enum CheckFinding {
     /// A finding about words, and in how many of them.
     Said {
         /// The finding.
-        what: Said,
+        finding: Said,
         /// In how many words.
         count: u64,
     },
@@ -121,7 +121,7 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     let taken = CheckFinding::Words { taken: words.len() as u64, different };
     let among = |wanted: fn(&Said) -> bool| {
         let wanted = counted.iter().filter(move |(what, _)| wanted(what));
-        wanted.map(|(what, count)| CheckFinding::Said { what: what.clone(), count: *count })
+        wanted.map(|(what, count)| CheckFinding::Said { finding: what.clone(), count: *count })
     };
     let verdict = |wanted: fn(&Said) -> bool| {
         let worst = counted.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
@@ -259,7 +259,7 @@ mod tests {
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = judge(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);
-        assert_eq!(lines[3].findings, [CheckFinding::Said { what: Said::Padding, count: 2 }]);
+        assert_eq!(lines[3].findings, [CheckFinding::Said { finding: Said::Padding, count: 2 }]);
         assert_eq!(judge(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [CheckFinding::Fits]);
     }
 

@@ -3,25 +3,25 @@
 //! how usual it is. Layouts that these frames cannot tell apart are one class, with the motion that would decide.
 
 mod any_other;
-mod ends;
+mod code_ends;
+mod frame_set;
 mod members;
 mod motion;
 mod of_family;
 mod plausible;
 mod probe;
 mod reading;
-mod seen;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
 use std::collections::HashSet;
 
+use frame_set::FrameSet;
 use members::{Member, members};
 use motion::Motion;
 use probe::Probe;
 use reading::{Read, readings};
-use seen::FrameSet;
 
 use super::family::{Families, Settings};
 use super::layout::Layout;

@@ -71,7 +71,7 @@ impl Encoder {
     }
 
     /// The frame that is shown: the word that was read last where that is wished and there is one, else the one to try with.
-    pub fn shown(&self) -> Decoded {
+    pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
     }

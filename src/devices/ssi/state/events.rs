@@ -51,7 +51,7 @@ impl Kind for Ssi {
         explained::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
 }

@@ -96,7 +96,7 @@ impl Record {
         match self.stream {
             // Whatever was dropped, the numbers of the words show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
-            _ => self.track.lose(dropped),
+            _ => self.track.note_dropped(dropped),
         }
         for run in runs {
             self.follow(&run);

@@ -32,7 +32,7 @@ pub struct Piece {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// The activity that lasts.
-    pub what: Lasting,
+    pub activity: Lasting,
     /// Start in seconds.
     pub from: f64,
     /// Latest end in seconds.
@@ -62,7 +62,7 @@ pub enum Lasting {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimingMark {
     /// The event.
-    pub what: TimingEvent,
+    pub event: TimingEvent,
     /// In seconds.
     pub at: f64,
 }
@@ -108,7 +108,7 @@ impl Diagram {
         let (period, burst) = (timing.period.as_secs_f64(), timing.burst.as_secs_f64());
         let (pause, cycle) = (reads.pause.as_secs_f64(), timing.cycle.as_secs_f64());
         let (least, most) = timing.monoflop;
-        let span = |what, from, to| Span { what, from, to, least: to };
+        let span = |what, from, to| Span { activity: what, from, to, least: to };
         let mut spans = vec![
             span(Lasting::Period, 0.0, period),
             span(Lasting::Burst, 0.0, burst),
@@ -122,16 +122,16 @@ impl Diagram {
         } else {
             TimingEvent::Latched
         };
-        let mut marks = vec![TimingMark { what: first, at: 0.0 }];
+        let mut marks = vec![TimingMark { event: first, at: 0.0 }];
         if let Some(Taken::Behind { starts, ready }) = mode.map(|mode| mode.taken) {
             let (starts, ready) = (burst + starts * 1e-6, burst + (starts + ready) * 1e-6);
             spans.push(span(Lasting::Making, starts, ready));
             marks.extend([
-                TimingMark { what: TimingEvent::Started, at: starts },
-                TimingMark { what: TimingEvent::Ready, at: ready },
+                TimingMark { event: TimingEvent::Started, at: starts },
+                TimingMark { event: TimingEvent::Ready, at: ready },
             ]);
         }
-        marks.push(TimingMark { what: TimingEvent::Next, at: cycle });
+        marks.push(TimingMark { event: TimingEvent::Next, at: cycle });
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
         let pieces = pieces(burst, cycle + NEXT * period, &spans, &marks);
         Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
@@ -211,7 +211,7 @@ impl Diagram {
             texts.push(cell(&self.strip, bit.clock));
         } else {
             let waits = [Lasting::Monoflop, Lasting::Making, Lasting::Pause];
-            let is_in = |span: &&Span| waits.contains(&span.what) && (span.from..span.to).contains(&at);
+            let is_in = |span: &&Span| waits.contains(&span.activity) && (span.from..span.to).contains(&at);
             texts.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
         }
         texts
@@ -220,7 +220,7 @@ impl Diagram {
     /// A span in words, with how long it is.
     pub fn words(&self, span: &Span) -> Text {
         let long = time(span.to - span.from);
-        let text = match span.what {
+        let text = match span.activity {
             Lasting::Period => TEXTS.text("ssi.timing_period"),
             Lasting::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clocks()),
             Lasting::Pause => TEXTS.text("ssi.timing_pause"),

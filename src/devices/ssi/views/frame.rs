@@ -181,7 +181,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
     let model = BitStrip {
         label: &label,
         strip: &strip,
-        frame: Some(encoder.shown().frame),
+        frame: Some(encoder.displayed_frame().frame),
         selected,
         toggles: true,
         movable: true,

@@ -35,7 +35,7 @@ pub(super) fn page_ui(
     card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
         let diagram = Diagram::of(designer.layout(), times, &reads);
         let label = say(theme, "ssi_timing.title");
-        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
+        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);
     });
     ui.add_space(theme.space.groups);

@@ -39,7 +39,7 @@ pub(super) fn card_ui(
     view: &mut TrialUiState,
     actions: &mut Vec<Action>,
 ) {
-    let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.shown());
+    let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.displayed_frame());
     let is_live = encoder.is_following();
     let id = encoder.session.id;
     let mut action = None;

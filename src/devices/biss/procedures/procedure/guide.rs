@@ -247,11 +247,11 @@ impl<'g, 'm> Guide<'g, 'm> {
         let started = self.master.now();
         let mut begun = false;
         loop {
-            let asked = self.master.now();
+            let requested = self.master.now();
             let status = self.master.with_patience(SILENCE, |master| master.read(procedure.status))?;
             let elapsed = self.master.now().since(started);
             begun |= status == course.active || status != course.was;
-            begun |= course.run.calibrates() && self.master.now().since(asked) >= BEGUN;
+            begun |= course.run.calibrates() && self.master.now().since(requested) >= BEGUN;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
                 // Not begun yet.

@@ -5,7 +5,7 @@
 use std::time::Duration;
 
 use super::DriveFacts;
-use super::chain::Origin;
+use super::step_outcomes::Origin;
 use super::supply::READJUSTS;
 use crate::devices::hiperdrive::procedures::dead_man::SETTLE;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};

@@ -69,7 +69,7 @@ fn what_cannot_be_is_refused_with_its_reason() {
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut staged = staged();
-    staged.know([(ONE, Family::Short)].into());
+    staged.set_families([(ONE, Family::Short)].into());
     let out = |staged: &mut Staged, edit: Edit| match staged.edit(&edit) {
         Err(EditError::OutOfRange(error)) => (error.number.get(), error.value, error.range),
         other => panic!("{other:?}"),
@@ -88,7 +88,7 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
     let mut profile = Staged::of_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
-    profile.know([(ONE, Family::Short)].into());
+    profile.set_families([(ONE, Family::Short)].into());
     let [Mark::OutOfRange(error)] = profile.marks(|_| None)[..] else { panic!() };
     assert_eq!((error.number.get(), error.range), (158, within(204_800)));
 }
@@ -117,7 +117,7 @@ fn edits_survive_a_reading_and_the_rest_follows() {
 fn a_draft_waits_for_what_it_is_about() {
     let mut first = staged();
     first.edit(&Edit::Set(number(166), 200)).unwrap();
-    let kept = first.kept();
+    let kept = first.saved_edits();
     assert_eq!(kept, [SavedEdit(166, Some(200))]);
     let mut later = Staged::default();
     later.take_draft(kept.into_iter().chain([
@@ -129,7 +129,7 @@ fn a_draft_waits_for_what_it_is_about() {
     later.refresh(read());
     assert_eq!(later.edited(), image(&[(166, 200)]));
     assert_eq!(
-        later.kept(),
+        later.saved_edits(),
         [SavedEdit(166, Some(200)), SavedEdit(266, Some(7))],
         "the second drive may be plugged in again"
     );
@@ -166,5 +166,5 @@ fn what_somebody_should_look_at_is_marked() {
     assert_eq!(profile.edit(&Edit::Leave(number(166))), Ok(true));
     assert_eq!(profile.edit(&Edit::Set(number(266), 100)), Ok(true), "a profile can be made to say it");
     assert_eq!(profile.edit(&Edit::Set(number(170), 1)), Err(EditError::NotAValue(number(170))), "it is not kept");
-    assert_eq!(profile.kept(), [SavedEdit(166, None), SavedEdit(266, Some(100))]);
+    assert_eq!(profile.saved_edits(), [SavedEdit(166, None), SavedEdit(266, Some(100))]);
 }

@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use super::held::{CycleResult, Held, STAYS_FOR};
+use super::stability::{CycleResult, Held, STAYS_FOR};
 use super::{Error, Master};
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::procedures::handshake::is_echo;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::Master;
-use super::held::CycleResult;
+use super::stability::CycleResult;
 use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};

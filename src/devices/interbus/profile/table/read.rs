@@ -40,7 +40,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
     let lines = split(text, delimiter);
     let mut table = CamTable { delimiter: Some(delimiter), ..CamTable::default() };
     let Some(first) = lines.first() else {
-        table.problems.push(TableProblem { line: 1, column: 1, what: TableProblemKind::Empty });
+        table.problems.push(TableProblem { line: 1, column: 1, kind: TableProblemKind::Empty });
         return table;
     };
     let columns = table.columns(options, first, &lines);
@@ -55,7 +55,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
         }
     }
     if drafts.is_empty() && table.problems.is_empty() {
-        table.problems.push(TableProblem { line: first.number, column: 1, what: TableProblemKind::Empty });
+        table.problems.push(TableProblem { line: first.number, column: 1, kind: TableProblemKind::Empty });
     }
     table.place(drafts);
     table.problems.sort_by_key(|problem| (problem.line, problem.column));
@@ -83,7 +83,7 @@ impl CamTable {
             self.problems.push(TableProblem {
                 line: first.number,
                 column: 1,
-                what: TableProblemKind::NoColumn(column),
+                kind: TableProblemKind::NoColumn(column),
             });
         }
         let named = [Column::Start, Column::Stop].into_iter().filter_map(|column| cells.get(columns.place(column)?));
@@ -98,7 +98,7 @@ impl CamTable {
     fn place(&mut self, drafts: Vec<Draft>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
-        let wrong = |draft: &Draft, what| TableProblem { line: draft.line, column: draft.column, what };
+        let wrong = |draft: &Draft, what| TableProblem { line: draft.line, column: draft.column, kind: what };
         for (draft, own) in drafts.iter().zip(&mut rows) {
             let Some(cam) = draft.cam else { continue };
             let earlier = taken.iter().find(|(program, number, _)| (*program, *number) == (draft.program, cam));
@@ -185,7 +185,7 @@ fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
 
 fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: bool) -> Result<Draft, TableProblem> {
     let at = |column| columns.place(column).map_or(1, |place| place as u64 + 1);
-    let wrong = |column, what| TableProblem { line: line.number, column: at(column), what };
+    let wrong = |column, what| TableProblem { line: line.number, column: at(column), kind: what };
     let cell = |column| columns.place(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);
     let program = match cell(Column::Program) {
         "" => options.program,
@@ -230,14 +230,14 @@ fn edges(
     stop_outside: impl Fn(Outside) -> TableProblem,
 ) -> Result<(TableEdge, TableEdge), TableProblem> {
     let (scale, range) = (&options.scale, options.range);
-    let edge = |asked, Placed { step, off }| TableEdge { asked, step, off };
+    let edge = |requested, Placed { step, off }| TableEdge { requested, step, off };
     let first = scale.place(start, range).map_err(start_outside)?;
     let span = scale.span(range);
     let one = span / f64::from(range.max(1));
     if scale.is_round(range) && scale.unit() != Unit::Steps && (stop - start - span).abs() < one / 2.0 {
         let step = first.step.checked_sub(1).unwrap_or(range.saturating_sub(1));
         let off = start + first.off + span - one - stop;
-        return Ok((edge(start, first), TableEdge { asked: stop, step, off }));
+        return Ok((edge(start, first), TableEdge { requested: stop, step, off }));
     }
     let last = scale.place(stop, range).map_err(stop_outside)?;
     Ok((edge(start, first), edge(stop, last)))

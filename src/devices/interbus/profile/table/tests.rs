@@ -74,7 +74,7 @@ fn what_an_edge_became_and_by_how_much_is_told() {
     assert_eq!(rows(&table), [(1, 0, "feed", 772, 1228), (1, 1, "plain", 1000, 3048)]);
     let row = &table.rows[0];
     assert!((row.start.off + 0.019_531_25).abs() < 1e-9 && (row.stop.off - 0.019_531_25).abs() < 1e-9, "{row:?}");
-    assert_eq!((row.start.asked, row.stop.asked), (350.0, 10.0));
+    assert_eq!((row.start.requested, row.stop.requested), (350.0, 10.0));
     assert_eq!(table.rounded().map(|row| row.line).collect::<Vec<_>>(), [1]);
     assert!((table.most_off() - 0.019_531_25).abs() < 1e-9);
     let table = options(Scale::millimetres(12.5, 0).unwrap(), 10_000).read("feed;100;200,03");
@@ -113,7 +113,7 @@ fn cams_without_a_number_take_what_is_left() {
 }
 
 fn problem(line: u64, column: u64, what: TableProblemKind) -> TableProblem {
-    TableProblem { line, column, what }
+    TableProblem { line, column, kind: what }
 }
 
 #[test]
@@ -160,14 +160,14 @@ fn nine_cams_are_one_too_many_for_a_program() {
 #[test]
 fn tables_of_nothing_say_so() {
     for text in ["", "\n \n", ";;\n", "name;start;stop\n"] {
-        assert_eq!(steps(text).problems[0].what, TableProblemKind::Empty, "{text:?}");
+        assert_eq!(steps(text).problems[0].kind, TableProblemKind::Empty, "{text:?}");
     }
     let table = steps("name;start\nfeed;5\n");
     assert_eq!(table.problems, [problem(1, 1, TableProblemKind::NoColumn(Column::Stop))]);
     let long = format!("{};1;2", "n".repeat(41));
     assert_eq!(steps(&long).problems, [problem(1, 1, TableProblemKind::Name { most: 40 })]);
     let long = steps(&format!("1;{};2", "x".repeat(100)));
-    let TableProblemKind::Number { text } = &long.problems[0].what else { panic!("{:?}", long.problems) };
+    let TableProblemKind::Number { text } = &long.problems[0].kind else { panic!("{:?}", long.problems) };
     assert_eq!(text.chars().count(), 25, "only the beginning is told");
 }
 

@@ -24,7 +24,7 @@ pub fn layout(table: &CamTable) -> Text {
 /// Returns the text of a problem in a table, with its location.
 pub fn problem(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
-    text.with_text("what", wrong(&problem.what))
+    text.with_text("what", wrong(&problem.kind))
 }
 
 fn wrong(wrong: &TableProblemKind) -> Text {
@@ -79,8 +79,8 @@ pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
     // As in the table: rounding here would hide the effect.
-    let asked = decimals.max(written_decimals(edge.asked));
-    let text = TEXTS.text(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
+    let requested = decimals.max(written_decimals(edge.requested));
+    let text = TEXTS.text(id).with_number("asked", edge.requested, requested).with("unit", scale.unit().symbol());
     let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
     let off = off.with_number("off", edge.off.abs(), decimals + 1).with("unit", scale.unit().symbol());
     text.with("step", edge.step).with_text("off", off)

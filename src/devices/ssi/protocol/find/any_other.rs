@@ -1,10 +1,10 @@
 //! An encoder of no family: usual widths, and what is always 1, spoke or is not explained as bits of their own.
 
-use super::ends::unusual;
+use super::code_ends::unusual;
+use super::frame_set::FrameSet;
 use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, goes_over_zero, sent_parity, sum};
 use super::plausible::{shares, widths};
 use super::reading::Read;
-use super::seen::FrameSet;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
 use crate::devices::ssi::protocol::layout::Layout;

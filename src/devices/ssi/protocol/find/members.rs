@@ -1,10 +1,10 @@
 //! The layouts that read frames in a certain way: what families can be set to, and any other of usual widths.
 
 use super::any_other::any_other;
+use super::frame_set::FrameSet;
 use super::of_family::of_family;
 use super::probe::{Probe, Trial};
 use super::reading::{Read, Reading};
-use super::seen::FrameSet;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};

@@ -1,9 +1,9 @@
 //! Finds the settings of a family whose position ends where the reading does.
 
+use super::frame_set::FrameSet;
 use super::members::{EXCHANGED, PADDED, Take, goes_over_zero, sum};
 use super::plausible::widths;
 use super::reading::Read;
-use super::seen::FrameSet;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor};
 use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, Settings};

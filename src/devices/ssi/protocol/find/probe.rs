@@ -1,9 +1,9 @@
 //! Frames that a layout is tried with before it counts: it has to see the same motion in them as the way in which they were
 //! read.
 
+use super::frame_set::FrameSet;
 use super::motion::nearest;
 use super::reading::Read;
-use super::seen::FrameSet;
 use crate::devices::ssi::protocol::descriptor::{Meaning, Repeat};
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 

@@ -3,9 +3,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::ends::{ends, unusual};
+use super::code_ends::{ends, unusual};
+use super::frame_set::{FrameSet, entropy};
 use super::motion::Motion;
-use super::seen::{FrameSet, entropy};
 use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
 use crate::devices::ssi::protocol::descriptor::Parity;
 

@@ -1,9 +1,9 @@
 //! The verdict on the classes: the doubt, the quality of each, and what would decide.
 
+use super::frame_set::FrameSet;
 use super::members::{Member, never_odd};
 use super::probe::Trial;
 use super::reading::Read;
-use super::seen::FrameSet;
 use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 

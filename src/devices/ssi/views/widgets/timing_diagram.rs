@@ -75,7 +75,7 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
 
     let breaks = axis.breaks();
     let left_out = (0..breaks.len()).map(|piece| caption(&left_out(diagram.broken(piece)), muted));
-    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.what.words(), text)));
+    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.event.words(), text)));
     let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
     flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));
     flags.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -190,7 +190,7 @@ impl Picture<'_> {
         if let Some(first) = bits.first() {
             self.painter.hline(from..=self.x(first.from), row.min, stroke);
         }
-        let shown: Vec<CellState> = self.model.frame.map(|frame| diagram.strip().shown(frame)).unwrap_or_default();
+        let shown: Vec<CellState> = self.model.frame.map(|frame| diagram.strip().cells_of(frame)).unwrap_or_default();
         for (number, bit) in bits.iter().enumerate() {
             let cell = diagram.strip().cells().get(number);
             let field = cell.and_then(|cell| diagram.strip().fields().get(cell.field));

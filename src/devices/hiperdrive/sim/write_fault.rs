@@ -15,13 +15,13 @@ pub enum WriteFault {
 /// The present fault, and whether the line was lost by it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct ActiveWriteFault {
-    what: Option<(ParameterNumber, WriteFault)>,
+    fault: Option<(ParameterNumber, WriteFault)>,
     is_cut_off: bool,
 }
 
 impl ActiveWriteFault {
     pub(super) const fn by(what: Option<(ParameterNumber, WriteFault)>) -> Self {
-        ActiveWriteFault { what, is_cut_off: false }
+        ActiveWriteFault { fault: what, is_cut_off: false }
     }
 
     pub(super) const fn is_cut_off(&self) -> bool {
@@ -30,7 +30,7 @@ impl ActiveWriteFault {
 
     /// A parameter is about to be written.
     pub(super) fn write(&mut self, number: ParameterNumber) -> Result<(), Refused> {
-        match self.what.filter(|(own, _)| *own == number) {
+        match self.fault.filter(|(own, _)| *own == number) {
             Some((_, WriteFault::Refused)) => return Err(Refused::State),
             Some((_, WriteFault::CutOff)) => self.is_cut_off = true,
             None => {}
