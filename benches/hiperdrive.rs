@@ -104,7 +104,7 @@ fn permit() -> Permit {
 }
 
 /// A way to keep a cyclic connection.
-trait Way {
+trait DeviceConnection {
     fn name(&self) -> &'static str;
     fn intend(&self, wish: MotionRequest);
     fn refresh(&self);
@@ -113,7 +113,7 @@ trait Way {
 }
 
 /// Opens one.
-type Begin = fn() -> (Box<dyn Way>, Target);
+type Begin = fn() -> (Box<dyn DeviceConnection>, Target);
 
 /// Ours.
 struct Ours {
@@ -121,7 +121,7 @@ struct Ours {
     _cyclic: Cyclic,
 }
 
-impl Way for Ours {
+impl DeviceConnection for Ours {
     fn name(&self) -> &'static str {
         "absolute deadlines"
     }
@@ -147,7 +147,7 @@ struct Naive {
     thread: Option<JoinHandle<()>>,
 }
 
-impl Way for Naive {
+impl DeviceConnection for Naive {
     fn name(&self) -> &'static str {
         "sleep, then look"
     }
@@ -181,7 +181,7 @@ fn port() -> (Box<dyn Datagrams>, Target, Arc<RealClock>) {
     (packets, target, clock)
 }
 
-fn ours() -> (Box<dyn Way>, Target) {
+fn ours() -> (Box<dyn DeviceConnection>, Target) {
     let (packets, target, clock) = port();
     let motion = Motion::new(clock.clone());
     let rules = Rules {
@@ -198,7 +198,7 @@ fn ours() -> (Box<dyn Way>, Target) {
     (Box::new(Ours { motion, _cyclic: cyclic }), target)
 }
 
-fn naive() -> (Box<dyn Way>, Target) {
+fn naive() -> (Box<dyn DeviceConnection>, Target) {
     let (mut packets, target, clock) = port();
     let intent = Intent::rest(DriveNumber::FIRST, 1, clock.now());
     let shared = Arc::new(Mutex::new((intent, Histogram::default())));
@@ -223,7 +223,7 @@ fn naive() -> (Box<dyn Way>, Target) {
 }
 
 /// From a release to the stop word at the socket, in milliseconds, sorted.
-fn releases(way: &dyn Way, target: &Target, count: usize) -> Vec<f64> {
+fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f64> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut took = Vec::with_capacity(count);
     sleep(INTERVAL * 5);
@@ -248,7 +248,7 @@ fn releases(way: &dyn Way, target: &Target, count: usize) -> Vec<f64> {
 }
 
 /// Intervals between our packets at the socket, and between what came back.
-fn evenness(way: &dyn Way, target: &Target, time: Duration) -> [Histogram; 2] {
+fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
     sleep(INTERVAL * 5);
     target.words.try_iter().for_each(drop);
     let end = Instant::now() + time;

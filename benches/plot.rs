@@ -154,8 +154,8 @@ impl Bench {
     fn frame(&mut self, recorder: &Recorder) -> (Duration, usize) {
         frame(&self.ctx, |ui| {
             let (theme, mut actions) = (self.theme, Vec::new());
-            let desk = RecorderOwner::Device(SessionId::default());
-            plot_ui(ui, &theme, recorder, desk, &mut self.view, "", &mut actions);
+            let owner = RecorderOwner::Device(SessionId::default());
+            plot_ui(ui, &theme, recorder, owner, &mut self.view, "", &mut actions);
         })
     }
 }

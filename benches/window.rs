@@ -80,7 +80,7 @@ const STREAMED: Duration = Duration::from_secs(15);
 /// The whole window with the position of a virtual BiSS encoder behind the virtual adapter in its plot, as it is drawn
 /// when the adapter streams 20 000 frames a second.
 fn stream() {
-    use encoder_studio::app::{Action, Studio, Tab, ThemeData, World};
+    use encoder_studio::app::{Action, Environment, Studio, Tab, ThemeData};
     use encoder_studio::kinds::program;
     use encoder_studio::store::Store;
     use encoder_studio::ui::{Window, install_fonts};
@@ -95,7 +95,7 @@ fn stream() {
         fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
             let studio = self.window.studio();
             let ready = studio
-                .shown_as::<encoder_studio::devices::biss::state::Encoder>()
+                .selected_model::<encoder_studio::devices::biss::state::Encoder>()
                 .filter(|own| own.session.is_ready() && own.survey.is_some());
             if let (None, Some(encoder)) = (self.began, ready) {
                 let poll = DeviceCommand::Poll(Some(Duration::from_micros(50)));
@@ -109,7 +109,8 @@ fn stream() {
                 return;
             }
             self.took.push(begun.elapsed().as_micros() as u64);
-            let Some(encoder) = self.window.studio().shown_as::<encoder_studio::devices::biss::state::Encoder>() else {
+            let Some(encoder) = self.window.studio().selected_model::<encoder_studio::devices::biss::state::Encoder>()
+            else {
                 return;
             };
             if self.began.is_some_and(|began| began.elapsed() >= STREAMED) {
@@ -140,7 +141,7 @@ fn stream() {
             install_fonts(&cc.egui_ctx);
             let ctx = cc.egui_ctx.clone();
             let mut studio = Studio::new(
-                World::real(Store::at(&folder), program().studio),
+                Environment::real(Store::at(&folder), program().studio),
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
             studio.act(Action::ShowTab(Tab::named("Biss")));
@@ -170,7 +171,7 @@ fn write_capture(path: &std::path::Path) {
 /// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
 fn plot() {
     use encoder_studio::analysis::Time;
-    use encoder_studio::app::{Action, Studio, ThemeData, World, recorder};
+    use encoder_studio::app::{Action, Environment, Studio, ThemeData, recorder};
     use encoder_studio::kinds::program;
     use encoder_studio::signals::state as signals;
     use encoder_studio::store::Store;
@@ -230,7 +231,7 @@ fn plot() {
         }
     }
     let folder = std::path::PathBuf::from(std::env::var("XDG_DATA_HOME").unwrap());
-    let mut studio = Studio::new(World::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
+    let mut studio = Studio::new(Environment::real(Store::at(&folder), program().studio), std::sync::Arc::new(|| {}));
     studio.begin(None, None);
     studio.act(Action::tool(signals::SignalsAction::Open(folder.join("capture.csv"))));
     let options = eframe::NativeOptions {

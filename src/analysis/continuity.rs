@@ -39,7 +39,7 @@ impl Continuity {
     /// Looks at times in seconds.
     pub fn of(times_s: &[f64]) -> Self {
         let Some(longest_even) = longest_even(times_s) else { return Continuity::default() };
-        let mut told = Continuity::default();
+        let mut continuity = Continuity::default();
         let mut lost_s = 0.0;
         for (before, pair) in times_s.windows(2).enumerate() {
             let [from, to] = pair else { continue };
@@ -48,18 +48,18 @@ impl Continuity {
                 continue;
             }
             lost_s += step;
-            told.breaks.push(before + 1);
+            continuity.breaks.push(before + 1);
             if step < 0.0 {
-                told.back = told.back.or(Some(before + 1));
+                continuity.back = continuity.back.or(Some(before + 1));
             } else {
-                let missing = told.missing.get_or_insert(Missing { gaps: 0, longest_s: 0.0 });
+                let missing = continuity.missing.get_or_insert(Missing { gaps: 0, longest_s: 0.0 });
                 missing.gaps += 1;
                 missing.longest_s = missing.longest_s.max(step);
             }
         }
         let whole_s = times_s.last().zip(times_s.first()).map(|(last, first)| last - first - lost_s);
-        told.stretches_s = whole_s.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
-        told
+        continuity.stretches_s = whole_s.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
+        continuity
     }
 }
 

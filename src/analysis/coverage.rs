@@ -63,7 +63,7 @@ impl Angle {
 }
 
 /// The path of an angle: its total length, and its reversals.
-struct Way {
+struct AnglePath {
     /// Highest and lowest of all.
     top: Angle,
     bottom: Angle,
@@ -87,12 +87,12 @@ enum Direction {
     Down,
 }
 
-impl Way {
+impl AnglePath {
     /// Quarters of a period that an angle has to come back by to have turned back: noise does not.
     const BACK: i64 = 3;
 
     fn from(first: Angle) -> Self {
-        Way {
+        AnglePath {
             top: first,
             bottom: first,
             high: first,
@@ -198,7 +198,7 @@ impl Coverage {
         let start = kept(length, left_out).next()?.start;
         let (first_y, first_x) = correction.apply(*sine.get(start)?, *cosine.get(start)?);
         let first = Angle::of(first_y, first_x);
-        let (mut here, mut way) = (first, Way::from(first));
+        let (mut here, mut way) = (first, AnglePath::from(first));
         let mut octants = 0_u32;
         let (mut squares, mut count) = (0.0, 0_usize);
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

@@ -53,7 +53,7 @@ impl Motion {
             }
             _ => None,
         };
-        self.keep(time, steps);
+        self.push(time, steps);
         Rates { speed, acceleration }
     }
 
@@ -63,7 +63,7 @@ impl Motion {
         self.recent.get(after.checked_sub(1)?).copied()
     }
 
-    fn keep(&mut self, time: Time, steps: i64) {
+    fn push(&mut self, time: Time, steps: i64) {
         // The last but one stands for what is close to it; the last is always kept, as the next may come much later.
         let crowded = self
             .recent

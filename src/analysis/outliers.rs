@@ -45,7 +45,7 @@ const UPRIGHT: f64 = 0.15;
 const DEAD: f64 = 0.05;
 
 /// The result of a search for outliers.
-pub(super) enum Found {
+pub(super) enum OutlierSearch {
     /// None, or so many that they are none.
     Nothing,
     /// These, and the ellipse through the others.
@@ -53,10 +53,10 @@ pub(super) enum Found {
 }
 
 /// Looks for samples far off; `all` is the ellipse through all of them, if there is one.
-pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found {
+pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierSearch {
     let count = sine.len().min(cosine.len());
     if count < LEAST_SAMPLES {
-        return Found::Nothing;
+        return OutlierSearch::Nothing;
     }
     // An odd stride does not keep step with a period of 2ⁿ samples.
     let stride = (count / SAMPLED) | 1;
@@ -72,7 +72,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found
         }
         (Some(all), None) => *all,
         (None, Some(upright)) => upright,
-        (None, None) => return Found::Nothing,
+        (None, None) => return OutlierSearch::Nothing,
     };
     let mut ellipse = start;
     let mut stretches: Vec<Range<usize>> = Vec::new();
@@ -81,7 +81,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found
         let found = beyond(sine, cosine, &ellipse, limit);
         let left_out: usize = found.iter().map(Range::len).sum();
         if left_out as f64 > MOST * count as f64 {
-            return Found::Nothing;
+            return OutlierSearch::Nothing;
         }
         if (round > 0 || Some(&ellipse) == all) && found == stretches {
             break;
@@ -90,11 +90,11 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found
         let scale = Scale::new(ellipse.offset_sine_v, ellipse.offset_cosine_v, ellipse.amplitude_v);
         match fit_without(sine, cosine, &stretches, scale) {
             Ok(better) => ellipse = better,
-            Err(_) => return Found::Nothing,
+            Err(_) => return OutlierSearch::Nothing,
         }
     }
     if stretches.is_empty() {
-        return Found::Nothing;
+        return OutlierSearch::Nothing;
     }
     let outliers = Outliers {
         count: stretches.iter().map(Range::len).sum(),
@@ -103,7 +103,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found
         all: all.and_then(|all| Some((*all, Coverage::of(sine, cosine, all)?))),
         stretches,
     };
-    Found::Outliers(ellipse, outliers)
+    OutlierSearch::Outliers(ellipse, outliers)
 }
 
 /// The channel that does not move, single samples aside.

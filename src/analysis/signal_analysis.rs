@@ -5,7 +5,7 @@
 use super::continuity::Continuity;
 use super::coverage::Coverage;
 use super::ellipse::{Ellipse, FitError};
-use super::outliers::{self, Found, Outliers};
+use super::outliers::{self, OutlierSearch, Outliers};
 use super::position_error::{PositionError, Samples};
 
 /// Fewest octants of a period that must hold samples (U).
@@ -89,8 +89,8 @@ impl Analysis {
             return Err(error.into());
         }
         let (ellipse, outliers) = match outliers::find(sine_v, cosine_v, all.as_ref().ok()) {
-            Found::Nothing => (all?, None),
-            Found::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
+            OutlierSearch::Nothing => (all?, None),
+            OutlierSearch::Outliers(ellipse, outliers) => (ellipse, Some(outliers)),
         };
         let left_out = outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
         let continuity = Continuity::of(time_s);

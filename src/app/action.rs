@@ -10,9 +10,9 @@ use super::payload::Payload;
 use super::recorder::{self, Exported};
 use super::review::Permit;
 use super::services::Services;
-use super::session::{DraftDone, Kind, Listed, ProfileFile, Saving};
+use super::session::{DeviceHistory, DraftDone, Kind, ProfileFile, Saving};
 use super::settings_store::{SettingsRead, SettingsWritten};
-use super::shutdown::Leaver;
+use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
 use super::tab::Tab;
 use super::{ColorScheme, Language, Picture, Settings, connect};
@@ -82,7 +82,7 @@ pub enum Action {
     /// Ask where to write a table of what a recorder shows: of what is visible, or of all.
     AskTable {
         /// Whose recorder.
-        desk: RecorderOwner,
+        owner: RecorderOwner,
         /// Only what is visible.
         visible: bool,
     },
@@ -175,7 +175,7 @@ pub enum Done {
     /// About the draft of a session.
     Draft(SessionId, DraftDone),
     /// Backups and writes of a device were listed.
-    Listed(SessionId, DeviceKey, Box<Listed>),
+    Listed(SessionId, DeviceKey, Box<DeviceHistory>),
     /// A backup was read, or not.
     Backup {
         session: SessionId,
@@ -227,7 +227,7 @@ pub trait AnyOpened: Any + Send {
 impl<D: Kind> AnyOpened for Opened<D> {
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services) {
         let Opened { worker, url, turn, .. } = *self;
-        services.leave(worker, Leaver { session, about: url.to_string(), url, write: None }, Some(turn));
+        services.leave(worker, ClosingSessionInfo { session, about: url.to_string(), url, write: None }, Some(turn));
     }
 
     fn into_any(self: Box<Self>) -> Box<dyn Any> {

@@ -27,14 +27,14 @@ impl Studio {
     pub fn may_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
-        let writes = services.leaves_writing() || self.devices.iter().any(|device| device.is_writing());
-        let runs = !services.leaving.is_empty() || self.devices.iter().any(|device| device.is_busy());
+        let writes = services.is_closing_with_write() || self.devices.iter().any(|device| device.is_writing());
+        let runs = !services.closing_sessions.is_empty() || self.devices.iter().any(|device| device.is_busy());
         let over = |what, done: bool| done || self.waited.is_some_and(|waited| waited >= what);
         self.closing
             && over(Waited::Drives, services.brakes.is_done())
             && over(Waited::Writes, !writes)
             && over(Waited::Jobs, !runs)
-            && over(Waited::Disk, drafts && self.keeper.is_idle())
+            && over(Waited::Disk, drafts && self.settings_store.is_idle())
     }
 
     pub(super) fn close_session(&mut self, id: SessionId) {
@@ -122,7 +122,7 @@ impl Studio {
         match question.then {
             Then::OpenLink(id) => {
                 let why = Text::new("session.maybe_drive");
-                self.with_device(id, |device, services| device.lose(why, services));
+                self.with_device(id, |device, services| device.connection_lost(why, services));
             }
             Then::Find(_) => {
                 if let Some(connect) = &mut self.connect {
@@ -148,7 +148,7 @@ impl Studio {
             }
             Some(Then::OpenLink(id)) => self.open_confirmed(id),
             Some(Then::Find(tab)) => self.find_confirmed(tab),
-            Some(Then::Forget(desk)) => self.act_recorder(desk, recorder::RecorderAction::Clear),
+            Some(Then::Forget(owner)) => self.act_recorder(owner, recorder::RecorderAction::Clear),
             None => {}
         }
     }

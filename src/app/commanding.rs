@@ -35,7 +35,7 @@ impl Studio {
         if let Some(Err(error)) = taken {
             let place = self.device(id).map(AnyDevice::place).unwrap_or_default();
             let text = read_error(place.as_ref(), &ReadError::Profile(error), self.services.world.kinds);
-            self.services.tell(Severity::Error, vec![text], None);
+            self.services.notify(Severity::Error, vec![text], None);
         }
     }
 
@@ -72,6 +72,6 @@ impl Studio {
     /// Reports that an action was meant for another kind of device, and stops all motion.
     pub(super) fn refuse_kind(&mut self, about: Option<&str>) {
         self.stop_motion();
-        self.services.tell(Severity::Error, vec![Text::new("session.wrong_kind")], about);
+        self.services.notify(Severity::Error, vec![Text::new("session.wrong_kind")], about);
     }
 }

@@ -71,7 +71,7 @@ impl Studio {
                 self.show(tab, session);
                 self.comparison = Some(ProfileComparison { session, path, comparison });
             }
-            Err(why) => self.services.tell(Severity::Error, why, Some(&name)),
+            Err(why) => self.services.notify(Severity::Error, why, Some(&name)),
         }
     }
 }

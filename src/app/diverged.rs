@@ -5,7 +5,7 @@ use super::Kinds;
 use super::action::ReadError;
 use super::documents::read_error;
 use super::question::{Question, Then};
-use super::session::{Found, Guard, ProfileFile, Saving, Source};
+use super::session::{DivergedFile, Guard, ProfileFile, Saving, Source};
 use super::studio::{SessionId, Studio};
 use super::{DeviceCommand, Text};
 use crate::profile::{Change, Changed, Document, ProfileError, divergence};
@@ -64,7 +64,7 @@ impl Row {
     }
 
     /// Returns the value in a version; `None` if it has none.
-    pub fn says(&self, side: Side) -> Option<&str> {
+    pub fn value(&self, side: Side) -> Option<&str> {
         match side {
             Side::Theirs => self.change.from.as_deref(),
             Side::Mine => self.change.to.as_deref(),
@@ -74,7 +74,7 @@ impl Row {
 
 impl Diverged {
     /// Compares a file with the profile that is to be written to it.
-    pub(super) fn new(saving: Saving, Found { text, document }: Found, kinds: Kinds) -> Self {
+    pub(super) fn new(saving: Saving, DivergedFile { text, document }: DivergedFile, kinds: Kinds) -> Self {
         let formats = kinds.formats;
         let kind = saving.document.body.kind();
         let is_of_kind = |found: Box<Document>| match found.body.kind() == kind {

@@ -30,7 +30,7 @@ impl Studio {
                 self.services.log.settle_file(&file.path);
                 let remarks = explain::profile_remarks(&file.path, &document);
                 if !remarks.is_empty() {
-                    self.services.tell(Severity::Warning, remarks, None);
+                    self.services.notify(Severity::Warning, remarks, None);
                 }
                 let own =
                     |device: &&AnyDevice| matches!(device.source(), Source::File { key: own, .. } if *own == file.key);
@@ -48,7 +48,7 @@ impl Studio {
                     self.show(tab, id);
                 }
             }
-            Err(error) => self.services.tell(
+            Err(error) => self.services.notify(
                 Severity::Error,
                 vec![read_error(&file.path, &error, self.services.world.kinds)],
                 None,
@@ -62,7 +62,7 @@ impl Studio {
             found: found.to_owned(),
             known: self.services.world.kinds.formats.kinds().collect(),
         };
-        self.services.tell(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
+        self.services.notify(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
     }
 
     /// The draft of a session was looked for, kept or removed.
@@ -73,7 +73,7 @@ impl Studio {
                 && self.device(id).is_none()
             {
                 let text = Text::new("session.draft_not_kept").with_text("why", explain::file(error));
-                self.services.tell(Severity::Warning, vec![text], None);
+                self.services.notify(Severity::Warning, vec![text], None);
             }
         }
         self.with_device(id, |device, services| device.take_draft(done, services));
@@ -83,7 +83,7 @@ impl Studio {
     pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| only_looked_at(device.source()));
         let Some(refusal) = refusal else { return false };
-        self.services.tell(Severity::Error, vec![refusal], None);
+        self.services.notify(Severity::Error, vec![refusal], None);
         true
     }
 }

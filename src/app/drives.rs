@@ -56,14 +56,14 @@ pub struct RememberedDrives {
 /// The readable part of a drive's entry whose other parts are broken.
 #[derive(Default, Deserialize)]
 #[serde(default)]
-pub(crate) struct LocksAlone {
+pub(crate) struct LocksOnly {
     unconfirmed: Vec<u8>,
     marks: BTreeMap<u8, u64>,
 }
 
 /// Whether the settings have been read since control was taken: another window may have marked limits in them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Marks {
+pub enum SettingsReadState {
     /// Not yet, or too long ago.
     Unread,
     /// They are being read.
@@ -85,14 +85,14 @@ pub trait RemembersDrives {
     fn lock_by(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings were read since control was taken.
-    fn marks(&self) -> Marks;
+    fn marks(&self) -> SettingsReadState;
 
     /// Sets whether the settings were read since control was taken: nothing moves before.
-    fn set_marks(&mut self, marks: Marks);
+    fn set_marks(&mut self, marks: SettingsReadState);
 }
 
-impl From<LocksAlone> for RememberedDrives {
-    fn from(LocksAlone { unconfirmed, marks }: LocksAlone) -> Self {
+impl From<LocksOnly> for RememberedDrives {
+    fn from(LocksOnly { unconfirmed, marks }: LocksOnly) -> Self {
         RememberedDrives { unconfirmed, marks, ..RememberedDrives::default() }
     }
 }

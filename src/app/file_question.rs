@@ -33,7 +33,7 @@ pub enum FileQuestion {
     /// Saves a table of samples.
     Table {
         /// Whose they are.
-        desk: RecorderOwner,
+        owner: RecorderOwner,
         /// Only what is visible.
         visible: bool,
         /// A name to begin with.

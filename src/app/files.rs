@@ -62,7 +62,7 @@ impl Studio {
                 let action = file.chosen(path, self.settings.language);
                 self.act(Action::Device(file.session(), action));
             }
-            FileQuestion::Table { desk, visible, .. } => self.write_table(desk, visible, &path),
+            FileQuestion::Table { owner, visible, .. } => self.write_table(owner, visible, &path),
             FileQuestion::Picture { picture, .. } => self.services.tasks.run("picture", move || {
                 let result = picture.save(&path);
                 Action::Done(Done::PictureSaved(path, result))
@@ -74,15 +74,15 @@ impl Studio {
         self.with_device(session, |device, services| device.save(path, services));
     }
 
-    pub fn recorder(&self, desk: RecorderOwner) -> Option<&Recorder> {
-        match desk {
+    pub fn recorder(&self, owner: RecorderOwner) -> Option<&Recorder> {
+        match owner {
             RecorderOwner::Device(id) => self.device(id).map(|device| device.recorder()),
             RecorderOwner::Tool(tab) => self.tools.iter().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder()),
         }
     }
 
-    fn recorder_mut(&mut self, desk: RecorderOwner) -> Option<&mut Recorder> {
-        match desk {
+    fn recorder_mut(&mut self, owner: RecorderOwner) -> Option<&mut Recorder> {
+        match owner {
             RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorder_mut()),
             RecorderOwner::Tool(tab) => {
                 self.tools.iter_mut().find(|(own, _)| *own == tab).map(|(_, tool)| tool.recorder_mut())
@@ -90,29 +90,29 @@ impl Studio {
         }
     }
 
-    pub(super) fn act_recorder(&mut self, desk: RecorderOwner, action: recorder::RecorderAction) {
-        if let Some(recorder) = self.recorder_mut(desk) {
+    pub(super) fn act_recorder(&mut self, owner: RecorderOwner, action: recorder::RecorderAction) {
+        if let Some(recorder) = self.recorder_mut(owner) {
             recorder.act(action);
         }
     }
 
-    pub(super) fn ask_forget(&mut self, desk: RecorderOwner) {
-        if self.recorder(desk).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
+    pub(super) fn ask_forget(&mut self, owner: RecorderOwner) {
+        if self.recorder(owner).is_some_and(|recorder| recorder.unsaved() >= MUCH) {
             let (text, confirm) = (Text::new("question.forget"), Text::new("question.forget_it"));
-            self.question = Some(Question::before(text, confirm, Then::Forget(desk)));
+            self.question = Some(Question::before(text, confirm, Then::Forget(owner)));
         } else {
-            self.act_recorder(desk, recorder::RecorderAction::Clear);
+            self.act_recorder(owner, recorder::RecorderAction::Clear);
         }
     }
 
-    pub(super) fn ask_table(&mut self, desk: RecorderOwner, visible: bool) {
-        let suggested = self.suggested(Some(desk), "csv");
-        self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
+    pub(super) fn ask_table(&mut self, owner: RecorderOwner, visible: bool) {
+        let suggested = self.suggested(Some(owner), "csv");
+        self.services.file_question = Some(FileQuestion::Table { owner, visible, suggested });
     }
 
     /// A picture was wished of something that cannot be seen as a whole.
     pub(super) fn tell_picture_cut(&mut self) {
-        self.services.tell(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
+        self.services.notify(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }
 
     pub(super) fn ask_picture(&mut self, picture: Picture) {
@@ -121,39 +121,39 @@ impl Studio {
     }
 
     /// A name after the encoder and the time of day: what is recorded is not recorded again.
-    fn suggested(&self, desk: Option<RecorderOwner>, ending: &str) -> PathBuf {
-        let device = match desk {
+    fn suggested(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
+        let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
             Some(RecorderOwner::Tool(_)) => None,
-            None => self.shown(),
+            None => self.selected_device(),
         };
-        let whose = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
-        let whose = whose.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
-        PathBuf::from(format!("{whose}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
+        let stem = device.and_then(|device| device.suggested_file().file_stem().map(ToOwned::to_owned));
+        let stem = stem.map_or_else(|| "recording".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        PathBuf::from(format!("{stem}-{}.{ending}", self.services.now().strftime("%Y%m%d-%H%M%S")))
     }
 
-    fn write_table(&mut self, desk: RecorderOwner, visible: bool, path: &Path) {
+    fn write_table(&mut self, owner: RecorderOwner, visible: bool, path: &Path) {
         let mailbox = self.services.tasks.mailbox();
-        let Some(recorder) = self.recorder_mut(desk) else { return };
+        let Some(recorder) = self.recorder_mut(owner) else { return };
         let busy = recorder.export().is_some();
         match recorder.begin_export(path, visible) {
             Some(writing) => self
                 .services
                 .tasks
-                .run("table", move || Action::Done(Done::TableWritten(desk, writing.run(&|| mailbox.wake())))),
+                .run("table", move || Action::Done(Done::TableWritten(owner, writing.run(&|| mailbox.wake())))),
             None => {
                 let text = Text::new(if busy { "recorder.still_writing" } else { "recorder.nothing_to_write" });
-                self.services.tell(Severity::Warning, vec![text], None);
+                self.services.notify(Severity::Warning, vec![text], None);
             }
         }
     }
 
-    pub(super) fn table_written(&mut self, desk: RecorderOwner, exported: Exported) {
+    pub(super) fn table_written(&mut self, owner: RecorderOwner, exported: Exported) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
         // Another drive may be shown by now.
-        let recorders = match desk {
+        let recorders = match owner {
             RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
-            RecorderOwner::Tool(_) => self.recorder_mut(desk).into_iter().collect(),
+            RecorderOwner::Tool(_) => self.recorder_mut(owner).into_iter().collect(),
         };
         let ended = recorders.into_iter().find_map(|recorder| recorder.end_export(exported.number, is_written));
         let lost = ended.unwrap_or(0);
@@ -172,7 +172,7 @@ impl Studio {
             self.services.log.settle_file(&exported.path);
         }
         let severity = if lost > 0 { severity.max(Severity::Warning) } else { severity };
-        self.services.tell(severity, texts, None);
+        self.services.notify(severity, texts, None);
     }
 
     pub(super) fn report_saved(&mut self, path: &Path, result: Result<(), FileError>) {
@@ -183,7 +183,7 @@ impl Studio {
             }
             Err(error) => (Severity::Error, explain::file(&error)),
         };
-        self.services.tell(severity, vec![text], None);
+        self.services.notify(severity, vec![text], None);
     }
 
     pub(super) fn picture_saved(&mut self, path: &Path, result: Result<(), FileError>) {
@@ -191,9 +191,9 @@ impl Studio {
             Ok(()) => {
                 self.services.log.settle_file(path);
                 let text = Text::new("picture.saved").with("path", path.display());
-                self.services.tell(Severity::Good, vec![text], None);
+                self.services.notify(Severity::Good, vec![text], None);
             }
-            Err(error) => self.services.tell(Severity::Error, vec![explain::file(&error)], None),
+            Err(error) => self.services.notify(Severity::Error, vec![explain::file(&error)], None),
         }
     }
 

@@ -16,7 +16,7 @@ use crate::worker::{Device, Event, JobId, Progress, Ring, Stopper, SubmitError, 
 pub struct Running<W> {
     /// Its number in this session.
     pub id: JobId,
-    pub what: Text,
+    pub title: Text,
     /// Since when.
     pub since: Zoned,
     pub progress: Option<Progress<W>>,
@@ -38,7 +38,7 @@ pub struct LiveSession<D: Device> {
 /// A running job, for code that does not know the device.
 #[derive(Clone, Debug)]
 pub struct Progressing {
-    pub what: Text,
+    pub title: Text,
     /// Steps done, steps in all, and what is being done.
     pub progress: Option<(u64, u64, Text)>,
     /// It has been asked to end.
@@ -55,8 +55,8 @@ impl<D: Kind> LiveSession<D> {
     /// The job that runs, in words.
     pub fn progressing(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
-        let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.what)));
-        Some(Progressing { what: running.what.clone(), progress, stopping: running.stopping })
+        let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.step)));
+        Some(Progressing { title: running.title.clone(), progress, stopping: running.stopping })
     }
 
     /// Starts a job.
@@ -65,7 +65,7 @@ impl<D: Kind> LiveSession<D> {
     /// Another one runs, or the session has ended.
     pub(crate) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
         let id = self.worker.submit(job)?;
-        self.running = Some(Running { id, what, since: now, progress: None, writes, stopping: false });
+        self.running = Some(Running { id, title: what, since: now, progress: None, writes, stopping: false });
         Ok(id)
     }
 
@@ -85,8 +85,8 @@ impl<D: Kind> LiveSession<D> {
     }
 
     /// Watches these values from now on while samples are taken.
-    pub(crate) fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
-        self.worker.watch(wished);
+    pub(crate) fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
+        self.worker.watch(watched);
     }
 
     /// Ends what runs, live samples included.

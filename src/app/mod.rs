@@ -62,7 +62,7 @@ pub use devices::{AnyDevice, DeviceCommand, DeviceKind, DeviceType, OpenDevice};
 pub use kinds::Kinds;
 pub use tool::{Tool, ToolAction, ToolContext, ToolKind};
 
-pub use drives::{Marks, Measure, RememberedDrives, RemembersDrives};
+pub use drives::{Measure, RememberedDrives, RemembersDrives, SettingsReadState};
 pub use edits::{EditBase, Edits};
 pub use file_question::{DeviceFile, FileQuestion};
 pub use given::{Given, Opener};
@@ -76,7 +76,7 @@ pub use picture::Picture;
 pub use press::{FreshKeys, PressKey};
 pub use question::Question;
 pub use recording::Recording;
-pub use services::{JobEnd, JobRecord, Services, World};
+pub use services::{Environment, JobEnd, JobRecord, Services};
 pub use settings::{ColorScheme, Settings};
 pub use settings_store::{SettingsRead, SettingsWritten};
 pub use shutdown::GracePeriods;

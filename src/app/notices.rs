@@ -49,7 +49,7 @@ pub struct Notice {
 
 impl Notice {
     /// Returns the prefix that names the device and part; empty if there is none.
-    pub fn whose(&self, words: impl Fn(&Text) -> String) -> String {
+    pub fn prefix(&self, words: impl Fn(&Text) -> String) -> String {
         let names = self.about.clone().into_iter().chain(self.part.as_ref().map(words));
         let names: Vec<String> = names.collect();
         if names.is_empty() { String::new() } else { format!("{}: ", names.join(", ")) }
@@ -75,11 +75,11 @@ impl Log {
         {
             self.standing = Some(notice.clone());
         }
-        self.keep(notice);
+        self.add_to_log(notice);
     }
 
     /// Adds a notice that stands elsewhere in the window.
-    pub fn keep(&mut self, notice: Notice) {
+    pub fn add_to_log(&mut self, notice: Notice) {
         if notice.severity >= Severity::Warning {
             tracing::warn!("{}", terminal(&notice));
         } else {
@@ -126,7 +126,7 @@ impl Log {
 
 fn terminal(notice: &Notice) -> String {
     let words: Vec<String> = notice.texts.iter().map(Text::terminal).collect();
-    format!("{}{}", notice.whose(Text::terminal), words.join(" "))
+    format!("{}{}", notice.prefix(Text::terminal), words.join(" "))
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use super::action::{Action, Attempt, Done, OpenFailed, Opened};
 use super::given::Opener;
 use super::question::{Question, Then};
-use super::services::{JobEnd, Services, World};
+use super::services::{Environment, JobEnd, Services};
 use super::session::{Kind, Opening, Phase, Source, without_secrets};
 use super::shutdown::same_wire;
 use super::studio::{SessionId, Studio};
@@ -62,7 +62,7 @@ impl Studio {
                 continue;
             }
             if device.is_writing() {
-                self.services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&device.name()));
+                self.services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&device.name()));
                 let (tab, id) = (device.tab(), device.id());
                 self.show(tab, id);
                 return None;
@@ -110,7 +110,7 @@ impl Studio {
         device.let_go(JobEnd::Cancelled, &mut self.services);
         *device.phase_mut() = Phase::Lost(why.clone());
         let earlier = device.opening_mut().take().map(|opening| opening.over);
-        self.services.tell(Severity::Note, vec![why], Some(&name));
+        self.services.notify(Severity::Note, vec![why], Some(&name));
         Ok(earlier)
     }
 
@@ -172,7 +172,7 @@ impl Studio {
             }
             Err(failed) => {
                 let why = device.open_failed(&failed);
-                device.lose(why, &mut self.services);
+                device.connection_lost(why, &mut self.services);
             }
         }
     }
@@ -205,7 +205,7 @@ impl Services {
 }
 
 fn open<D: Kind>(
-    world: &World,
+    world: &Environment,
     url: &LinkUrl,
     prepare: impl FnOnce(&mut Session<D>),
     wake: Wake,
@@ -220,7 +220,7 @@ fn open<D: Kind>(
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
     let trace: Ring<TraceEntry> = Ring::new(FRAMES);
-    let (ring, last) = (trace.clone(), WakeAtTheEnd(wake.clone()));
+    let (ring, last) = (trace.clone(), WakeOnDrop(wake.clone()));
     session.watch(move |entry| {
         let _ = &last;
         ring.push(entry.clone());
@@ -232,9 +232,9 @@ fn open<D: Kind>(
 }
 
 /// Wakes the window when a session's thread is gone, however it ended.
-struct WakeAtTheEnd(Wake);
+struct WakeOnDrop(Wake);
 
-impl Drop for WakeAtTheEnd {
+impl Drop for WakeOnDrop {
     fn drop(&mut self) {
         (self.0)();
     }

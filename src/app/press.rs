@@ -21,7 +21,7 @@ const LEAST: f64 = 0.05;
 
 /// The known state of a key.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Seen {
+enum KeyState {
     /// It may be held.
     #[default]
     Nothing,
@@ -34,13 +34,13 @@ enum Seen {
 /// The known state of the keys that press buttons.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FreshKeys {
-    space: Seen,
-    enter: Seen,
+    space: KeyState,
+    enter: KeyState,
 }
 
 impl FreshKeys {
     /// Keys that are up: where no keyboard was taken away yet.
-    pub const UP: FreshKeys = FreshKeys { space: Seen::Up, enter: Seen::Up };
+    pub const UP: FreshKeys = FreshKeys { space: KeyState::Up, enter: KeyState::Up };
 
     /// Forgets what was seen: the keyboard went, came, or means something else from now on.
     pub fn forget(&mut self) {
@@ -49,12 +49,12 @@ impl FreshKeys {
 
     /// A key goes down. Whether that is a fresh press: a picture before this one saw it up for long enough.
     pub fn press(&mut self, key: PressKey) -> bool {
-        std::mem::replace(self.of(key), Seen::Down) == Seen::Up
+        std::mem::replace(self.of(key), KeyState::Down) == KeyState::Up
     }
 
     /// A key goes up, while the window has the keyboard.
     pub fn release(&mut self, key: PressKey, now: f64) {
-        *self.of(key) = Seen::Released(now);
+        *self.of(key) = KeyState::Released(now);
     }
 
     /// Notes that another key was pressed. Only the key pressed last repeats itself, so a repeat of an unknown key is
@@ -62,8 +62,8 @@ impl FreshKeys {
     pub fn press_other(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
-            if *own == Seen::Nothing {
-                *own = Seen::Released(now);
+            if *own == KeyState::Nothing {
+                *own = KeyState::Released(now);
             }
         }
     }
@@ -73,8 +73,8 @@ impl FreshKeys {
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
-            if *own == Seen::Up {
-                *own = Seen::Released(now);
+            if *own == KeyState::Up {
+                *own = KeyState::Released(now);
             }
         }
     }
@@ -86,12 +86,12 @@ impl FreshKeys {
         let mut next: Option<f64> = None;
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
-            let Seen::Released(since) = *own else { continue };
+            let KeyState::Released(since) = *own else { continue };
             let rest = since + LEAST - now;
             if rest > 0.0 {
                 next = Some(next.map_or(rest, |next| next.min(rest)));
             } else {
-                *own = Seen::Up;
+                *own = KeyState::Up;
             }
         }
         next
@@ -99,22 +99,22 @@ impl FreshKeys {
 
     /// The key was seen up: its next press is fresh, unless it follows at once.
     pub fn is_armed(&self, key: PressKey) -> bool {
-        matches!(self.get(key), Seen::Released(_) | Seen::Up)
+        matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }
 
     /// The key was seen down, and not up since.
     pub fn is_down(&self, key: PressKey) -> bool {
-        self.get(key) == Seen::Down
+        self.get(key) == KeyState::Down
     }
 
-    const fn get(&self, key: PressKey) -> Seen {
+    const fn get(&self, key: PressKey) -> KeyState {
         match key {
             PressKey::Space => self.space,
             PressKey::Enter => self.enter,
         }
     }
 
-    const fn of(&mut self, key: PressKey) -> &mut Seen {
+    const fn of(&mut self, key: PressKey) -> &mut KeyState {
         match key {
             PressKey::Space => &mut self.space,
             PressKey::Enter => &mut self.enter,

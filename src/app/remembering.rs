@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::Settings;
 use super::devices::MotionControl;
-use super::drives::{Marks, RemembersDrives};
+use super::drives::{RemembersDrives, SettingsReadState};
 use super::studio::Studio;
 use crate::store::FileError;
 
@@ -26,38 +26,38 @@ impl Studio {
 
     /// Reads the settings again periodically while drives are in control: another window may have marked limits as
     /// unconfirmed.
-    pub(super) fn look_at_settings(&mut self) {
+    pub(super) fn refresh_settings(&mut self) {
         let now = self.services.now();
-        let is_old = self.keeper.is_older(&now, STALE);
-        let mut is_due = self.is_in_control() && self.keeper.is_older(&now, PACE);
+        let is_old = self.settings_store.is_older(&now, STALE);
+        let mut is_due = self.is_in_control() && self.settings_store.is_older(&now, PACE);
         for drives in self.drives_in_hand() {
-            if is_old && drives.marks() == Marks::Read {
-                drives.set_marks(Marks::Unread);
+            if is_old && drives.marks() == SettingsReadState::Read {
+                drives.set_marks(SettingsReadState::Unread);
             }
-            is_due |= drives.marks() == Marks::Unread;
+            is_due |= drives.marks() == SettingsReadState::Unread;
         }
-        if is_due && self.keeper.look(&self.services) {
-            self.drives_in_hand().for_each(|drives| drives.set_marks(drives.marks().max(Marks::Reading)));
+        if is_due && self.settings_store.begin_read(&self.services) {
+            self.drives_in_hand().for_each(|drives| drives.set_marks(drives.marks().max(SettingsReadState::Reading)));
         }
     }
 
     /// The settings were read.
-    pub(super) fn saw_settings(&mut self, found: Option<Settings>) {
-        if let Some(found) = self.keeper.saw(found, &mut self.settings) {
+    pub(super) fn settings_read(&mut self, found: Option<Settings>) {
+        if let Some(found) = self.settings_store.read_done(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
                 drives.remembered_as().into_iter().for_each(|key| drives.lock_by(&found.drives(&key)));
             }
         }
         self.remember_drives();
-        let reading = |drives: &&mut dyn RemembersDrives| drives.marks() == Marks::Reading;
-        self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(Marks::Read));
+        let reading = |drives: &&mut dyn RemembersDrives| drives.marks() == SettingsReadState::Reading;
+        self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
     }
 
     /// The settings could not be read: no drive in hand moves before they are.
-    pub(super) fn could_not_see_settings(&mut self, error: &FileError) {
+    pub(super) fn settings_unread(&mut self, error: &FileError) {
         tracing::warn!("{error}");
-        self.keeper.could_not_look();
-        self.drives_in_hand().for_each(|drives| drives.set_marks(Marks::Unread));
+        self.settings_store.read_failed();
+        self.drives_in_hand().for_each(|drives| drives.set_marks(SettingsReadState::Unread));
     }
 
     fn drives_in_hand(&mut self) -> impl Iterator<Item = &mut dyn RemembersDrives> {

@@ -14,7 +14,7 @@ use crate::worker::{Committed, is_uncounted};
 
 /// A write on its way.
 pub struct Review<K: Reviewed> {
-    pub what: Text,
+    pub title: Text,
     pub state: ReviewState<K>,
     /// Write although the device counts as worn.
     pub force_wear: bool,
@@ -54,7 +54,7 @@ impl<K: Reviewed> Review<K> {
         let permits = Permit::ALL.into_iter().filter_map(own).collect();
         let what = K::change(&change);
         Review {
-            what,
+            title: what,
             state: ReviewState::Planning,
             force_wear: false,
             is_for_another,
@@ -153,7 +153,7 @@ impl OpWords {
 /// Something about a plan that has to be answered, and makes another plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
-    pub what: Text,
+    pub title: Text,
     /// The answer that allows nothing.
     pub no: Text,
     /// The answer that allows it.
@@ -166,7 +166,7 @@ pub struct Question {
 
 /// How a plan is carried out, and what starts it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
+pub enum ExecutionMode {
     /// From end to end.
     Writes,
     /// Step by step, with the user at the device.
@@ -175,22 +175,22 @@ pub enum Manner {
     Tests,
 }
 
-impl Manner {
+impl ExecutionMode {
     /// Returns the id of the text of the start button.
-    pub const fn word(self) -> &'static str {
+    pub const fn button_id(self) -> &'static str {
         match self {
-            Manner::Writes => "review.write",
-            Manner::Leads => "review.begin",
-            Manner::Tests => "review.test",
+            ExecutionMode::Writes => "review.write",
+            ExecutionMode::Leads => "review.begin",
+            ExecutionMode::Tests => "review.test",
         }
     }
 
     /// Returns the id of the text that says what will be done.
-    pub const fn way(self) -> &'static str {
+    pub const fn summary_id(self) -> &'static str {
         match self {
-            Manner::Writes => "review.way",
-            Manner::Leads => "review.way_led",
-            Manner::Tests => "review.way_test",
+            ExecutionMode::Writes => "review.way",
+            ExecutionMode::Leads => "review.way_led",
+            ExecutionMode::Tests => "review.way_test",
         }
     }
 }
@@ -198,7 +198,7 @@ impl Manner {
 /// A review as a person sees it, whatever the device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
-    pub what: Text,
+    pub title: Text,
     pub stage: Stage,
     /// The operations.
     pub lines: Vec<OpWords>,
@@ -211,7 +211,7 @@ pub struct ReviewSheet {
     pub redo: Option<Text>,
     /// The cost, besides the write cycles that this computer has counted.
     pub cost: Option<Text>,
-    pub manner: Manner,
+    pub execution_mode: ExecutionMode,
     pub toggles: Vec<Toggle>,
     /// Questions that have to be answered first.
     pub questions: Vec<Question>,
@@ -310,8 +310,8 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     }
 
     /// Returns how the plan is carried out.
-    fn manner(_prepared: &Self::Prepared) -> Manner {
-        Manner::Writes
+    fn execution_mode(_prepared: &Self::Prepared) -> ExecutionMode {
+        ExecutionMode::Writes
     }
 }
 
@@ -378,14 +378,14 @@ impl<K: Reviewed> Review<K> {
         let uncounted = |own: &K::Prepared| is_uncounted(own.cycles_seen(), own.plan().write_cycles());
         let lines = |own: &K::Prepared| own.plan().ops.iter().map(|own_op| op(own, own_op)).collect();
         ReviewSheet {
-            what: self.what.clone(),
+            title: self.title.clone(),
             stage,
             lines: carried.map(lines).unwrap_or_default(),
             warnings: shown.map(K::warnings).unwrap_or_default(),
             needs: shown.map(|own| K::needs(&self.change, own)).unwrap_or_default(),
             redo: carried.and_then(|own| redo(K::redo(own))),
             cost: costs.map(K::cost),
-            manner: prepared.map_or(Manner::Writes, K::manner),
+            execution_mode: prepared.map_or(ExecutionMode::Writes, K::execution_mode),
             toggles: self.toggles(),
             questions: shown.map(K::questions).unwrap_or_default(),
             force_wear: costs.filter(|own| uncounted(own) || K::is_worn(own)).map(|_| self.force_wear),

@@ -12,7 +12,7 @@ use super::file_question::FileQuestion;
 use super::given::Given;
 use super::kinds::Kinds;
 use super::notices::{Log, Notice, Severity};
-use super::shutdown::{GracePeriods, Leaving};
+use super::shutdown::{ClosingSession, GracePeriods};
 use super::studio::SessionId;
 use super::tasks::{Tasks, Wake};
 use crate::link::{LinkError, PortInfo};
@@ -21,7 +21,7 @@ use crate::worker::JobId;
 
 /// The world outside, as the studio reaches it; a test has one of its own.
 #[derive(Clone)]
-pub struct World {
+pub struct Environment {
     /// Backups, logbook, drafts, settings.
     pub store: Store,
     /// The configuration that kinds of device receive from outside.
@@ -38,10 +38,10 @@ pub struct World {
     pub patience: GracePeriods,
 }
 
-impl World {
+impl Environment {
     /// This machine, with these kinds of devices and tools.
     pub fn real(store: Store, kinds: Kinds) -> Self {
-        World {
+        Environment {
             store,
             given: Given::default(),
             kinds,
@@ -75,7 +75,7 @@ pub struct JobRecord {
     pub until: Option<Zoned>,
     /// Whose it is.
     pub about: String,
-    pub what: Text,
+    pub title: Text,
     pub end: JobEnd,
     key: (SessionId, JobId),
 }
@@ -83,7 +83,7 @@ pub struct JobRecord {
 /// The services that sessions share.
 pub struct Services {
     /// The world outside.
-    pub(crate) world: World,
+    pub(crate) world: Environment,
     /// Threads.
     pub(crate) tasks: Tasks,
     pub log: Log,
@@ -94,7 +94,7 @@ pub struct Services {
     /// The drives of all sessions.
     pub(crate) brakes: Brakes,
     /// Sessions that were let go and have not ended.
-    pub(super) leaving: Vec<Leaving>,
+    pub(super) closing_sessions: Vec<ClosingSession>,
     /// Profiles that are being read.
     pub(super) opening_files: Vec<std::path::PathBuf>,
     /// Drafts that are on their way to the disk.
@@ -116,9 +116,9 @@ impl Services {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
 
-    pub(crate) fn new(world: World, wake: Wake) -> Self {
+    pub(crate) fn new(world: Environment, wake: Wake) -> Self {
         let (log, jobs) = (Log::default(), VecDeque::new());
-        let (tasks, leaving) = (Tasks::new(wake), Vec::new());
+        let (tasks, closing_sessions) = (Tasks::new(wake), Vec::new());
         let opening_files = Vec::new();
         Services {
             world,
@@ -127,7 +127,7 @@ impl Services {
             jobs,
             file_question: None,
             brakes: Brakes::default(),
-            leaving,
+            closing_sessions,
             opening_files,
             drafts_on_their_way: 0,
             shared: HashMap::new(),
@@ -140,12 +140,12 @@ impl Services {
     }
 
     /// Adds to the log, and stands in the window.
-    pub(crate) fn tell(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
+    pub(crate) fn notify(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add(self.notice(severity, texts, about));
     }
 
     /// The same about a part of what it is about.
-    pub(crate) fn tell_of_part(
+    pub(crate) fn notify_part(
         &mut self,
         severity: Severity,
         texts: Vec<Text>,
@@ -156,7 +156,7 @@ impl Services {
 
     /// Adds to the log only: the window shows it elsewhere.
     pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
-        self.log.keep(self.notice(severity, texts, about));
+        self.log.add_to_log(self.notice(severity, texts, about));
     }
 
     fn notice(&self, severity: Severity, texts: Vec<Text>, about: Option<&str>) -> Notice {
@@ -171,7 +171,14 @@ impl Services {
     pub(super) fn job_begins(&mut self, session: SessionId, id: JobId, about: &str, what: Text) {
         let about = about.to_owned();
         let since = self.now();
-        self.jobs.push_back(JobRecord { since, until: None, about, what, end: JobEnd::Running, key: (session, id) });
+        self.jobs.push_back(JobRecord {
+            since,
+            until: None,
+            about,
+            title: what,
+            end: JobEnd::Running,
+            key: (session, id),
+        });
         if self.jobs.len() > Self::JOBS {
             self.jobs.pop_front();
         }

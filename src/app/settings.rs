@@ -8,7 +8,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Language;
-use super::drives::{LocksAlone, RememberedDrives};
+use super::drives::{LocksOnly, RememberedDrives};
 use super::kinds::Kinds;
 use super::tab::Tab;
 
@@ -100,7 +100,7 @@ impl Settings {
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay so, whatever else is broken.
-                entry!(drives: BTreeMap<String, LocksAlone>, BTreeMap::new())
+                entry!(drives: BTreeMap<String, LocksOnly>, BTreeMap::new())
                     .into_iter()
                     .map(|(device, locks)| (device, locks.into()))
                     .collect()
@@ -117,7 +117,7 @@ impl Settings {
         take!(theme, language, layout, tab, size);
         self.change_drives(known, ours);
         for tab in ours.links.tabs() {
-            let used = used_since(known.links(tab), ours.links(tab));
+            let used = newer_links(known.links(tab), ours.links(tab));
             used.iter().rev().for_each(|link| self.use_link(tab, link));
         }
         self
@@ -238,7 +238,7 @@ impl<'de> Deserialize<'de> for Links {
 }
 
 /// Links of `ours` that were used since they stood as in `known`: those before the rest, which stands as it did.
-fn used_since<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
+fn newer_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);
         let mut before = known.iter().filter(|link| !used.contains(link));

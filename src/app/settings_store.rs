@@ -35,16 +35,16 @@ pub(crate) struct SettingsStore {
     /// Settings that could not be written.
     failed: Option<Settings>,
     /// Settings that are being written.
-    busy: Option<Settings>,
+    writing: Option<Settings>,
     /// The file has been read, or put aside: before that nothing is written over it.
     may_write: bool,
-    told: bool,
+    is_failure_reported: bool,
     /// The file is being read, since then.
-    looking: Option<Zoned>,
+    reading_since: Option<Zoned>,
     /// When it was read last.
-    looked: Option<Zoned>,
+    last_read: Option<Zoned>,
     /// When they could not be read last.
-    unseen: Option<Zoned>,
+    last_failed_read: Option<Zoned>,
 }
 
 /// The result of reading the settings.
@@ -88,24 +88,24 @@ impl SettingsStore {
             }
         });
         let mut settings = Settings::of(kinds);
-        let mut keeper = SettingsStore {
+        let mut store = SettingsStore {
             known: settings.clone(),
             failed: None,
-            busy: None,
+            writing: None,
             may_write: false,
-            told: false,
-            looking: None,
-            looked: None,
-            unseen: None,
+            is_failure_reported: false,
+            reading_since: None,
+            last_read: None,
+            last_failed_read: None,
         };
         match receiver.recv_timeout(PATIENCE) {
-            Ok(read) => keeper.take(read, &mut settings, services),
+            Ok(read) => store.take(read, &mut settings, services),
             Err(_) => {
                 drop(receiver);
-                services.tell(Severity::Warning, vec![Text::new("session.settings_slow")], None);
+                services.notify(Severity::Warning, vec![Text::new("session.settings_slow")], None);
             }
         }
-        (settings, keeper)
+        (settings, store)
     }
 
     /// Takes over the settings that were read; changes by the user since then stay.
@@ -126,13 +126,13 @@ impl SettingsStore {
                     Ok(aside) => Text::new("session.settings_broken").with("aside", aside.display()),
                     Err(why) => Text::new("session.settings_left").with("why", why),
                 };
-                services.tell(Severity::Warning, vec![text.with("path", path.display())], None);
+                services.notify(Severity::Warning, vec![text.with("path", path.display())], None);
                 self.may_write = aside.is_ok();
                 *settings
             }
             SettingsRead::Unreadable(error) => {
                 let text = Text::new("session.settings_unread").with_text("why", explain::file(&error));
-                services.tell(Severity::Warning, vec![text], None);
+                services.notify(Severity::Warning, vec![text], None);
                 return;
             }
         };
@@ -140,25 +140,25 @@ impl SettingsStore {
         self.known = found;
     }
 
-    pub(super) fn keep(&mut self, settings: &Settings, services: &Services) {
+    pub(super) fn write_if_changed(&mut self, settings: &Settings, services: &Services) {
         let is_written = *settings == self.known || self.failed.as_ref() == Some(settings);
-        if self.busy.is_some() || !self.may_write || is_written {
+        if self.writing.is_some() || !self.may_write || is_written {
             return;
         }
-        self.busy = Some(settings.clone());
+        self.writing = Some(settings.clone());
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let (known, ours) = (self.known.clone(), settings.clone());
         services.tasks.run("settings", move || Action::Done(Done::SettingsKept(write(&path, &known, &ours, kinds))));
     }
 
     /// Handles the result of a write; a failure is reported once.
-    pub(super) fn kept(
+    pub(super) fn write_done(
         &mut self,
         result: Result<SettingsWritten, FileError>,
         settings: &mut Settings,
         services: &mut Services,
     ) {
-        let Some(written) = self.busy.take() else { return };
+        let Some(written) = self.writing.take() else { return };
         match result {
             Ok(SettingsWritten { settings: found, aside }) => {
                 self.known = written;
@@ -166,30 +166,30 @@ impl SettingsStore {
                 self.failed = None;
                 if let Some((path, aside)) = aside {
                     let text = Text::new("session.settings_broken").with("aside", aside.display());
-                    services.tell(Severity::Warning, vec![text.with("path", path.display())], None);
+                    services.notify(Severity::Warning, vec![text.with("path", path.display())], None);
                 }
-                if std::mem::take(&mut self.told) {
+                if std::mem::take(&mut self.is_failure_reported) {
                     services.log.settle(NOT_KEPT, None);
                 }
             }
             Err(error) => {
                 // Another program lets go of it some time: it is tried again.
                 self.failed = (error.problem != FileProblem::InUse).then_some(written);
-                if !std::mem::replace(&mut self.told, true) {
+                if !std::mem::replace(&mut self.is_failure_reported, true) {
                     let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
-                    services.tell(Severity::Warning, vec![text], None);
+                    services.notify(Severity::Warning, vec![text], None);
                 }
             }
         }
     }
 
     /// Reads the settings as another window may have written them. Whether that begins now.
-    pub(crate) fn look(&mut self, services: &Services) -> bool {
+    pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
-        if self.looking.is_some() || self.unseen.as_ref().is_some_and(has_failed) {
+        if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
             return false;
         }
-        self.looking = Some(services.now());
+        self.reading_since = Some(services.now());
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         services.tasks.run("settings", move || {
             let found = found(&path, kinds).map(|found| found.map(Box::new));
@@ -199,14 +199,14 @@ impl SettingsStore {
     }
 
     /// Handles settings that could not be read: this counts as not having looked, since they may contain locks.
-    pub(crate) fn could_not_look(&mut self) {
-        self.unseen = self.looking.take();
+    pub(crate) fn read_failed(&mut self) {
+        self.last_failed_read = self.reading_since.take();
     }
 
     /// Merges settings that were read. During a write they are returned instead: its result is merged later.
-    pub(crate) fn saw(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
-        self.looked = self.looking.take();
-        if self.busy.is_some() {
+    pub(crate) fn read_done(&mut self, found: Option<Settings>, settings: &mut Settings) -> Option<Settings> {
+        self.last_read = self.reading_since.take();
+        if self.writing.is_some() {
             return found;
         }
         if let Some(found) = found {
@@ -218,7 +218,7 @@ impl SettingsStore {
     /// Returns whether the settings have not been read for this long.
     pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
         // A clock of the wall may be set back.
-        let age = self.looked.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
+        let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)
     }
 
@@ -231,7 +231,7 @@ impl SettingsStore {
     }
 
     pub(super) fn is_idle(&self) -> bool {
-        self.busy.is_none()
+        self.writing.is_none()
     }
 }
 

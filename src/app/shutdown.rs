@@ -8,7 +8,7 @@ use crossbeam_channel::Sender;
 use super::action::{Action, Done};
 use super::brakes::Brakes;
 use super::services::{JobEnd, Services};
-use super::session::{Kind, LastWords};
+use super::session::{JobEnding, Kind};
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Wire};
@@ -39,7 +39,7 @@ impl Default for GracePeriods {
 }
 
 /// Whose thread was let go.
-pub(crate) struct Leaver {
+pub(crate) struct ClosingSessionInfo {
     /// Its number.
     pub(crate) session: SessionId,
     /// Its name.
@@ -50,13 +50,13 @@ pub(crate) struct Leaver {
 }
 
 /// A session that was let go and has not ended.
-pub(super) struct Leaving {
-    who: Leaver,
-    ending: Arc<dyn Left>,
+pub(super) struct ClosingSession {
+    info: ClosingSessionInfo,
+    ending: Arc<dyn ClosingWorker>,
 }
 
 /// A worker that was let go, of whatever device.
-pub(crate) trait Left: Send + Sync {
+pub(crate) trait ClosingWorker: Send + Sync {
     /// The thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
 
@@ -64,10 +64,10 @@ pub(crate) trait Left: Send + Sync {
     fn wait(&self, patience: Duration) -> bool;
 
     /// Returns how jobs ended since the last call.
-    fn last_words(&self) -> Vec<LastWords>;
+    fn job_endings(&self) -> Vec<JobEnding>;
 }
 
-impl<D: Kind> Left for Ending<D> {
+impl<D: Kind> ClosingWorker for Ending<D> {
     fn is_ended(&self) -> bool {
         Ending::is_ended(self)
     }
@@ -76,21 +76,21 @@ impl<D: Kind> Left for Ending<D> {
         Ending::wait(self, patience)
     }
 
-    fn last_words(&self) -> Vec<LastWords> {
-        self.events().try_iter().filter_map(|event| D::last_words(&event)).collect()
+    fn job_endings(&self) -> Vec<JobEnding> {
+        self.events().try_iter().filter_map(|event| D::job_endings(&event)).collect()
     }
 }
 
-impl Left for End {
+impl ClosingWorker for End {
     fn is_ended(&self) -> bool {
-        self.has_come()
+        self.has_ended()
     }
 
     fn wait(&self, patience: Duration) -> bool {
         End::wait(self, patience)
     }
 
-    fn last_words(&self) -> Vec<LastWords> {
+    fn job_endings(&self) -> Vec<JobEnding> {
         Vec::new()
     }
 }
@@ -102,61 +102,66 @@ pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 
 impl Services {
     /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
-    pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
-        self.let_end(Arc::new(worker.end()), who, turn);
+    pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, info: ClosingSessionInfo, turn: Option<Sender<()>>) {
+        self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
 
     /// Lets a stream go, which belongs to no session.
     pub(crate) fn leave_stream(&mut self, end: End, url: LinkUrl) {
-        let who = Leaver { session: SessionId::default(), about: String::new(), url, write: None };
-        self.let_end(Arc::new(end), who, None);
+        let info = ClosingSessionInfo { session: SessionId::default(), about: String::new(), url, write: None };
+        self.close_session_thread(Arc::new(end), info, None);
     }
 
-    fn let_end(&mut self, ending: Arc<dyn Left>, who: Leaver, turn: Option<Sender<()>>) {
-        let (watched, patience) = (ending.clone(), self.patience_with(who.write.is_some()));
+    fn close_session_thread(
+        &mut self,
+        ending: Arc<dyn ClosingWorker>,
+        info: ClosingSessionInfo,
+        turn: Option<Sender<()>>,
+    ) {
+        let (watched, patience) = (ending.clone(), self.patience_with(info.write.is_some()));
         self.tasks.run("leave", move || {
             watched.wait(patience);
             drop(turn);
             Action::Done(Done::Left)
         });
-        self.leaving.push(Leaving { who, ending });
+        self.closing_sessions.push(ClosingSession { info, ending });
     }
 
     /// Takes the events of sessions that are ending.
-    pub(super) fn pump_leaving(&mut self) {
-        let mut told = Vec::new();
-        self.leaving.retain_mut(|leaving| {
+    pub(super) fn poll_closing_sessions(&mut self) {
+        let mut endings = Vec::new();
+        self.closing_sessions.retain_mut(|closing| {
             // In this order: what has ended tells nothing more.
-            let ended = leaving.ending.is_ended();
-            for end in leaving.ending.last_words() {
-                if leaving.who.write == Some(end.job) {
-                    leaving.who.write = None;
-                    told.push((leaving.who.session, leaving.who.about.clone(), end));
+            let ended = closing.ending.is_ended();
+            for end in closing.ending.job_endings() {
+                if closing.info.write == Some(end.job) {
+                    closing.info.write = None;
+                    endings.push((closing.info.session, closing.info.about.clone(), end));
                 }
             }
-            if ended && let Some(job) = leaving.who.write.take() {
+            if ended && let Some(job) = closing.info.write.take() {
                 let why = Text::new("session.ended");
                 let end = JobEnd::Failed(why.clone());
-                let end = LastWords { job, end, severity: Severity::Error, texts: vec![why] };
-                told.push((leaving.who.session, leaving.who.about.clone(), end));
+                let end = JobEnding { job, end, severity: Severity::Error, texts: vec![why] };
+                endings.push((closing.info.session, closing.info.about.clone(), end));
             }
             !ended
         });
-        for (session, about, last) in told {
+        for (session, about, last) in endings {
             self.job_ends(session, last.job, last.end);
-            self.tell(last.severity, last.texts, Some(&about));
+            self.notify(last.severity, last.texts, Some(&about));
         }
     }
 
     /// Returns whether an ending session still writes.
-    pub(super) fn leaves_writing(&self) -> bool {
-        self.leaving.iter().any(|leaving| leaving.who.write.is_some())
+    pub(super) fn is_closing_with_write(&self) -> bool {
+        self.closing_sessions.iter().any(|closing| closing.info.write.is_some())
     }
 
     /// Returns the sessions that are ending on the wire of a link, with the time each gets.
-    pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn Left>, Duration)> {
-        let own = self.leaving.iter().filter(|leaving| same_wire(&leaving.who.url, url));
-        own.map(|leaving| (leaving.ending.clone(), self.patience_with(leaving.who.write.is_some()))).collect()
+    pub(crate) fn endings_on(&self, url: &LinkUrl) -> Vec<(Arc<dyn ClosingWorker>, Duration)> {
+        let own = self.closing_sessions.iter().filter(|closing| same_wire(&closing.info.url, url));
+        own.map(|closing| (closing.ending.clone(), self.patience_with(closing.info.write.is_some()))).collect()
     }
 
     fn patience_with(&self, writes: bool) -> Duration {

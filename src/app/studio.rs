@@ -10,7 +10,7 @@ use super::diverged::Diverged;
 use super::documents::read_document;
 use super::file_question::FileQuestion;
 use super::question::{Question, Then};
-use super::services::{Services, World};
+use super::services::{Environment, Services};
 use super::settings_store::SettingsStore;
 use super::sine_cosine::SineCosineSource;
 use super::tab::Tab;
@@ -39,7 +39,7 @@ pub struct Studio {
     pub(crate) devices: Vec<Box<AnyDevice>>,
     pub(crate) shown: Selection,
     next_id: u32,
-    pub(crate) keeper: SettingsStore,
+    pub(crate) settings_store: SettingsStore,
     pub(super) closing: bool,
     pub(super) waited: Option<Waited>,
     path_question: Option<FileQuestion>,
@@ -48,10 +48,10 @@ pub struct Studio {
 
 impl Studio {
     /// A studio with what it remembers; `wake` is called when there is something to look at.
-    pub fn new(world: World, wake: Wake) -> Self {
+    pub fn new(world: Environment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
-        let (settings, keeper) = SettingsStore::load(&mut services);
+        let (settings, settings_store) = SettingsStore::load(&mut services);
         let begin = |kind: &&dyn ToolKind| (kind.tab(), kind.begin(settings.links(kind.tab())));
         Studio {
             tools: kinds.tools().iter().map(begin).collect(),
@@ -63,7 +63,7 @@ impl Studio {
             devices: Vec::new(),
             shown: Selection::default(),
             next_id: 0,
-            keeper,
+            settings_store,
             closing: false,
             waited: None,
             path_question: None,
@@ -134,9 +134,9 @@ impl Studio {
             Action::Typed(question, path) => self.typed(question, path),
             Action::Chosen(question, path) => self.chosen(question, path),
             Action::CloseComparison => self.comparison = None,
-            Action::Recorder(desk, action) => self.act_recorder(desk, action),
-            Action::AskForget(desk) => self.ask_forget(desk),
-            Action::AskTable { desk, visible } => self.ask_table(desk, visible),
+            Action::Recorder(owner, action) => self.act_recorder(owner, action),
+            Action::AskForget(owner) => self.ask_forget(owner),
+            Action::AskTable { owner, visible } => self.ask_table(owner, visible),
             Action::AskPicture(picture) => self.ask_picture(picture),
             Action::PictureCut => self.tell_picture_cut(),
             Action::Review(id, action) => self.with_device(id, |device, services| device.act_review(action, services)),
@@ -147,11 +147,11 @@ impl Studio {
             Action::NoThread(why) => {
                 self.devices.iter_mut().for_each(|device| device.save_waits());
                 let text = Text::new("session.no_thread").with("why", why);
-                self.services.tell(Severity::Error, vec![text], None);
+                self.services.notify(Severity::Error, vec![text], None);
             }
         }
         self.hold_in_sight();
-        self.keep();
+        self.write_if_changed();
     }
 
     /// Looks what has happened since the last time: called for every picture.
@@ -169,18 +169,18 @@ impl Studio {
         if let Some(connect) = &mut self.connect {
             connect.pump();
         }
-        self.services.pump_leaving();
+        self.services.poll_closing_sessions();
         self.feed_exports();
         self.remember_drives();
-        self.look_at_settings();
+        self.refresh_settings();
         self.hold_in_sight();
-        self.keep();
+        self.write_if_changed();
     }
 
-    fn keep(&mut self) {
-        self.keeper.keep(&self.settings, &self.services);
+    fn write_if_changed(&mut self) {
+        self.settings_store.write_if_changed(&self.settings, &self.services);
         for device in &mut self.devices {
-            device.keep_draft(&mut self.services);
+            device.write_draft(&mut self.services);
         }
     }
 
@@ -215,14 +215,14 @@ impl Studio {
     }
 
     /// The device that the open tab shows; where that shows none, the one that was shown last.
-    pub fn shown(&self) -> Option<&AnyDevice> {
+    pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
     /// The device of that type which its tab shows.
-    pub fn shown_as<M: DeviceType>(&self) -> Option<&M> {
+    pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
 
@@ -332,7 +332,7 @@ impl Studio {
                 self.question = Some(Question::before(text, confirm, Then::Write(question, path)));
             }
             Done::Looked { question, path, exists: false } => self.chosen(question, path),
-            Done::TableWritten(desk, exported) => self.table_written(desk, exported),
+            Done::TableWritten(owner, exported) => self.table_written(owner, exported),
             Done::PictureSaved(path, result) => self.picture_saved(&path, result),
             Done::ReportSaved(path, result) => self.report_saved(&path, result),
             // That was to be looked at.
@@ -342,10 +342,12 @@ impl Studio {
             }),
             Done::Diverged(diverged) => self.has_diverged(*diverged),
             Done::WouldLose(saving, lost) => self.ask_to_lose(*saving, &lost),
-            Done::SettingsRead(read) => self.keeper.take(read, &mut self.settings, &mut self.services),
-            Done::SettingsKept(result) => self.keeper.kept(result, &mut self.settings, &mut self.services),
-            Done::SettingsSeen(Ok(found)) => self.saw_settings(found.map(|found| *found)),
-            Done::SettingsSeen(Err(error)) => self.could_not_see_settings(&error),
+            Done::SettingsRead(read) => self.settings_store.take(read, &mut self.settings, &mut self.services),
+            Done::SettingsKept(result) => {
+                self.settings_store.write_done(result, &mut self.settings, &mut self.services)
+            }
+            Done::SettingsSeen(Ok(found)) => self.settings_read(found.map(|found| *found)),
+            Done::SettingsSeen(Err(error)) => self.settings_unread(&error),
             Done::Draft(id, done) => self.draft_done(id, done),
             Done::Listed(id, of, listed) => self.with_device(id, |device, _| device.listed(&of, *listed)),
             Done::Backup { session, of, path, result } => {
@@ -387,7 +389,7 @@ impl Studio {
             self.close_dialog();
             return;
         }
-        if let Some(id) = self.shown().filter(|device| device.is_reviewing()).map(|device| device.id()) {
+        if let Some(id) = self.selected_device().filter(|device| device.is_reviewing()).map(|device| device.id()) {
             self.with_device(id, |device, _| device.close_review());
             return;
         }

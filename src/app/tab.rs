@@ -54,7 +54,7 @@ impl<'de> Visitor<'de> for TabVisitor {
     fn visit_enum<A: EnumAccess<'de>>(self, data: A) -> Result<Tab, A::Error> {
         let (Name(name), variant) = data.variant()?;
         variant.unit_variant()?;
-        Ok(Tab(kept(name)))
+        Ok(Tab(intern(name)))
     }
 }
 
@@ -81,7 +81,7 @@ impl<'de> Deserialize<'de> for Name {
 
 /// Interns a name that was read from settings, including tabs that this program does not have: another version keeps
 /// using their links. Each name is kept once for the life of the process.
-fn kept(name: String) -> &'static str {
+fn intern(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.get(name.as_str()) {

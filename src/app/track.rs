@@ -75,7 +75,7 @@ pub struct Track<W> {
 /// A watched value and where it is recorded.
 #[derive(Clone, Debug)]
 struct Watched<W> {
-    what: W,
+    value: W,
     group: GroupId,
     line: LineId,
     /// It is recorded; else it was, and its samples are there still.
@@ -173,7 +173,7 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records that samples were dropped before the next ones.
-    pub fn lose(&mut self, dropped: u64) {
+    pub fn note_dropped(&mut self, dropped: u64) {
         self.dropped += dropped;
         if dropped > 0 {
             self.gap();
@@ -228,10 +228,10 @@ impl<W: Watchable> Track<W> {
     }
 
     /// Records these values too, and no others beside the position. What was recorded of others stays.
-    pub fn watch(&mut self, wished: &[W]) {
+    pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
-            if !own.active || wished.iter().any(|what| own.what.continues(what)) {
+            if !own.active || watched.iter().any(|what| own.value.continues(what)) {
                 kept.push(own);
             } else if self.recorder.has_samples(own.line) {
                 self.end(own.line);
@@ -244,21 +244,21 @@ impl<W: Watchable> Track<W> {
         // A recording that was cleared has no lines that have ended.
         kept.retain(|own| self.recorder.line(own.line).is_some());
         self.watched = kept;
-        wished.iter().for_each(|what| self.begin_to_watch(what));
+        watched.iter().for_each(|what| self.begin_to_watch(what));
     }
 
     fn begin_to_watch(&mut self, what: &W) {
-        let Some(own) = self.watched.iter_mut().find(|own| own.what.continues(what)) else {
+        let Some(own) = self.watched.iter_mut().find(|own| own.value.continues(what)) else {
             let kind = if what.is_whole() { Kind::Whole } else { Kind::Real };
             let group = self.recorder.add_group(&[kind], WATCHED, Some(WATCHED_APART));
             let line = self.recorder.add_line(what.line(group));
-            return self.watched.push(Watched { what: what.clone(), group, line, active: true });
+            return self.watched.push(Watched { value: what.clone(), group, line, active: true });
         };
         let goes_on = std::mem::replace(&mut own.active, true);
-        if goes_on && own.what == *what {
+        if goes_on && own.value == *what {
             return;
         }
-        own.what = what.clone();
+        own.value = what.clone();
         let line = what.line(own.group);
         if !goes_on {
             self.recorder.resume_line(own.line, line.name.clone(), line.heading.clone());
@@ -268,12 +268,12 @@ impl<W: Watchable> Track<W> {
 
     /// Returns the values recorded with the position.
     pub fn watched(&self) -> Vec<W> {
-        self.watched.iter().filter(|own| own.active).map(|own| own.what.clone()).collect()
+        self.watched.iter().filter(|own| own.active).map(|own| own.value.clone()).collect()
     }
 
     /// Records a watched value.
     pub fn add_watched(&mut self, what: &W, watching: &Watching) {
-        let Some(own) = self.watched.iter().find(|own| own.active && own.what == *what) else { return };
+        let Some(own) = self.watched.iter().find(|own| own.active && own.value == *what) else { return };
         let (group, line) = (own.group, own.line);
         let mut flags = if watching.value.is_some() { Flags::NONE } else { Flags::BAD };
         if watching.is_warned {

@@ -18,7 +18,7 @@ pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
 pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
-    let (mut list, mut told) = (Vec::new(), Vec::new());
+    let (mut list, mut results) = (Vec::new(), Vec::new());
     let mut text = Lines::default();
     for line in lines {
         let (step, word) = (line.step.terminal(), word(line.verdict));
@@ -28,10 +28,10 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
         let found = found.join("; ");
         text.add(&step, format!("{verdict:9}  {found}").trim_end());
-        told.push(json!({"name": step, "verdict": word, "text": found}));
+        results.push(json!({"name": step, "verdict": word, "text": found}));
         list.push(json!({"step": step, "verdict": verdict, "findings": findings(line)}));
     }
-    let mut json = json!({"done": "check", "ok": good, "lines": told, "steps": list});
+    let mut json = json!({"done": "check", "ok": good, "lines": results, "steps": list});
     if let (Some(quality), Some(object)) = (quality, json.as_object_mut()) {
         object.insert("line_quality".to_owned(), line_quality(quality));
     }

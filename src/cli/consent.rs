@@ -62,28 +62,28 @@ pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
     // A pipe or a device is written to, and keeps nothing.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
     if !is_there || force {
-        return Ok(Replaces { says: None });
+        return Ok(Replaces { message: None });
     }
     let name = path.display();
     if !can_ask() {
-        return Ok(Replaces { says: Some(format!("{name} existed and was replaced.")) });
+        return Ok(Replaces { message: Some(format!("{name} existed and was replaced.")) });
     }
     if ask(&format!("{name} exists already. Replace it? [y/N] ")) {
-        return Ok(Replaces { says: None });
+        return Ok(Replaces { message: None });
     }
     Err(Failure::Failed(vec![format!("Not confirmed; {name} is left as it is.")]))
 }
 
 /// The message after a file was written.
 pub(super) struct Replaces {
-    says: Option<String>,
+    message: Option<String>,
 }
 
 impl Replaces {
     /// Reports that a file was replaced, if the user was not asked.
     pub(super) fn report(&self, output: &Output) {
-        if let Some(says) = &self.says {
-            output.remark(says);
+        if let Some(message) = &self.message {
+            output.remark(message);
         }
     }
 }

@@ -26,7 +26,7 @@ pub use commands::{CommandId, Commands, DeviceCommands, OwnCommand, OwnOptions, 
 pub use consent::{agreed, check_wear, require_consent};
 pub use output::{Lines, Output};
 pub use positions::{readings, try_readings};
-pub use profiles::{Unrestored, keep, restore_options, to_restore, write_restore};
+pub use profiles::{Unrestored, restore_options, save_profile, to_restore, write_restore};
 pub use runner::{JobFailure, Runner, Runs, failed, unexpected};
 pub use simulate::{Simulated, settings};
 pub use slow_reply_notice::Pace;

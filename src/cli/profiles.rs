@@ -47,7 +47,7 @@ fn read_document(output: &Output, path: &Path) -> Result<Document> {
 }
 
 /// Writes a profile that was read just now.
-pub fn keep(path: &Path, body: Body) -> Result<()> {
+pub fn save_profile(path: &Path, body: Body) -> Result<()> {
     let now = Timestamp::now();
     let second = Timestamp::from_second(now.as_second()).unwrap_or(now);
     let document = Document::new(second.to_string(), body);
@@ -234,7 +234,7 @@ pub(crate) fn show_done(
     operations: &[Json],
     spent: &WriteSummary,
     results: &[Json],
-    said: &str,
+    changes: &str,
 ) -> Result {
     let mut json = json!({
         "item": item,
@@ -253,7 +253,7 @@ pub(crate) fn show_done(
             let mut lines = Lines::default();
             lines.add("written", spent.written).add("verified", spent.verified);
             lines.add("write cycles", spent.write_cycles).add("backup", backup.display());
-            format!("{said}{}", lines.text())
+            format!("{changes}{}", lines.text())
         }
     };
     output.show_written(&json, &text)?;

@@ -158,18 +158,18 @@ impl<D: Runs> Runner<D> {
         loop {
             let Some(event) = self.next_event()? else {
                 if let Some(words) = self.patience.words() {
-                    bar.say(&words);
+                    bar.print_above(&words);
                 }
                 continue;
             };
             match event {
                 Event::Progress(of, progress) if of == id => {
-                    let words = D::announce(&progress.what);
+                    let words = D::announce(&progress.step);
                     if let Some(words) = words.as_ref().filter(|_| words != announced) {
-                        bar.say(words);
+                        bar.print_above(words);
                     }
                     announced = words;
-                    bar.show(progress.done, progress.total, &D::step(&progress.what));
+                    bar.show(progress.done, progress.total, &D::step(&progress.step));
                 }
                 Event::Remark(remark) => {
                     D::print_message(&remark);
@@ -324,7 +324,7 @@ impl Bar {
 
 impl Bar {
     /// A line above the bar, or where it will be.
-    fn say(&self, words: &str) {
+    fn print_above(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),
             None if self.0.is_hidden() => {}

@@ -90,7 +90,7 @@ struct Device {
 }
 
 /// The result of reading from a client.
-enum Heard {
+enum ReadOutcome {
     Bytes(usize),
     Nothing,
     /// The client has gone.
@@ -120,9 +120,9 @@ impl Device {
             let now = self.clock.now();
             self.follow_format(client.baud());
             match heard {
-                Heard::Bytes(count) => self.simulated.on_bytes(now, buffer.get(..count).unwrap_or_default()),
-                Heard::Nothing => {}
-                Heard::End => return Ok(()),
+                ReadOutcome::Bytes(count) => self.simulated.on_bytes(now, buffer.get(..count).unwrap_or_default()),
+                ReadOutcome::Nothing => {}
+                ReadOutcome::End => return Ok(()),
             }
             let reply = self.simulated.poll(self.clock.now());
             if !reply.is_empty() {
@@ -154,22 +154,22 @@ impl Device {
 }
 
 trait Client {
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard>;
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome>;
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()>;
     fn baud(&self) -> Option<Baud>;
 }
 
 impl Client for TcpStream {
-    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard> {
+    fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome> {
         if wait >= SHORT {
             self.set_read_timeout(Some(wait))?;
-            return Ok(heard(Read::read(self, buffer)));
+            return Ok(read_outcome(Read::read(self, buffer)));
         }
         self.set_nonblocking(true)?;
-        let mut came = heard(Read::read(self, buffer));
-        if matches!(came, Heard::Nothing) {
+        let mut came = read_outcome(Read::read(self, buffer));
+        if matches!(came, ReadOutcome::Nothing) {
             std::thread::sleep(wait);
-            came = heard(Read::read(self, buffer));
+            came = read_outcome(Read::read(self, buffer));
         }
         self.set_nonblocking(false)?;
         Ok(came)
@@ -188,14 +188,14 @@ impl Client for TcpStream {
     }
 }
 
-fn heard(read: std::io::Result<usize>) -> Heard {
+fn read_outcome(read: std::io::Result<usize>) -> ReadOutcome {
     match read {
-        Ok(0) => Heard::End,
-        Ok(count) => Heard::Bytes(count),
+        Ok(0) => ReadOutcome::End,
+        Ok(count) => ReadOutcome::Bytes(count),
         Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted) => {
-            Heard::Nothing
+            ReadOutcome::Nothing
         }
-        Err(_) => Heard::End,
+        Err(_) => ReadOutcome::End,
     }
 }
 
@@ -269,7 +269,7 @@ mod terminal {
 
     use serialport::{SerialPort, TTYPort};
 
-    use super::{Client, Clock as _, Device, Failure, Heard, PATIENCE, Result};
+    use super::{Client, Clock as _, Device, Failure, PATIENCE, ReadOutcome, Result};
     use crate::units::Baud;
 
     pub(super) fn serve(path: &Path, device: &mut Device, ended: &AtomicBool) -> Result<()> {
@@ -336,15 +336,15 @@ mod terminal {
     }
 
     impl Client for TTYPort {
-        fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<Heard> {
+        fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<ReadOutcome> {
             self.set_timeout(wait)?;
             match Read::read(self, buffer) {
-                Ok(0) => Ok(Heard::End),
-                Ok(count) => Ok(Heard::Bytes(count)),
+                Ok(0) => Ok(ReadOutcome::End),
+                Ok(count) => Ok(ReadOutcome::Bytes(count)),
                 Err(error) if matches!(error.kind(), ErrorKind::TimedOut | ErrorKind::Interrupted) => {
-                    Ok(Heard::Nothing)
+                    Ok(ReadOutcome::Nothing)
                 }
-                Err(_) => Ok(Heard::End),
+                Err(_) => Ok(ReadOutcome::End),
             }
         }
 

@@ -46,17 +46,17 @@ pub trait DatagramPort: Send {
 }
 
 /// A question to all who listen, and what any of them answers.
-pub trait Shout: Send {
+pub trait Broadcast: Send {
     /// Asks all.
     ///
     /// # Errors
     /// Returns an error if no request can be sent at all.
-    fn shout(&mut self, packet: &[u8]) -> Result<(), LinkError>;
+    fn broadcast(&mut self, packet: &[u8]) -> Result<(), LinkError>;
 
     /// Waits for a packet until `until` and puts it into `into`, replacing the content. Returns the sender, or `None`
     /// when the time is up.
     ///
     /// # Errors
     /// When the network is gone.
-    fn hear(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError>;
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError>;
 }

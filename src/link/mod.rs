@@ -23,7 +23,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 pub use clock::{Clock, RealClock, VirtualClock};
-pub use datagram::{DatagramPort, Datagrams, Shout};
+pub use datagram::{Broadcast, DatagramPort, Datagrams};
 pub use error::{LinkError, LinkErrorKind};
 pub use line::{Echo, LineQuality, LineState};
 pub use realtime_priority::wake_before_others;
@@ -35,7 +35,7 @@ pub use tcp::TcpLink;
 pub use trace::{
     Direction, HEADER as TRACE_HEADER, Trace, TraceEntry, TraceFileError, read_trace, write_entry, write_header,
 };
-pub use udp::{UdpPort, UdpShout};
+pub use udp::{UdpBroadcast, UdpPort};
 pub use url::{LinkUrl, Query, Scheme, UrlError, Wire};
 
 use crate::units::{CharacterFormat, Moment};
@@ -80,14 +80,14 @@ pub struct Cancel(Arc<CancelState>);
 
 #[derive(Debug)]
 struct CancelState {
-    wished: AtomicBool,
+    requested: AtomicBool,
     /// Transactions left until the wish comes by itself.
     fuse: AtomicU64,
 }
 
 impl Default for CancelState {
     fn default() -> Self {
-        CancelState { wished: AtomicBool::new(false), fuse: AtomicU64::new(u64::MAX) }
+        CancelState { requested: AtomicBool::new(false), fuse: AtomicU64::new(u64::MAX) }
     }
 }
 
@@ -101,17 +101,17 @@ impl Cancel {
 
     /// Wishes an end at the next possible point.
     pub fn request(&self) {
-        self.0.wished.store(true, Ordering::SeqCst);
+        self.0.requested.store(true, Ordering::SeqCst);
     }
 
     /// Withdraws the request, for the next job.
     pub fn reset(&self) {
-        self.0.wished.store(false, Ordering::SeqCst);
+        self.0.requested.store(false, Ordering::SeqCst);
     }
 
     /// The end is wished.
     pub fn is_requested(&self) -> bool {
-        self.0.wished.load(Ordering::SeqCst)
+        self.0.requested.load(Ordering::SeqCst)
     }
 
     /// Called before each transaction: whether it may not begin any more.

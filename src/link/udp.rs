@@ -1,4 +1,4 @@
-//! Packets over UDP: cyclic data to and from one target ([`UdpPort`]), and a question to all who listen ([`UdpShout`]).
+//! Packets over UDP: cyclic data to and from one target ([`UdpPort`]), and a question to all who listen ([`UdpBroadcast`]).
 
 use std::io::{self, ErrorKind};
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, ToSocketAddrs, UdpSocket};
@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-use super::{Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, Shout, wake_before_others};
+use super::{Broadcast, Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
 /// The longest packet that is looked at; process data are far shorter.
@@ -53,7 +53,7 @@ impl DatagramPort for UdpPort {
             local,
             port,
             socket: Arc::new(socket),
-            ears: Vec::new(),
+            listeners: Vec::new(),
             sender,
             heard,
             clock: self.clock.clone(),
@@ -83,20 +83,20 @@ struct Packets {
     port: u16,
     socket: Arc<UdpSocket>,
     /// Dropped, they end.
-    ears: Vec<Ear>,
+    listeners: Vec<Listener>,
     sender: Sender<Vec<u8>>,
     heard: Receiver<Vec<u8>>,
     clock: Arc<dyn Clock>,
 }
 
 /// A thread that listens at a socket, until this is dropped.
-struct Ear {
-    deaf: Arc<AtomicBool>,
+struct Listener {
+    is_stopped: Arc<AtomicBool>,
 }
 
-impl Drop for Ear {
+impl Drop for Listener {
     fn drop(&mut self) {
-        self.deaf.store(true, Ordering::Relaxed);
+        self.is_stopped.store(true, Ordering::Relaxed);
     }
 }
 
@@ -129,7 +129,7 @@ impl Packets {
             }
         });
         started.map_err(|error| self.fail(&error))?;
-        self.ears.push(Ear { deaf });
+        self.listeners.push(Listener { is_stopped: deaf });
         Ok(())
     }
 }
@@ -176,13 +176,13 @@ impl Datagrams for Packets {
 }
 
 /// A question to all who listen at a port, in all networks that this computer is part of.
-pub struct UdpShout {
+pub struct UdpBroadcast {
     socket: UdpSocket,
     to: Vec<SocketAddrV4>,
     clock: Arc<dyn Clock>,
 }
 
-impl UdpShout {
+impl UdpBroadcast {
     /// Creates a link that broadcasts in every network.
     ///
     /// # Errors
@@ -205,7 +205,7 @@ impl UdpShout {
             Ok(socket)
         };
         let socket = open().map_err(|error: io::Error| Self::fail(&to, &error))?;
-        Ok(UdpShout { socket, to, clock })
+        Ok(UdpBroadcast { socket, to, clock })
     }
 
     fn fail(to: &[SocketAddrV4], error: &io::Error) -> LinkError {
@@ -236,8 +236,8 @@ fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
     found
 }
 
-impl Shout for UdpShout {
-    fn shout(&mut self, packet: &[u8]) -> Result<(), LinkError> {
+impl Broadcast for UdpBroadcast {
+    fn broadcast(&mut self, packet: &[u8]) -> Result<(), LinkError> {
         let mut failed = None;
         let mut sent = false;
         for to in &self.to {
@@ -252,7 +252,7 @@ impl Shout for UdpShout {
         }
     }
 
-    fn hear(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
+    fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError> {
         let mut buffer = [0; LONGEST];
         loop {
             let left = until.since(self.clock.now());
@@ -331,16 +331,16 @@ mod tests {
         let target = UdpSocket::bind("127.0.0.1:0").unwrap();
         let SocketAddr::V4(address) = target.local_addr().unwrap() else { panic!() };
         let clock = Arc::new(RealClock::start());
-        let mut shout = UdpShout::to(vec![address], clock.clone()).unwrap();
-        shout.shout(b"who?").unwrap();
+        let mut shout = UdpBroadcast::to(vec![address], clock.clone()).unwrap();
+        shout.broadcast(b"who?").unwrap();
         let mut buffer = [0; 16];
         let (count, from) = target.recv_from(&mut buffer).unwrap();
         assert_eq!(&buffer[..count], b"who?");
         target.send_to(b"me", from).unwrap();
         let mut heard = Vec::new();
-        let by = shout.hear(clock.now() + Duration::from_secs(5), &mut heard).unwrap();
+        let by = shout.receive(clock.now() + Duration::from_secs(5), &mut heard).unwrap();
         assert_eq!((by, heard.as_slice()), (Some(Ipv4Addr::LOCALHOST), &b"me"[..]));
-        assert_eq!(shout.hear(clock.now() + Duration::from_millis(20), &mut heard).unwrap(), None);
+        assert_eq!(shout.receive(clock.now() + Duration::from_millis(20), &mut heard).unwrap(), None);
     }
 
     #[test]

@@ -12,12 +12,12 @@ pub(super) struct Reading {
     /// Places of entries beyond the schema.
     beyond: RefCell<Vec<String>>,
     /// The misspelt name of an entry that was not found: what an error about the entry comes from.
-    slip: RefCell<Option<Slip>>,
+    slip: RefCell<Option<Misspelling>>,
 }
 
 /// A name that is another one but for a slip of the hand. The one with the fewest letters to change is the least.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Slip {
+pub(super) struct Misspelling {
     /// Number of differing letters.
     pub(super) letters: usize,
     pub(super) path: String,
@@ -25,10 +25,10 @@ pub(super) struct Slip {
     pub(super) meant: String,
 }
 
-impl Slip {
+impl Misspelling {
     /// The error that tells it, without its line yet.
     pub(super) fn error(self) -> ProfileError {
-        let Slip { path, meant, .. } = self;
+        let Misspelling { path, meant, .. } = self;
         ProfileError::Misspelt { line: 0, column: 0, path, meant }
     }
 }
@@ -54,7 +54,7 @@ impl Reading {
     }
 
     /// Reading ended early, and a name is misspelt where it ended. The innermost structure counts.
-    pub(super) fn is_misspelt(&self, slip: Slip) {
+    pub(super) fn is_misspelt(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 

@@ -7,7 +7,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 
 /// Line and column of an entry's name, counted from 1; `None` where there is none at that path (`fields[2].status`).
 pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
-    let sought = Sought { path: String::new(), wanted: path };
+    let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
     if found.code != ron::Error::Message(FOUND.to_owned()) {
         return None;
@@ -24,18 +24,18 @@ pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
 const FOUND: &str = "found";
 
 /// A walk through the structures of a text to an entry.
-struct Sought<'w> {
+struct EntrySearch<'w> {
     path: String,
     wanted: &'w str,
 }
 
-impl Sought<'_> {
+impl EntrySearch<'_> {
     fn at(&self, path: String) -> Self {
-        Sought { path, wanted: self.wanted }
+        EntrySearch { path, wanted: self.wanted }
     }
 }
 
-impl<'de> DeserializeSeed<'de> for Sought<'_> {
+impl<'de> DeserializeSeed<'de> for EntrySearch<'_> {
     type Value = ();
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<(), D::Error> {
@@ -43,7 +43,7 @@ impl<'de> DeserializeSeed<'de> for Sought<'_> {
     }
 }
 
-impl<'de> Visitor<'de> for Sought<'_> {
+impl<'de> Visitor<'de> for EntrySearch<'_> {
     type Value = ();
 
     fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -9,7 +9,7 @@ use ron::Value;
 use serde::de::DeserializeOwned;
 
 use super::ProfileError;
-use super::misspelt::{Reading, Slip, letters_apart};
+use super::misspelt::{Misspelling, Reading, letters_apart};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::Expected;
 
@@ -60,7 +60,7 @@ impl Entries {
     }
 
     /// The entry that is left over and most like a missing name, where no more than so many letters differ.
-    fn misspelt(&self, most: usize) -> Option<Slip> {
+    fn misspelt(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
         }
@@ -68,7 +68,7 @@ impl Entries {
         let pairs = left.flat_map(|name| self.missed.iter().map(move |meant| (name, meant)));
         let slips = pairs.filter_map(|(name, meant)| {
             let letters = letters_apart(name, meant).filter(|letters| *letters <= most)?;
-            Some(Slip { letters, path: self.path_of(name), meant: meant.clone() })
+            Some(Misspelling { letters, path: self.path_of(name), meant: meant.clone() })
         });
         slips.min()
     }

@@ -41,7 +41,7 @@ impl Backups {
     ///
     /// # Errors
     /// Where the folder cannot be made or the file cannot be written; then there is no file.
-    pub fn keep(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
+    pub fn save(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
         let folder = self.folder_of(device, serial_number);
         create_folder(&folder)?;
         let time = taken.strftime(TIME).to_string();
@@ -120,11 +120,11 @@ mod tests {
     #[test]
     fn backups_are_kept_and_listed_newest_first() {
         let (root, backups) = backups();
-        let first = backups.keep("hiperface", "12345678", at("2026-11-21T12:14:47.9Z"), "first").unwrap();
+        let first = backups.save("hiperface", "12345678", at("2026-11-21T12:14:47.9Z"), "first").unwrap();
         let folder = root.path().join("data/backups/hiperface/12345678");
         assert_eq!(first, folder.join("2026-11-21T12-14-47Z.ron"));
-        let later = backups.keep("hiperface", "12345678", at("2027-01-01T00:00:00Z"), "later").unwrap();
-        let second = backups.keep("hiperface", "12345678", at("2026-11-21T12:14:47.1Z"), "second").unwrap();
+        let later = backups.save("hiperface", "12345678", at("2027-01-01T00:00:00Z"), "later").unwrap();
+        let second = backups.save("hiperface", "12345678", at("2026-11-21T12:14:47.1Z"), "second").unwrap();
         assert_eq!(second, folder.join("2026-11-21T12-14-47Z-2.ron"));
         assert_eq!(read_text(&first).unwrap(), "first");
 
@@ -149,7 +149,7 @@ mod tests {
                 let backups = &backups;
                 scope.spawn(move || {
                     for _ in 0..3 {
-                        backups.keep("hiperface", "1", taken, &thread.to_string()).unwrap();
+                        backups.save("hiperface", "1", taken, &thread.to_string()).unwrap();
                     }
                 });
             }
@@ -189,13 +189,13 @@ mod tests {
         let (root, backups) = backups();
         for (serial_number, expected) in cases {
             assert_eq!(safe_name(serial_number, Case::Told), expected, "{serial_number:?}");
-            let path = backups.keep("hiperface", serial_number, at("2026-11-21T12:14:47Z"), serial_number).unwrap();
+            let path = backups.save("hiperface", serial_number, at("2026-11-21T12:14:47Z"), serial_number).unwrap();
             assert_eq!(path.parent(), Some(root.path().join("data/backups/hiperface").join(expected).as_path()));
             let listed = backups.list("hiperface", serial_number).unwrap();
             assert_eq!(listed.len(), 1, "{serial_number:?}");
             assert_eq!(read_text(&listed[0].path).unwrap(), serial_number);
         }
-        let outside = backups.keep("../..", "1", at("2026-11-21T12:14:47Z"), "x").unwrap();
+        let outside = backups.save("../..", "1", at("2026-11-21T12:14:47Z"), "x").unwrap();
         assert!(outside.starts_with(root.path().join("data/backups/%2E.%2F.%2E")), "{outside:?}");
     }
 
@@ -203,7 +203,7 @@ mod tests {
     fn a_file_in_the_way_is_an_error() {
         let (root, backups) = backups();
         fs::write(root.path().join("data"), "x").unwrap();
-        let error = backups.keep("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
+        let error = backups.save("hiperface", "1", at("2026-11-21T12:14:47Z"), "x").unwrap_err();
         assert_eq!((error.task, error.problem), (FileTask::CreateFolder, FileProblem::NotFolder));
         assert!(backups.list("hiperface", "1").is_err());
     }

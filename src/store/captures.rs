@@ -34,7 +34,7 @@ const PIECE: usize = 1 << 20;
 /// [`ReadCaptureError`]: the file is missing, is no capture, or `cancel` was set.
 pub fn read_capture(
     path: &Path,
-    wishes: &TableHints,
+    hints: &TableHints,
     cancel: &AtomicBool,
     progress: OnProgress<'_>,
 ) -> Result<(Layout, Capture), ReadCaptureError> {
@@ -57,7 +57,7 @@ pub fn read_capture(
         let read = (&mut file).take(PIECE.max(HEAD) as u64).read_to_end(&mut piece).map_err(failed)?;
         let importing = match &mut import {
             Some(importing) => importing,
-            none => none.insert(Import::begin(&piece, wishes)?),
+            none => none.insert(Import::begin(&piece, hints)?),
         };
         importing.feed(&piece)?;
         done += read as u64;

@@ -30,7 +30,7 @@ impl Drafts {
     ///
     /// # Errors
     /// Where the folder cannot be made or the file cannot be written; then the one before is still there.
-    pub fn keep(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
+    pub fn save(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
         create_folder(&self.folder_of(device))?;
         write_atomically(&self.path_of(device, key), text.as_bytes())
     }
@@ -102,7 +102,7 @@ mod tests {
         assert_eq!(drafts.remove("hiperface", "GB0450179"), Ok(()));
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 0, "looking makes no folder");
         for text in ["first, and longer", "second"] {
-            drafts.keep("hiperface", "GB0450179", text).unwrap();
+            drafts.save("hiperface", "GB0450179", text).unwrap();
             assert_eq!(drafts.load("hiperface", "GB0450179"), Ok(Some(text.to_owned())));
         }
         let folder = root.path().join("data/drafts/hiperface");
@@ -129,13 +129,13 @@ mod tests {
         let (root, drafts) = drafts();
         let keys = ["", "a", "A", ".", "..", "../x", "a/b", "NUL", "%none", "a.ron"];
         for key in keys {
-            drafts.keep("hiperface", key, key).unwrap();
+            drafts.save("hiperface", key, key).unwrap();
         }
         for key in keys {
             assert_eq!(drafts.load("hiperface", key), Ok(Some(key.to_owned())), "{key:?}");
         }
         assert_eq!(fs::read_dir(root.path().join("data/drafts/hiperface")).unwrap().count(), keys.len());
-        drafts.keep("../..", "x", "x").unwrap();
+        drafts.save("../..", "x", "x").unwrap();
         assert!(root.path().join("data/drafts/%2E.%2F.%2E/x%l.ron").is_file());
     }
 
@@ -146,10 +146,10 @@ mod tests {
         fs::create_dir_all(&path).unwrap();
         let task = |result: Result<(), FileError>| result.unwrap_err().task;
         assert_eq!(task(drafts.load("hiperface", "1").map(drop)), FileTask::Read);
-        assert_eq!(task(drafts.keep("hiperface", "1", "x")), FileTask::Write);
+        assert_eq!(task(drafts.save("hiperface", "1", "x")), FileTask::Write);
         assert_eq!(task(drafts.remove("hiperface", "1")), FileTask::Remove);
         fs::remove_dir_all(root.path().join("data")).unwrap();
         fs::write(root.path().join("data"), "x").unwrap();
-        assert_eq!(task(drafts.keep("hiperface", "1", "x")), FileTask::CreateFolder);
+        assert_eq!(task(drafts.save("hiperface", "1", "x")), FileTask::CreateFolder);
     }
 }

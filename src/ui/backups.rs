@@ -129,6 +129,6 @@ fn write_ui(ui: &mut Ui, theme: &Theme, write: &Entry) {
         let cycles = write.conclusion.as_ref().map_or(write.planned_cycles, |end| end.cycles_spent);
         let cycles = crate::app::Text::new("writes_card.cycles").with("cycles", cycles);
         ui.label(theme.label(theme.words(&cycles)));
-        ui.add(egui::Label::new(theme.mono(&write.what)).truncate());
+        ui.add(egui::Label::new(theme.mono(&write.description)).truncate());
     });
 }

@@ -57,7 +57,7 @@ pub struct NamedAction {
 /// Returns the commands that have a key, those with more modifiers first: with fewer, they would be taken for the others.
 pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = of_program(theme, studio, views);
-    if let Some(device) = studio.shown().filter(|device| device.tab() == studio.settings.tab) {
+    if let Some(device) = studio.selected_device().filter(|device| device.tab() == studio.settings.tab) {
         let has_undo_keys = views.tabs.device(device.tab()).is_some_and(DeviceView::has_undo_keys);
         let of_device = of_every_device(theme, device, views).into_iter();
         commands.extend(of_device.filter(|command| has_undo_keys || !command.yields_to_typing));
@@ -70,7 +70,7 @@ pub(super) fn with_keys(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Co
 /// Returns all commands, those of the device that is shown first.
 pub(super) fn all(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
     let mut commands = Vec::new();
-    if let Some(device) = studio.shown() {
+    if let Some(device) = studio.selected_device() {
         commands.extend(of_every_device(theme, device, views));
         if let Some(view) = views.tabs.device(device.tab()) {
             let own = view.named_actions(theme, device).into_iter();

@@ -20,7 +20,7 @@ pub enum Edited {
     Values,
 }
 
-pub fn foot_ui(
+pub fn edit_bar_ui(
     ui: &mut Ui,
     theme: &Theme,
     (studio, device): (&Studio, &AnyDevice),

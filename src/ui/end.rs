@@ -13,9 +13,9 @@ const ANSWERS: Duration = Duration::from_secs(2);
 const ENDED: i32 = 143;
 
 /// Lets go of the drives when its thread ends, or when that thread ends the program.
-struct LetGo(Brakes);
+struct ReleaseOnDrop(Brakes);
 
-impl Drop for LetGo {
+impl Drop for ReleaseOnDrop {
     fn drop(&mut self) {
         self.0.begin();
         self.0.wait(Brakes::PATIENCE);
@@ -24,13 +24,13 @@ impl Drop for LetGo {
 
 thread_local! {
     /// The library of the display ends the program itself when the display is gone: what a thread owns goes even then.
-    static LAST: OnceCell<LetGo> = const { OnceCell::new() };
+    static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
 /// Hears signals from now on, and that the thread of the window ends.
 pub(super) fn prepare(studio: &Studio) {
     let (brakes, mailbox) = (studio.brakes(), studio.mailbox());
-    LAST.with(|last| last.set(LetGo(brakes.clone())).unwrap_or_default());
+    LAST.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
     let again = AtomicBool::new(false);
     let heard = ctrlc::set_handler(move || {
         if !end(&brakes, &mailbox) || again.swap(true, Ordering::SeqCst) {

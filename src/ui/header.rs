@@ -15,7 +15,7 @@ const STOP: f32 = 72.0;
 pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
         sessions(ui, theme, studio, actions);
-        if let Some(device) = studio.shown() {
+        if let Some(device) = studio.selected_device() {
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
             status(ui, theme, device, motion);
         }
@@ -56,11 +56,11 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
     if tool(ui, true, icons::FOLDER_OPEN, "shell.open").clicked() {
         actions.push(Action::AskOpen);
     }
-    let savable = studio.shown().is_some_and(AnyDevice::is_savable);
+    let savable = studio.selected_device().is_some_and(AnyDevice::is_savable);
     if tool(ui, savable, icons::FLOPPY_DISK, "shell.save").on_hover_text(theme.say("shell.save_hint")).clicked() {
-        actions.extend(studio.shown().map(|own| Action::Save(own.id())));
+        actions.extend(studio.selected_device().map(|own| Action::Save(own.id())));
     }
-    let shown = studio.shown();
+    let shown = studio.selected_device();
     let restorable = shown.is_some_and(|own| own.is_ready() && own.has_memory());
     if icon_button(ui, restorable, icons::CLOCK_COUNTER_CLOCKWISE, &theme.say("shell.restore")).clicked() {
         actions.extend(shown.map(|own| own.command(DeviceCommand::AskRestore)));
@@ -103,7 +103,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
 
 /// The sessions, as a menu behind the name of the one that is shown.
 fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    let shown = studio.shown().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
+    let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
     let text = RichText::new(format!("{}  {}", shortened(&shown, most), icons::CARET_DOWN))
         .font(theme.strong(theme.sizes.section));
@@ -113,7 +113,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
         for device in studio.devices() {
             ui.horizontal(|ui| {
                 phase_dot(ui, theme, device.as_ref());
-                let is_shown = studio.shown().is_some_and(|own| own.id() == device.id());
+                let is_shown = studio.selected_device().is_some_and(|own| own.id() == device.id());
                 if ui.selectable_label(is_shown, device.name()).clicked() {
                     actions.push(Action::Select(device.id()));
                     ui.close();
@@ -130,7 +130,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
             });
         }
         ui.separator();
-        if let Some(device) = studio.shown() {
+        if let Some(device) = studio.selected_device() {
             let restorable = device.is_ready() && device.has_memory();
             let entries = [
                 (device.is_readable(), icons::ARROW_CLOCKWISE, "palette.read_again", DeviceCommand::Read),
@@ -205,7 +205,7 @@ fn is_read_only(device: &AnyDevice) -> bool {
 }
 
 fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
-    let Some(device) = studio.shown() else { return };
+    let Some(device) = studio.selected_device() else { return };
     let words = device.place();
     let label = egui::Label::new(theme.mono(&words).color(theme.palette.muted)).truncate().sense(egui::Sense::click());
     let hint = format!("{words}\n{}", theme.say("shell.copy_link"));
@@ -270,7 +270,7 @@ pub(super) fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice, actions: &m
             ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                 ui.label(RichText::new(icon).size(theme.sizes.section).color(colour));
                 let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
-                let about = notice.whose(|text| theme.words(text));
+                let about = notice.prefix(|text| theme.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(false));
             });
         });

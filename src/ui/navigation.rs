@@ -31,9 +31,9 @@ pub(super) fn navigation_ui(
         }
     }
     // At the foot, so that it is drawn wherever the rest ends.
-    let foot = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
-    let mut foot = ui.new_child(egui::UiBuilder::new().max_rect(foot));
-    if icon_button(&mut foot, true, icons::ARROWS_CLOCKWISE, &theme.say("shell.reset_layout")).clicked() {
+    let footer = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
+    let mut footer = ui.new_child(egui::UiBuilder::new().max_rect(footer));
+    if icon_button(&mut footer, true, icons::ARROWS_CLOCKWISE, &theme.say("shell.reset_layout")).clicked() {
         docks.reset();
     }
 }

@@ -9,7 +9,7 @@ use egui::{FontId, Galley, RichText, ScrollArea, Ui};
 use super::controls::{at_the_right, enabled_button, modal, paragraph, primary, row, spinner};
 use super::page::apart;
 use super::{Theme, icons};
-use crate::app::review::{ChangeWords, Manner, OpWords, Question, ReviewSheet, Stage, Toggle};
+use crate::app::review::{ChangeWords, ExecutionMode, OpWords, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
 /// Draws the dialog, where a write is on its way.
@@ -19,7 +19,7 @@ pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, 
     // As many operations as there is room for beside all that is said of them.
     let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
     modal(ctx, theme, "review", width, |ui| {
-        ui.label(theme.heading(theme.words(&sheet.what)));
+        ui.label(theme.heading(theme.words(&sheet.title)));
         ui.label(theme.label(device.name()));
         ui.add_space(theme.space.between);
         // The keyboard on a button of one stage is on none of the next: no key that cancels there writes here.
@@ -61,12 +61,15 @@ fn content(
             operations(ui, theme, (&sheet.lines, room), None);
             remarks(ui, theme, sheet);
             options(ui, theme, device, sheet, actions);
-            ui.label(theme.label(theme.say(sheet.manner.way())));
+            ui.label(theme.label(theme.say(sheet.execution_mode.summary_id())));
             buttons(ui, theme, device, actions, "review.cancel", |ui, actions| {
-                let icon = if sheet.manner == Manner::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
+                let icon =
+                    if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
                 // Without the permit it would be refused.
                 let may_wear = sheet.force_wear != Some(false);
-                if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.manner.word())).clicked() {
+                if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.execution_mode.button_id()))
+                    .clicked()
+                {
                     actions.push(Action::Review(device.id(), ReviewAction::Write(*plan)));
                 }
             });
@@ -268,7 +271,7 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
 
 /// A question with its two answers; what it is about stands in front of them.
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
-    remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.what));
+    remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
     ui.horizontal(|ui| {
         ui.add_space(ICON);
         for (is_on, word) in [(false, &question.no), (true, &question.yes)] {

@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use super::{TabViews, Window, end, install_fonts};
-use crate::app::{Kinds, Studio, ThemeData, Wake, World, explain};
+use crate::app::{Environment, Kinds, Studio, ThemeData, Wake, explain};
 use crate::cli::Window as Start;
 use crate::store::{LogFile, Store};
 
@@ -28,7 +28,7 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
             context.request_repaint();
         }
     });
-    let mut studio = Studio::new(World { given: start.given, ..World::real(store, kinds) }, wake);
+    let mut studio = Studio::new(Environment { given: start.given, ..Environment::real(store, kinds) }, wake);
     let (width, height) = studio.settings.size.unwrap_or((1280, 800));
     studio.begin(start.link, start.profile);
     end::prepare(&studio);

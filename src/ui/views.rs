@@ -72,5 +72,5 @@ impl Views {
 
 /// Returns the device that a tab shows, where it is the open tab.
 pub(super) fn shown_in(studio: &Studio, tab: Tab) -> Option<&AnyDevice> {
-    studio.shown().filter(|device| device.tab() == tab)
+    studio.selected_device().filter(|device| device.tab() == tab)
 }

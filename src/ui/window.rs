@@ -103,7 +103,7 @@ impl Window {
     }
 
     fn dialogs(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
-        if let Some(device) = self.studio.shown() {
+        if let Some(device) = self.studio.selected_device() {
             review::review_ui(ctx, theme, device, actions);
         }
         let forms = (self.views.tabs, &mut self.views.connect);
@@ -280,7 +280,7 @@ impl Window {
     /// A consent is asked for.
     fn asks(&self) -> bool {
         let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
-        asks || self.studio.shown().is_some_and(AnyDevice::is_reviewing)
+        asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
     /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half

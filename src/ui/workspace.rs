@@ -13,7 +13,7 @@ use crate::app::{Action, AnyDevice, DeviceCommand, Studio, connect};
 
 pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
     if views.plot.is_large()
-        && let Some(device) = studio.shown()
+        && let Some(device) = studio.selected_device()
     {
         let margin = egui::Margin::same(theme.space.groups as i8);
         egui::Frame::NONE.inner_margin(margin).show(ui, |ui| plot_ui(ui, theme, device, views, actions));
@@ -73,7 +73,7 @@ pub(crate) fn running_ui(
             let words = match &running {
                 _ if is_told_below => instead.unwrap_or_default(),
                 Some(running) => {
-                    let what = theme.words(&running.what);
+                    let what = theme.words(&running.title);
                     match &running.progress {
                         Some((done, total, doing)) => format!("{what}  {done}/{total}  {}", theme.words(doing)),
                         None => what,

@@ -133,7 +133,7 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
         tracing::warn!("{why}");
         return Err(NotBegun::WearUnknown { cost }.into());
     }
-    let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, what });
+    let tell = &mut |at: usize, what: &P::Op| tell(Progress { done: at as u64, total: planned as u64, step: what });
     let ended = confirmed.carry_out(write, tell);
     let (outcome, spent) = match &ended {
         Ok(written) => (Outcome::Done, written.write_cycles()),
@@ -201,7 +201,7 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 impl WriteIntent {
     /// Keeps the before-image and tells the logbook.
     fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
-        let backup = store.backups().keep(&device.kind, &device.serial_number, Timestamp::now(), before)?;
+        let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intend = |mut logbook: Logbook| {
             let id = logbook.intend(Timestamp::now(), device, items, cost, Some(&backup))?;
             Ok((logbook, id))

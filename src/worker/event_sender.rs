@@ -80,11 +80,11 @@ mod tests {
     use crossbeam_channel::bounded;
 
     use super::*;
-    use crate::worker::invented::Invented;
+    use crate::worker::invented::TestDevice;
     use crate::worker::{JobId, Progress};
 
-    fn progress(job: u64) -> Event<Invented> {
-        Event::Progress(JobId(job), Progress { done: 1, total: 2, what: () })
+    fn progress(job: u64) -> Event<TestDevice> {
+        Event::Progress(JobId(job), Progress { done: 1, total: 2, step: () })
     }
 
     #[test]
@@ -105,7 +105,7 @@ mod tests {
         let before = wakes.load(Ordering::SeqCst);
         outbox.flush_late();
         assert_eq!(wakes.load(Ordering::SeqCst), before + 1);
-        let late: Vec<Event<Invented>> = events.try_iter().collect();
+        let late: Vec<Event<TestDevice>> = events.try_iter().collect();
         assert!(matches!(late.as_slice(), [Event::Started(JobId(1000)), Event::Progress(JobId(1000), _)]), "{late:?}");
     }
 }

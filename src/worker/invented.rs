@@ -1,11 +1,11 @@
 //! A device that exists in tests alone: it has nothing to say.
 
-use super::{Device, EndedEarly, SessionContext, Tell, Watched};
+use super::{Device, EndedEarly, JobReport, SessionContext, Watched};
 use crate::link::LinkError;
 
 /// The device, which is never asked.
 #[derive(Debug)]
-pub(super) struct Invented;
+pub(super) struct TestDevice;
 
 impl EndedEarly for () {
     fn is_cancelled(&self) -> bool {
@@ -13,7 +13,7 @@ impl EndedEarly for () {
     }
 }
 
-impl Device for Invented {
+impl Device for TestDevice {
     type Job = ();
     type Output = ();
     type Error = ();
@@ -22,7 +22,7 @@ impl Device for Invented {
     type Watch = ();
     type JobStep = ();
 
-    fn run(&mut self, _: &mut SessionContext, (): (), _: &mut dyn FnMut(Tell<(), ()>)) -> Result<(), ()> {
+    fn run(&mut self, _: &mut SessionContext, (): (), _: &mut dyn FnMut(JobReport<(), ()>)) -> Result<(), ()> {
         Err(())
     }
 

@@ -14,7 +14,7 @@ const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 /// The live wishes of a session. Clones share them.
 #[derive(Clone)]
 pub(super) struct Live {
-    wishes: Arc<Mutex<PollRequests>>,
+    requests: Arc<Mutex<PollRequests>>,
     /// Cuts a sample in its repetitions short.
     sampling: Cancel,
     /// Wakes the thread; a full channel means that it is about to wake.
@@ -33,8 +33,8 @@ impl Live {
     /// Creates an empty list; the thread receives changes.
     pub(super) fn new() -> (Self, Receiver<()>) {
         let (changed, changes) = bounded(1);
-        let wishes = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
-        (Live { wishes, sampling: Cancel::default(), changed }, changes)
+        let requests = Arc::new(Mutex::new(PollRequests { job: Cancel::default(), interval: None, number: 0 }));
+        (Live { requests, sampling: Cancel::default(), changed }, changes)
     }
 
     /// Directs a stop to this job from now on.
@@ -43,19 +43,19 @@ impl Live {
     }
 
     pub(super) fn stop(&self) {
-        let mut wishes = self.lock();
-        wishes.interval = None;
-        wishes.job.request();
-        drop(wishes);
+        let mut requests = self.lock();
+        requests.interval = None;
+        requests.job.request();
+        drop(requests);
         self.interrupt_sample();
         self.wake();
     }
 
     pub(super) fn poll(&self, interval: Option<Duration>) {
-        let mut wishes = self.lock();
-        wishes.interval = interval.map(|interval| interval.min(LONGEST));
-        wishes.number += 1;
-        drop(wishes);
+        let mut requests = self.lock();
+        requests.interval = interval.map(|interval| interval.min(LONGEST));
+        requests.number += 1;
+        drop(requests);
         if interval.is_none() {
             self.interrupt_sample();
         }
@@ -73,9 +73,9 @@ impl Live {
 
     /// Ends polling from the thread's side, where a sample for that wish failed.
     pub(super) fn poll_failed(&self, number: u64) {
-        let mut wishes = self.lock();
-        if wishes.number == number {
-            wishes.interval = None;
+        let mut requests = self.lock();
+        if requests.number == number {
+            requests.interval = None;
         }
     }
 
@@ -100,7 +100,7 @@ impl Live {
     }
 
     fn lock(&self) -> MutexGuard<'_, PollRequests> {
-        self.wishes.lock().unwrap_or_else(PoisonError::into_inner)
+        self.requests.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -117,7 +117,7 @@ struct List<W> {
 }
 
 struct Entry<W> {
-    what: W,
+    value: W,
     interval: Duration,
     /// The device does not have it: it is not asked for again while it stays in the list.
     refused: bool,
@@ -130,15 +130,15 @@ impl<W: Clone + PartialEq> Watches<W> {
     }
 
     /// Wishes these, each once: the first of several of the same thing counts.
-    pub(super) fn wish(&self, wished: Vec<(W, Duration)>) {
+    pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
-        let mut entries: Vec<Entry<W>> = Vec::with_capacity(wished.len());
-        for (what, interval) in wished {
-            if entries.iter().any(|entry| entry.what == what) {
+        let mut entries: Vec<Entry<W>> = Vec::with_capacity(watched.len());
+        for (what, interval) in watched {
+            if entries.iter().any(|entry| entry.value == what) {
                 continue;
             }
-            let refused = list.entries.iter().any(|before| before.what == what && before.refused);
-            entries.push(Entry { what, interval: interval.min(LONGEST), refused });
+            let refused = list.entries.iter().any(|before| before.value == what && before.refused);
+            entries.push(Entry { value: what, interval: interval.min(LONGEST), refused });
         }
         list.entries = entries;
         list.number += 1;
@@ -149,7 +149,7 @@ impl<W: Clone + PartialEq> Watches<W> {
     }
 
     /// Returns the watched values and their intervals if they have changed since `known`, which is updated.
-    pub(super) fn news(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
+    pub(super) fn changed_entries(&self, known: &mut u64) -> Option<Vec<(W, Duration)>> {
         let list = self.lock();
         let changed = std::mem::replace(known, list.number) != list.number;
         changed.then(|| list.asked_for())
@@ -164,7 +164,7 @@ impl<W: Clone + PartialEq> Watches<W> {
     pub(super) fn refuse(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;
-        if let Some(entry) = list.entries.iter_mut().find(|entry| entry.what == *what) {
+        if let Some(entry) = list.entries.iter_mut().find(|entry| entry.value == *what) {
             entry.refused = true;
         }
     }
@@ -177,7 +177,7 @@ impl<W: Clone + PartialEq> Watches<W> {
 impl<W: Clone> List<W> {
     fn asked_for(&self) -> Vec<(W, Duration)> {
         let asked = self.entries.iter().filter(|entry| !entry.refused);
-        asked.map(|entry| (entry.what.clone(), entry.interval)).collect()
+        asked.map(|entry| (entry.value.clone(), entry.interval)).collect()
     }
 }
 
@@ -219,16 +219,16 @@ mod tests {
         let second = Duration::from_secs(1);
         let watches = Watches::new(Live::new().0);
         let mut known = 0;
-        assert_eq!(watches.news(&mut known), None);
-        watches.wish(vec![("a", second), ("b", second), ("a", second * 2)]);
-        assert_eq!(watches.news(&mut known), Some(vec![("a", second), ("b", second)]));
+        assert_eq!(watches.changed_entries(&mut known), None);
+        watches.set_entries(vec![("a", second), ("b", second), ("a", second * 2)]);
+        assert_eq!(watches.changed_entries(&mut known), Some(vec![("a", second), ("b", second)]));
         watches.refuse(&"a");
-        assert_eq!(watches.news(&mut known), Some(vec![("b", second)]));
-        assert_eq!(watches.news(&mut known), None, "known by now");
-        watches.wish(vec![("a", second), ("b", Duration::MAX)]);
+        assert_eq!(watches.changed_entries(&mut known), Some(vec![("b", second)]));
+        assert_eq!(watches.changed_entries(&mut known), None, "known by now");
+        watches.set_entries(vec![("a", second), ("b", Duration::MAX)]);
         assert_eq!(watches.asked_for(), [("b", LONGEST)]);
-        watches.wish(vec![]);
-        watches.wish(vec![("a", second)]);
+        watches.set_entries(vec![]);
+        watches.set_entries(vec![("a", second)]);
         assert_eq!(watches.asked_for(), [("a", second)]);
     }
 }

@@ -65,9 +65,9 @@ pub trait Device: Send + 'static {
     /// When it ended early.
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: Self::Job,
-        tell: &mut dyn FnMut(Tell<Self::DeviceMessage, Self::JobStep>),
+        tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
     /// Samples are wished at this interval from now on, or none any more: what the device sends by itself begins with the
@@ -78,13 +78,14 @@ pub trait Device: Send + 'static {
     ///
     /// # Errors
     /// When there is none: polling ends.
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
+    fn sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
     /// Asks for a value that is watched. What the device says on the way belongs to the sample.
     ///
     /// # Errors
     /// When it does not answer: polling ends. A refusal is an answer.
-    fn watch(&mut self, desk: &mut SessionContext, what: &Self::Watch) -> Result<Watched<Self::Sample>, Self::Error>;
+    fn watch(&mut self, context: &mut SessionContext, what: &Self::Watch)
+    -> Result<Watched<Self::Sample>, Self::Error>;
 
     /// Takes what the device said since the last time.
     fn take_remark(&mut self) -> Option<Self::DeviceMessage> {
@@ -140,19 +141,19 @@ pub struct Progress<W> {
     /// Steps in all.
     pub total: u64,
     /// The present step.
-    pub what: W,
+    pub step: W,
 }
 
 impl<W> Progress<W> {
     /// The same progress, with what is being done in other terms.
     pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
-        Progress { done: self.done, total: self.total, what: terms(self.what) }
+        Progress { done: self.done, total: self.total, step: terms(self.step) }
     }
 }
 
 /// A report from a running job.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Tell<R, W> {
+pub enum JobReport<R, W> {
     /// Progress of the job.
     Progress(Progress<W>),
     /// A message of the device; each is passed on.
@@ -229,7 +230,7 @@ impl<D: Device> Worker<D> {
             live: live.clone(),
             watches: watches.clone(),
             samples: samples.clone(),
-            outbox: EventSender::new(outgoing, wake),
+            events: EventSender::new(outgoing, wake),
             busy: busy.clone(),
         };
         thread::start(bench, alive)?;
@@ -285,8 +286,8 @@ impl<D: Device> Worker<D> {
     /// at most one of them there, so that none comes more often than samples do. Each has one pace: the first counts
     /// where one stands twice. What the device does not have is asked for once, as long as it stays in the list. The
     /// latest wish counts, from now on; it outlives polling, and watching goes on when that does.
-    pub fn watch(&self, wished: Vec<(D::Watch, Duration)>) {
-        self.watches.wish(wished);
+    pub fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
+        self.watches.set_entries(watched);
     }
 
     /// Returns the watched values in the requested order, without those that the device refused.

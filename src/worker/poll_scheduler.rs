@@ -21,7 +21,7 @@ pub(super) struct PollScheduler<W> {
 }
 
 struct Watch<W> {
-    what: W,
+    value: W,
     interval: Duration,
     pace: Pace,
 }
@@ -34,11 +34,11 @@ impl<W> Default for PollScheduler<W> {
 
 impl<W: Clone + PartialEq> PollScheduler<W> {
     /// Sets the values to watch; those already watched keep their pace.
-    pub(super) fn watch(&mut self, wished: Vec<(W, Duration)>) {
+    pub(super) fn watch(&mut self, watched: Vec<(W, Duration)>) {
         let mut before = std::mem::take(&mut self.watches);
-        for (what, interval) in wished {
-            let pace = before.iter_mut().find(|watch| watch.what == what).map(|watch| std::mem::take(&mut watch.pace));
-            self.watches.push(Watch { what, interval, pace: pace.unwrap_or_default() });
+        for (what, interval) in watched {
+            let pace = before.iter_mut().find(|watch| watch.value == what).map(|watch| std::mem::take(&mut watch.pace));
+            self.watches.push(Watch { value: what, interval, pace: pace.unwrap_or_default() });
         }
     }
 
@@ -47,7 +47,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, Due<W>)> {
         let sample = self.sample.due(polling, now);
         let mut next: Option<(Instant, Due<W>)> = None;
-        for Watch { what, interval, pace } in &mut self.watches {
+        for Watch { value: what, interval, pace } in &mut self.watches {
             let due = pace.due(polling.and(Some(*interval)), now);
             if let Some(due) = due
                 && self.sample_was_last
@@ -66,7 +66,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         match due {
             Due::Sample => self.sample.taken(now),
             Due::Watch(what) => {
-                if let Some(watch) = self.watches.iter_mut().find(|watch| watch.what == *what) {
+                if let Some(watch) = self.watches.iter_mut().find(|watch| watch.value == *what) {
                     watch.pace.taken(now);
                 }
             }
@@ -83,10 +83,10 @@ struct Pace {
 
 impl Pace {
     /// The next time, by the wish that is in force; a new wish begins now.
-    fn due(&mut self, wish: Option<Duration>, now: Instant) -> Option<Instant> {
-        if wish != self.interval {
-            self.interval = wish;
-            self.next = wish.map(|_| now);
+    fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
+        if interval != self.interval {
+            self.interval = interval;
+            self.next = interval.map(|_| now);
         }
         self.next
     }

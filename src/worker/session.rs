@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Device, EndedEarly as _, Event, JobId, Tell, Watched};
+use super::{Device, EndedEarly as _, Event, JobId, JobReport, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
@@ -28,7 +28,7 @@ impl SessionContext {
 
 /// One wire, from opening to closing. A test runs jobs on it inline; a worker runs them on a thread of its own.
 pub struct Session<D> {
-    desk: SessionContext,
+    context: SessionContext,
     pub(crate) device: D,
 }
 
@@ -36,27 +36,27 @@ impl<D: Device> Session<D> {
     /// A session with a device.
     pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
-        Session { desk: SessionContext { clock, cancel, trace, store, is_virtual }, device }
+        Session { context: SessionContext { clock, cancel, trace, store, is_virtual }, device }
     }
 
     /// The wish to end what runs.
     pub fn cancel(&self) -> Cancel {
-        self.desk.cancel.clone()
+        self.context.cancel.clone()
     }
 
     /// Listens to another wish from now on: a test's, that comes by itself.
     pub fn set_cancel(&mut self, cancel: Cancel) {
-        self.desk.cancel = cancel;
+        self.context.cancel = cancel;
     }
 
     /// Shows every frame from now on to `watcher`.
     pub fn watch(&mut self, watcher: impl FnMut(&TraceEntry) + Send + 'static) {
-        self.desk.trace.watch(watcher);
+        self.context.trace.watch(watcher);
     }
 
     /// The device lives in this process.
     pub fn is_virtual(&self) -> bool {
-        self.desk.is_virtual
+        self.context.is_virtual
     }
 
     /// Looks whether the wire is still there.
@@ -74,7 +74,7 @@ impl<D: Device> Session<D> {
 
     /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
     pub fn idle(&mut self) -> Option<D::DeviceMessage> {
-        self.device.idle(&mut self.desk)
+        self.device.idle(&mut self.context)
     }
 
     /// Returns whether unrequested work needs attention now.
@@ -84,15 +84,15 @@ impl<D: Device> Session<D> {
 
     /// The session ends: what must not be left as it is.
     pub fn leave(&mut self) {
-        self.device.leave(&mut self.desk);
+        self.device.leave(&mut self.context);
     }
 
     /// Carries out a job here and now. `tell` hears all events but the last, which is given back.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
-        let result = self.device.run(&mut self.desk, job, &mut |told| match told {
-            Tell::Progress(progress) => tell(Event::Progress(id, progress)),
-            Tell::Remark(remark) => tell(Event::Remark(remark)),
+        let result = self.device.run(&mut self.context, job, &mut |report| match report {
+            JobReport::Progress(progress) => tell(Event::Progress(id, progress)),
+            JobReport::Remark(remark) => tell(Event::Remark(remark)),
         });
         while let Some(remark) = self.take_remark() {
             tell(Event::Remark(remark));
@@ -106,7 +106,7 @@ impl<D: Device> Session<D> {
 
     /// Samples are wished at this interval from now on, or none any more.
     pub fn pace(&mut self, interval: Option<Duration>) {
-        self.device.pace(&mut self.desk, interval);
+        self.device.pace(&mut self.context, interval);
     }
 
     /// Takes a sample here and now.
@@ -114,7 +114,7 @@ impl<D: Device> Session<D> {
     /// # Errors
     /// When there is none.
     pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
-        self.device.sample(&mut self.desk)
+        self.device.sample(&mut self.context)
     }
 
     /// Asks for a watched value here and now.
@@ -122,7 +122,7 @@ impl<D: Device> Session<D> {
     /// # Errors
     /// When there is no answer.
     pub fn watch_value(&mut self, what: &D::Watch) -> Result<Watched<D::Sample>, D::Error> {
-        self.device.watch(&mut self.desk, what)
+        self.device.watch(&mut self.context, what)
     }
 
     /// Returns a message of the device since the last call that no event carries.
@@ -135,6 +135,6 @@ impl<D: Device> Session<D> {
     /// # Errors
     /// Those of the job.
     pub fn run_inline(&mut self, job: D::Job) -> Result<D::Output, D::Error> {
-        self.device.run(&mut self.desk, job, &mut |_| {})
+        self.device.run(&mut self.context, job, &mut |_| {})
     }
 }

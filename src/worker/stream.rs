@@ -14,7 +14,7 @@ use std::time::Duration;
 
 use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 
-pub use analogue::{Analogue, Forgotten};
+pub use analogue::{Analogue, SettingsDropped};
 
 use super::has_ended;
 use super::thread::Never;
@@ -43,7 +43,7 @@ pub struct Batch<S> {
 }
 
 /// Samples that can be counted.
-pub trait Counted: Send + 'static {
+pub trait SampleCount: Send + 'static {
     /// Returns the number of samples.
     fn count(&self) -> usize;
 }
@@ -53,12 +53,12 @@ pub trait Producer: Send + 'static {
     /// A change while it runs.
     type Request: Send + 'static;
     /// The samples of a batch.
-    type Samples: Counted;
+    type Samples: SampleCount;
     /// Why it ends by itself.
     type Error: Send + 'static;
 
     /// Works by this wish from the next sample on.
-    fn change(&mut self, wish: Self::Request);
+    fn change(&mut self, request: Self::Request);
 
     /// Waits for samples, no longer than `patience`; `None` where none have come.
     ///
@@ -81,7 +81,7 @@ impl End {
     }
 
     /// The thread has ended and what it used is free.
-    pub fn has_come(&self) -> bool {
+    pub fn has_ended(&self) -> bool {
         has_ended(&self.0)
     }
 }
@@ -95,7 +95,7 @@ pub struct Stream<P: Producer> {
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
     /// The latest, until it is taken.
-    wish: Mutex<Option<P::Request>>,
+    request: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
 }
@@ -124,19 +124,19 @@ impl<P: Producer> Stream<P> {
     ) -> std::io::Result<Self> {
         let shared = Arc::new(Shared {
             ring: Mutex::new(Ring { batches: VecDeque::new(), held: 0, capacity, lost: 0 }),
-            wish: Mutex::new(None),
+            request: Mutex::new(None),
             error: Mutex::new(None),
             stop: AtomicBool::new(false),
         });
         let (alive, ended) = bounded(0);
-        let (own, end) = (shared.clone(), Alive { alive: Some(alive), wake });
+        let (own, end) = (shared.clone(), ExitSignal { alive: Some(alive), wake });
         std::thread::Builder::new().name("stream".to_owned()).spawn(move || work(producer, &own, &*clock, &end))?;
         Ok(Stream { shared, ended })
     }
 
     /// Changes what the producer does, from its next sample on. Of several changes the latest counts.
-    pub fn change(&self, wish: P::Request) {
-        *lock(&self.shared.wish) = Some(wish);
+    pub fn change(&self, request: P::Request) {
+        *lock(&self.shared.request) = Some(request);
     }
 
     /// Takes what has come since the last time, the oldest first.
@@ -180,7 +180,7 @@ impl<P: Producer> Drop for Stream<P> {
     }
 }
 
-impl<S: Counted> Ring<S> {
+impl<S: SampleCount> Ring<S> {
     /// Adds a batch; returns the batches pushed out, to be dropped without the lock.
     fn push(&mut self, mut batch: Batch<S>) -> Vec<Batch<S>> {
         self.lost += batch.lost;
@@ -200,37 +200,37 @@ impl<S: Counted> Ring<S> {
     }
 }
 
-impl<T: Send + 'static> Counted for Vec<T> {
+impl<T: Send + 'static> SampleCount for Vec<T> {
     fn count(&self) -> usize {
         self.len()
     }
 }
 
-impl Counted for Wires {
+impl SampleCount for Wires {
     fn count(&self) -> usize {
         self.len()
     }
 }
 
 /// The end of a thread, however it comes: told when it is over.
-struct Alive {
+struct ExitSignal {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,
 }
 
-impl Drop for Alive {
+impl Drop for ExitSignal {
     fn drop(&mut self) {
         self.alive = None;
         (self.wake)();
     }
 }
 
-fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &Alive) {
+fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end: &ExitSignal) {
     let (mut woken, mut unread) = (None, false);
     while !shared.stop.load(Ordering::SeqCst) {
-        let wish = lock(&shared.wish).take();
-        if let Some(wish) = wish {
-            producer.change(wish);
+        let request = lock(&shared.request).take();
+        if let Some(request) = request {
+            producer.change(request);
         }
         match producer.next(clock, PATIENCE) {
             Ok(Some(batch)) => {

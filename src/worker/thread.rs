@@ -35,7 +35,7 @@ pub(super) struct Bench<D: Device> {
     pub(super) live: Live,
     pub(super) watches: Watches<D::Watch>,
     pub(super) samples: Ring<D::Sample>,
-    pub(super) outbox: EventSender<D>,
+    pub(super) events: EventSender<D>,
     pub(super) busy: Arc<AtomicBool>,
 }
 
@@ -80,8 +80,8 @@ fn work<D: Device>(mut bench: Bench<D>) {
             Err(TryRecvError::Disconnected) => break,
             Err(TryRecvError::Empty) => {}
         }
-        bench.outbox.flush_late();
-        if let Some(watches) = bench.watches.news(&mut known) {
+        bench.events.flush_late();
+        if let Some(watches) = bench.watches.changed_entries(&mut known) {
             agenda.watch(watches);
         }
         let polling = bench.live.polling();
@@ -96,7 +96,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
             if bench.take(due) {
                 agenda.taken(due, Instant::now());
             }
-            bench.look_after();
+            bench.run_idle_work();
             lost = false;
             next_check = Instant::now() + bench.session.idle_interval();
             continue;
@@ -105,11 +105,11 @@ fn work<D: Device>(mut bench: Bench<D>) {
             next_check = now + bench.session.idle_interval();
             if !lost && let Err(error) = bench.session.check() {
                 lost = true;
-                bench.outbox.send(Event::Lost(error));
+                bench.events.send(Event::Lost(error));
             }
-            bench.look_after();
+            bench.run_idle_work();
         }
-        let retry = (!bench.outbox.is_empty()).then(|| now + RETRY);
+        let retry = (!bench.events.is_empty()).then(|| now + RETRY);
         let until = [due.map(|(at, _)| at), retry].into_iter().flatten().fold(next_check, Instant::min);
         bench.wait(until.saturating_duration_since(Instant::now()));
     }
@@ -122,17 +122,17 @@ fn work<D: Device>(mut bench: Bench<D>) {
 impl<D: Device> Bench<D> {
     fn carry_out(&mut self, order: Order<D>) {
         self.session.set_cancel(order.cancel);
-        let outbox = &mut self.outbox;
+        let outbox = &mut self.events;
         let end = self.session.run(order.id, order.job, &mut |event| outbox.send(event));
         // The slot is free before the last event reports it: its reader may submit at once.
         self.busy.store(false, Ordering::SeqCst);
-        self.outbox.send(end);
+        self.events.send(end);
     }
 
     /// False when a job or another wish came in between: what is due is still due.
     fn take(&mut self, due: &Due<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
-        let wish = self.live.number();
+        let request = self.live.number();
         let taken = match due {
             Due::Sample => self.session.sample(),
             Due::Watch(what) => self.session.watch_value(what).map(|watched| match watched {
@@ -147,22 +147,22 @@ impl<D: Device> Bench<D> {
             Ok(sample) => self.samples.push(sample),
             Err(error) if error.is_cancelled() => return false,
             Err(error) => {
-                self.live.poll_failed(wish);
+                self.live.poll_failed(request);
                 while let Some(remark) = self.session.take_remark() {
-                    self.outbox.send(Event::Remark(remark));
+                    self.events.send(Event::Remark(remark));
                 }
-                self.outbox.send(Event::PollFailed(Box::new(error)));
+                self.events.send(Event::PollFailed(Box::new(error)));
             }
         }
         true
     }
 
     /// Does unrequested work, however often samples are taken.
-    fn look_after(&mut self) {
+    fn run_idle_work(&mut self) {
         // A job cuts it short, as it does a sample.
         self.session.set_cancel(self.live.sampling().clone());
         if let Some(remark) = self.session.idle() {
-            self.outbox.send(Event::Remark(remark));
+            self.events.send(Event::Remark(remark));
         }
     }
 

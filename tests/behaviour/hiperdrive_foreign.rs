@@ -9,10 +9,10 @@ use encoder_studio::buses::ethernet_ip::protocol::AddressSource;
 use encoder_studio::devices::hiperdrive::jobs::{
     Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, open,
 };
-use encoder_studio::devices::hiperdrive::procedures::{Error, Found, RequestedItem, discover};
+use encoder_studio::devices::hiperdrive::procedures::{DiscoveredDevice, Error, RequestedItem, discover};
 use encoder_studio::devices::hiperdrive::profile::{Image, NetworkSettings, Service};
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Value, Variant};
-use encoder_studio::link::{Cancel, RealClock, UdpShout};
+use encoder_studio::link::{Cancel, RealClock, UdpBroadcast};
 use encoder_studio::profile::Consent;
 use encoder_studio::store::Store;
 use encoder_studio::worker::Session;
@@ -120,7 +120,7 @@ fn what_is_no_drive_says_who_it_is() {
     let mut session = session(&bench, &foreign, "");
     let error = session.run_inline(HiperdriveJob::Hello).unwrap_err();
     let JobError::Device(error) = error else { panic!("{error}") };
-    assert_eq!(error, Error::NotHiperdrive { says: "Valve island".to_owned() });
+    assert_eq!(error, Error::NotHiperdrive { product: "Valve island".to_owned() });
 }
 
 #[test]
@@ -130,10 +130,11 @@ fn who_is_there_is_found_by_asking_all() {
     let Some(other) = bench.target(&["--product=Valve island"]) else { return };
     let address = |foreign: &Foreign| foreign.place.parse::<SocketAddrV4>().unwrap();
     let clock = Arc::new(RealClock::start());
-    let mut shout = UdpShout::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
+    let mut shout = UdpBroadcast::to(vec![address(&foreign), address(&other)], clock.clone()).unwrap();
     let found = discover(&mut shout, &*clock, &Cancel::default()).unwrap();
-    let of =
-        |foreign: &Foreign| -> &Found { found.iter().find(|found| found.port == address(foreign).port()).unwrap() };
+    let of = |foreign: &Foreign| -> &DiscoveredDevice {
+        found.iter().find(|found| found.port == address(foreign).port()).unwrap()
+    };
     assert_eq!(found.len(), 2, "{found:?}");
     assert!(of(&foreign).is_hiperdrive() && !of(&other).is_hiperdrive());
     assert_eq!(of(&foreign).identity.identity.serial_number, 0x1_0000 + 77);
@@ -271,7 +272,7 @@ fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
         assert!(begun.elapsed() < Duration::from_secs(10), "{options:?}");
         let JobError::Device(error) = error else { panic!("{error}") };
         let is_expected = match error {
-            Error::NoReply { asked: RequestedItem::Parameter(_), .. } => options.contains(&"--silent-after=9"),
+            Error::NoReply { requested: RequestedItem::Parameter(_), .. } => options.contains(&"--silent-after=9"),
             Error::Link(_) => options.contains(&"--vanish-after=9"),
             Error::Damaged { .. } | Error::NeverSilent => options.contains(&"--garbage"),
             _ => false,

@@ -18,7 +18,7 @@ use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, Session, Worker};
 
 use super::support::{Bench, Simulated, ended, signal};
-use wires::{Way, Wires};
+use wires::{Transport, Wires};
 
 /// What a machine that is busy may add.
 const BUSY: Duration = Duration::from_secs(1);
@@ -195,8 +195,11 @@ fn a_wire_for_parameters_that_is_cut() {
 
 #[test]
 fn wires_for_packets_that_are_cut() {
-    for (ways, told) in [(&[Way::ToTarget, Way::ToHost][..], false), (&[Way::ToTarget], false), (&[Way::ToHost], true)]
-    {
+    for (ways, told) in [
+        (&[Transport::ToTarget, Transport::ToHost][..], false),
+        (&[Transport::ToTarget], false),
+        (&[Transport::ToHost], true),
+    ] {
         let mut drive = Drive::start();
         let wires = Wires::to(&drive.simulated.place);
         let host = Host::in_control(&drive.bench, &wires.place());

@@ -1,7 +1,7 @@
 //! The virtual sine/cosine source beside the analysis: what is set in one is found by the other.
 
 use encoder_studio::analysis::Time;
-use encoder_studio::analysis::diagnosis::{Diagnosis, Record, What, diagnose};
+use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
 use encoder_studio::analysis::nonlinearity::nonlinearity;
 use encoder_studio::analysis::position_error::Samples;
 use encoder_studio::analysis::quality::Limits;
@@ -57,38 +57,42 @@ fn the_parameters_come_back() {
 #[test]
 fn each_fault_is_found_by_its_name() {
     let base = Settings::default;
-    type IsIt = fn(&What) -> bool;
+    type IsIt = fn(&FindingKind) -> bool;
     let cases: [(&str, Settings, IsIt); 10] = [
         ("hum", Settings { hum_v: 0.01, ..base() }, |what| {
-            matches!(what, What::Hum { mains_hz: 50.0, common: true, .. })
+            matches!(what, FindingKind::Hum { mains_hz: 50.0, common: true, .. })
         }),
         ("a drive", Settings { interference_v: 0.01, ..base() }, |what| {
-            matches!(what, What::Interference { frequency_hz: 7_999.0..8_001.0, volts: 0.0098..0.0102, .. })
+            matches!(what, FindingKind::Interference { frequency_hz: 7_999.0..8_001.0, volts: 0.0098..0.0102, .. })
         }),
         ("noise", Settings { noise_v: 0.008, ..base() }, |what| {
-            matches!(what, What::Noise { volts: 0.0078..0.0082, .. })
+            matches!(what, FindingKind::Noise { volts: 0.0078..0.0082, .. })
         }),
         ("a harmonic", Settings { third_harmonic_percent: 1.5, ..base() }, |what| {
-            matches!(what, What::Harmonics { order: 4, share: 0.0145..0.0155 })
+            matches!(what, FindingKind::Harmonics { order: 4, share: 0.0145..0.0155 })
         }),
         ("modulation", Settings { modulation_percent: 5.0, ..base() }, |what| {
-            matches!(what, What::Modulation { share: 0.049..0.051 })
+            matches!(what, FindingKind::Modulation { share: 0.049..0.051 })
         }),
         ("the level", Settings { level_v: 1.5, ..base() }, |what| {
-            matches!(what, What::Level { wire: Wire::Refsin, .. })
+            matches!(what, FindingKind::Level { wire: Wire::Refsin, .. })
         }),
-        ("an offset", Settings { offset_sine_v: 0.04, ..base() }, |what| matches!(what, What::Limit(_))),
-        ("an open wire", Settings { open_wire: Some(Wire::Cos), ..base() }, |what| matches!(what, What::Dead { .. })),
+        ("an offset", Settings { offset_sine_v: 0.04, ..base() }, |what| matches!(what, FindingKind::Limit(_))),
+        ("an open wire", Settings { open_wire: Some(Wire::Cos), ..base() }, |what| {
+            matches!(what, FindingKind::Dead { .. })
+        }),
         (
             "an open wire of a pair",
             Settings { open_wire: Some(Wire::Refsin), references: References::Complement, terminated: false, ..base() },
-            |what| matches!(what, What::Half { .. }),
+            |what| matches!(what, FindingKind::Half { .. }),
         ),
-        ("no rotation", Settings { amplitude_v: 0.0, noise_v: 0.0, ..base() }, |what| matches!(what, What::Still)),
+        ("no rotation", Settings { amplitude_v: 0.0, noise_v: 0.0, ..base() }, |what| {
+            matches!(what, FindingKind::Still)
+        }),
     ];
     for (label, settings, is_it) in cases {
         let (_, told) = diagnosed(settings);
-        assert!(told.findings.first().is_some_and(|finding| is_it(&finding.what)), "{label}: {told:?}");
+        assert!(told.findings.first().is_some_and(|finding| is_it(&finding.kind)), "{label}: {told:?}");
     }
 }
 

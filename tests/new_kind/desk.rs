@@ -5,7 +5,9 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Stage;
-use encoder_studio::app::{Action as StudioAction, AnyDevice, DeviceCommand, ReviewAction, Severity, Studio, World};
+use encoder_studio::app::{
+    Action as StudioAction, AnyDevice, DeviceCommand, Environment, ReviewAction, Severity, Studio,
+};
 use encoder_studio::kinds::{KINDS, Program};
 use encoder_studio::store::Store;
 
@@ -26,7 +28,10 @@ pub(crate) struct Desk {
 impl Desk {
     pub(crate) fn new() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        let world = World { ports: Arc::new(|| Ok(vec![])), ..World::real(Store::at(folder.path()), program().studio) };
+        let world = Environment {
+            ports: Arc::new(|| Ok(vec![])),
+            ..Environment::real(Store::at(folder.path()), program().studio)
+        };
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }
 
@@ -49,11 +54,11 @@ impl Desk {
     }
 
     pub(crate) fn shown(&self) -> &AnyDevice {
-        self.studio.shown().unwrap()
+        self.studio.selected_device().unwrap()
     }
 
     pub(crate) fn encoder(&self) -> &Encoder {
-        self.studio.shown_as().unwrap()
+        self.studio.selected_model().unwrap()
     }
 
     pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {

@@ -188,7 +188,7 @@ fn the_window_shows_its_tab_and_its_values() {
     assert!(harness.query_all_by_label("NOVO").next().is_some(), "the navigation has its tab");
     let chart = Text::new("recorder.chart").words(Language::English);
     assert!(harness.query_by_role_and_label(Role::Image, &chart).is_some(), "the plot has its positions");
-    let position = harness.state().0.studio().shown_as::<Encoder>().unwrap().last.unwrap().1.to_string();
+    let position = harness.state().0.studio().selected_model::<Encoder>().unwrap().last.unwrap().1.to_string();
     assert!(harness.query_all_by_label(&position).next().is_some(), "the newest stands large");
     assert!(harness.query_all_by(|node| node.value().as_deref() == Some("4321")).next().is_some());
 }

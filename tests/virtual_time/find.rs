@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use encoder_studio::devices::hiperface::jobs::{DeviceMessage, HiperfaceJob, HiperfaceOutput};
-use encoder_studio::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
+use encoder_studio::devices::hiperface::procedures::find::{FindOptions, Findings, FoundEncoder};
 use encoder_studio::devices::hiperface::protocol::LineSettings;
 use encoder_studio::link::{Cancel, Clock};
 use encoder_studio::units::CharacterFormat;
@@ -20,7 +20,7 @@ fn find(desk: &mut Desk, options: FindOptions) -> Findings {
     findings
 }
 
-fn searched(desk: &mut Desk, options: FindOptions) -> Vec<Found> {
+fn searched(desk: &mut Desk, options: FindOptions) -> Vec<FoundEncoder> {
     match find(desk, options) {
         Findings::Searched { found, complete: true } => found,
         other => panic!("{other:?}"),

@@ -10,7 +10,7 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{
     Effort, Ended, Goal, Lock, MotionRequest, Motive, Permit, Phase, Refusal,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
-use encoder_studio::devices::hiperdrive::sim::Load;
+use encoder_studio::devices::hiperdrive::sim::SpindleLoad;
 
 use bench::Bench;
 
@@ -210,7 +210,7 @@ fn a_fault_is_acknowledged_before_anything_moves() {
 #[test]
 fn a_blocked_drive_ends_the_act() {
     let mut bench = Bench::new();
-    bench.load(Load { wall_above: Some(f64::from(TURN)), ..Load::default() });
+    bench.load(SpindleLoad { wall_above: Some(f64::from(TURN)), ..SpindleLoad::default() });
     bench.act(to(2 * TURN));
     assert_eq!(bench.until_over(), Ended::Fault);
     assert_eq!(bench.position(), TURN);

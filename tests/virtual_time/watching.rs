@@ -21,7 +21,7 @@ const ALWAYS: Duration = Duration::ZERO;
 
 fn watched(sample: &Sample) -> Option<(Watch, Option<i64>)> {
     match sample {
-        Sample::Watched(WatchedReading { what, value, .. }) => Some((*what, value.as_ref().ok().copied())),
+        Sample::Watched(WatchedReading { watch: what, value, .. }) => Some((*what, value.as_ref().ok().copied())),
         _ => None,
     }
 }
@@ -113,7 +113,7 @@ fn what_a_reading_says_is_told_with_it() {
     assert!(desk.session.station().codes_met.is_empty(), "they are told with the reading");
     let now = |code| WatchedReading {
         at: Moment::START,
-        what: SINE,
+        watch: SINE,
         value: Err(Error::Rejected { command: Command::ReadAnalogue, codes: vec![StatusCode::new(code)] }),
         codes: Vec::new(),
     };

@@ -9,7 +9,7 @@ use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, Recording, Severity, Tab};
 use encoder_studio::devices::biss::protocol::Role;
 use encoder_studio::devices::biss::state::{BissAction as Biss, Mark};
-use encoder_studio::devices::biss::state::{BissForm, BissWay};
+use encoder_studio::devices::biss::state::{BissForm, BissLinkKind};
 
 use crate::biss_support::{ask, at, encoder, is_read, open};
 use crate::screen::Screen;
@@ -158,7 +158,7 @@ fn a_link_is_for_the_tab_that_asks_for_it() {
     desk.act(Action::ShowTab(crate::tabs::BISS));
     desk.connect(Connect::Open);
     assert_eq!(desk.studio.connect.as_ref().unwrap().device, crate::tabs::BISS);
-    let form = BissForm { way: BissWay::Pin, port: "/dev/nowhere".to_owned(), ..BissForm::default() };
+    let form = BissForm { kind: BissLinkKind::Pin, port: "/dev/nowhere".to_owned(), ..BissForm::default() };
     desk.connect(Connect::edit(form));
     desk.connect(Connect::Connect);
     desk.until("it cannot be opened", |studio| {

@@ -80,7 +80,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
             assert!(told.contains(words), "{words}: {told}");
         }
         for change in ["0x24:0x00 OEM data: 00 → 11", "0x24:0x3F OEM data: 00 → 33"] {
-            assert!(told.contains(change) && writes[0].what.contains(change), "{told}");
+            assert!(told.contains(change) && writes[0].description.contains(change), "{told}");
         }
         ask(&mut desk, Biss::Check);
         desk.until("it is checked", |studio| studio.biss().unwrap().check.is_some());

@@ -40,7 +40,7 @@ impl Desk {
 
     fn read(&mut self, slot: Slot) {
         self.assist(Assistant::Read(slot));
-        self.until("it is read", |studio| studio.hiperface().unwrap().commutation.asked().is_none());
+        self.until("it is read", |studio| studio.hiperface().unwrap().commutation.pending_slot().is_none());
         self.until_ready();
     }
 
@@ -343,7 +343,7 @@ fn readings_outlive_a_lost_cable_and_not_another_encoder() {
     desk.wire().unplug();
     desk.assist(Assistant::Read(Slot::OtherSide));
     desk.until("it is lost", |studio| matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_)));
-    assert_eq!(desk.encoder().commutation.asked(), None);
+    assert_eq!(desk.encoder().commutation.pending_slot(), None);
     assert!(desk.encoder().commutation.reading(Slot::OneSide).is_some());
     desk.assist(Assistant::Read(Slot::OtherSide));
     assert_eq!(desk.why_not(), Some("commutation.not_ready"));

@@ -25,7 +25,7 @@ fn with_changed_profile() -> (Desk, std::path::PathBuf) {
 }
 
 fn is_planned(studio: &Studio) -> bool {
-    studio.shown().and_then(|own| own.sheet()).is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+    studio.selected_device().and_then(|own| own.sheet()).is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
 }
 
 fn compared(studio: &Studio) -> bool {
@@ -35,7 +35,7 @@ fn compared(studio: &Studio) -> bool {
 #[test]
 fn a_comparison_lists_what_differs_and_writes_nothing() {
     let (mut desk, path) = with_changed_profile();
-    let session = desk.studio.shown().unwrap().id();
+    let session = desk.studio.selected_device().unwrap().id();
     let requests = desk.wire().count(0x4A);
     desk.command(DeviceCommand::AskCompare);
     let question = desk.studio.take_file_question().unwrap();
@@ -58,15 +58,15 @@ fn a_comparison_lists_what_differs_and_writes_nothing() {
 #[test]
 fn a_profile_that_is_chosen_to_be_restored_is_reviewed_first() {
     let (mut desk, path) = with_changed_profile();
-    let session = desk.studio.shown().unwrap().id();
+    let session = desk.studio.selected_device().unwrap().id();
     desk.command(DeviceCommand::AskRestore);
     let question = desk.studio.take_file_question().unwrap();
     assert_eq!(question, FileQuestion::Restore(session));
     desk.act(Action::Chosen(question, path));
-    desk.until("the review is open", |studio| studio.shown().is_some_and(|own| own.is_reviewing()));
+    desk.until("the review is open", |studio| studio.selected_device().is_some_and(|own| own.is_reviewing()));
     desk.until("it is planned", is_planned);
     assert_eq!(desk.wire().field(0)[0], b'E');
-    assert_eq!(*desk.studio.shown().unwrap().phase(), Phase::Connected);
+    assert_eq!(*desk.studio.selected_device().unwrap().phase(), Phase::Connected);
 }
 
 #[test]

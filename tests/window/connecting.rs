@@ -8,7 +8,7 @@ use encoder_studio::app::connect::form::FormModel;
 use encoder_studio::app::connect::{Connect as Dialog, ConnectAction as Connect, is_missing};
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, FileQuestion, Language};
-use encoder_studio::devices::biss::state::{BissForm, BissWay};
+use encoder_studio::devices::biss::state::{BissForm, BissLinkKind};
 use encoder_studio::devices::hiperface::procedures::find::FindOptions;
 use encoder_studio::devices::hiperface::state::{LinkForm, LinkKind, Search};
 use encoder_studio::units::{Baud, Parity};
@@ -178,7 +178,7 @@ fn a_link_is_typed_or_pasted() {
     desk.connect(Connect::Device(crate::tabs::BISS));
     desk.connect(Connect::Use("bridge:tcp:adapter:5000?clock=2000000".to_owned()));
     let form = dialog(&desk).form::<encoder_studio::devices::biss::state::BissForm>().unwrap().clone();
-    assert_eq!((form.way, form.host.as_str(), form.clock.as_str()), (BissWay::Bus, "adapter", "2000000"));
+    assert_eq!((form.kind, form.host.as_str(), form.clock.as_str()), (BissLinkKind::Bus, "adapter", "2000000"));
     desk.connect(Connect::edit(BissForm { clock: String::new(), ..form }));
     assert_eq!(dialog(&desk).link(), "bridge:tcp:adapter:5000");
 

@@ -38,9 +38,9 @@ const SITUATIONS: [Situation; 8] = [
         assert!(screen.studio().question.is_some());
     }),
     ("a review", |screen| {
-        let id = screen.studio().shown().unwrap().id();
+        let id = screen.studio().selected_device().unwrap().id();
         screen.act(Action::Command(id, DeviceCommand::Review));
-        screen.until("the review is open", |studio| studio.shown().unwrap().is_reviewing());
+        screen.until("the review is open", |studio| studio.selected_device().unwrap().is_reviewing());
     }),
 ];
 

@@ -199,7 +199,7 @@ fn compared(one: &Body, other: &Body) -> Comparison {
 }
 
 pub(crate) fn shown(studio: &Studio) -> Option<&AnyDevice> {
-    studio.shown()
+    studio.selected_device()
 }
 
 pub(crate) fn command(desk: &mut Desk, command: DeviceCommand) {

@@ -6,13 +6,13 @@ use encoder_studio::app::review::Stage;
 use encoder_studio::app::session::Phase;
 use encoder_studio::app::{Action, DeviceCommand, ReviewAction, Severity, Studio, connect};
 use encoder_studio::buses::ethernet_ip::protocol::{Identity, IdentityItem, Revision, SocketAddress};
-use encoder_studio::devices::hiperdrive::procedures::Found;
+use encoder_studio::devices::hiperdrive::procedures::DiscoveredDevice;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Goal, Lock};
 use encoder_studio::devices::hiperdrive::protocol::{
     Direction, DriveNumber, Length, ParameterNumber, PositionScale, VENDOR,
 };
 use encoder_studio::devices::hiperdrive::state::{
-    Edit, HiperdriveAction as Hiperdrive, LimitsStay, Mark, Measure, Motor, Unit,
+    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Mark, Measure, Motor, Unit,
 };
 
 use crate::support::Desk;
@@ -39,11 +39,11 @@ pub(crate) fn until_read(desk: &mut Desk) {
     desk.settle();
 }
 
-trait Listed {
+trait DeviceHistory {
     fn key_is_listed(&self) -> bool;
 }
 
-impl Listed for Unit {
+impl DeviceHistory for Unit {
     fn key_is_listed(&self) -> bool {
         self.session.backups.is_some()
     }
@@ -78,7 +78,7 @@ fn sets(desk: &Desk) -> usize {
 }
 
 /// A device that answers when all in the network are asked.
-fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> Found {
+fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevice {
     let identity = Identity {
         vendor,
         device_type: 0x0C,
@@ -89,28 +89,32 @@ fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> Found {
         product_name: name.to_owned(),
     };
     let socket = SocketAddress::new(address.into(), port);
-    Found { address: address.into(), port, identity: IdentityItem { version: 1, socket, identity, state: 3 } }
+    DiscoveredDevice {
+        address: address.into(),
+        port,
+        identity: IdentityItem { version: 1, socket, identity, state: 3 },
+    }
 }
 
 /// Reviews what is edited and writes it.
 #[track_caller]
 pub(crate) fn write(desk: &mut Desk) {
-    let action = desk.studio.shown().unwrap().command(DeviceCommand::Review);
+    let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     write_as_shown(desk);
 }
 
 #[track_caller]
 fn write_as_shown(desk: &mut Desk) {
-    let stage = |studio: &Studio| studio.shown().unwrap().sheet().map(|sheet| sheet.stage);
+    let stage = |studio: &Studio| studio.selected_device().unwrap().sheet().map(|sheet| sheet.stage);
     desk.until("there is a plan", |studio| {
-        matches!(stage(studio), Some(Stage::Ready(_))) && studio.shown().unwrap().is_ready()
+        matches!(stage(studio), Some(Stage::Ready(_))) && studio.selected_device().unwrap().is_ready()
     });
     let Some(Stage::Ready(plan)) = stage(&desk.studio) else { panic!() };
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
     desk.until("it is written", |studio| {
-        matches!(stage(studio), Some(Stage::Done { .. })) && studio.shown().unwrap().is_ready()
+        matches!(stage(studio), Some(Stage::Done { .. })) && studio.selected_device().unwrap().is_ready()
     });
     desk.act(Action::Review(id, ReviewAction::Close));
 }
@@ -168,13 +172,14 @@ fn limits_that_exclude_the_position_are_marked_and_not_written() {
     let mut desk = read("sim:");
     edit(&mut desk, Edit::Limits { drive: ONE, lower: 65_536, upper: 131_072 });
     assert!(matches!(unit(&desk).marks()[..], [Mark::Outside { position: 0, .. }]), "{:?}", unit(&desk).marks());
-    let action = desk.studio.shown().unwrap().command(DeviceCommand::Review);
+    let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
     desk.act(action);
     desk.until("it is refused", |studio| {
-        let sheet = studio.shown().unwrap().sheet();
+        let sheet = studio.selected_device().unwrap().sheet();
         sheet.is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { begun: false, .. }))
     });
-    let Some(Stage::Failed { texts, .. }) = desk.studio.shown().unwrap().sheet().map(|sheet| sheet.stage) else {
+    let Some(Stage::Failed { texts, .. }) = desk.studio.selected_device().unwrap().sheet().map(|sheet| sheet.stage)
+    else {
         panic!()
     };
     assert_eq!(texts[0].id(), "hd_plan.outside");
@@ -207,7 +212,7 @@ fn a_pitch_and_what_is_measured_in_come_back() {
 fn another_scaling_locks_motion_until_the_limits_are_confirmed() {
     let mut desk = read("sim:");
     let hundredths = PositionScale::new(400, 256).unwrap();
-    edit(&mut desk, Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace });
+    edit(&mut desk, Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace });
     write(&mut desk);
     // 511 turns of 400 steps.
     assert_eq!(unit(&desk).limits_to_confirm(ONE), Some((-204_400, 204_400)));
@@ -274,6 +279,6 @@ fn limits_may_be_what_the_drive_can_turn() {
     };
     assert!(range(&desk).contains("-33554432") && range(&desk).contains("33554432"), "{}", range(&desk));
     let scale = PositionScale::new(400, 256).unwrap();
-    edit(&mut desk, Edit::Scale { drive: ONE, scale, limits: LimitsStay::InPlace });
+    edit(&mut desk, Edit::Scale { drive: ONE, scale, limits: LimitsPolicy::InPlace });
     assert!(range(&desk).contains("-204800 to 204800"), "{}", range(&desk));
 }

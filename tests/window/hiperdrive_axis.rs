@@ -350,7 +350,7 @@ fn a_write_that_is_not_consented_to_leaves_the_step_as_it_was() {
     let mut desk = begun(FRESH);
     run(&mut desk, Run::Press(Button::Do));
     desk.until("the plan is there", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(axis(&desk).is_writing());
     until_ready(&mut desk);

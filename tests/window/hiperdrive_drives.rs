@@ -147,7 +147,7 @@ fn what_is_told_names_the_drive() {
             studio.services.log.notices().any(|one| one.texts[0].id() == "hd_end.fault")
         });
         let notice = desk.studio.services.log.notices().rev().find(|one| one.texts[0].id() == "hd_end.fault").unwrap();
-        let whose = notice.whose(|text| text.words(Language::English));
+        let whose = notice.prefix(|text| text.words(Language::English));
         assert_eq!(whose.strip_suffix(": ").unwrap().contains("drive 2"), named.is_some(), "{whose}");
         assert_eq!(notice.part.as_ref().map(|part| part.words(Language::English)).as_deref(), named);
     }

@@ -255,7 +255,7 @@ fn a_review_takes_a_key_only_after_it_was_seen_up() {
     assert!(!writes(screen.studio()), "down before it was open");
     up(&mut screen, Key::Enter);
     down(&mut screen, Key::Enter);
-    screen.until("it is written", |studio| !studio.shown().unwrap().is_dirty());
+    screen.until("it is written", |studio| !studio.selected_device().unwrap().is_dirty());
 }
 
 /// Issue 22.29: a barcode scanner, its Enter within milliseconds of the last digit, while *Write* has the keyboard: in one
@@ -280,9 +280,9 @@ fn a_barcode_scanner_writes_nothing() {
         screen.harness.input_mut().time = None;
         picture(&mut screen, [event(Key::Enter, true)]);
         up(&mut screen, Key::Enter);
-        assert!(screen.studio().shown().unwrap().is_dirty() && screen.has_button("review.write"));
+        assert!(screen.studio().selected_device().unwrap().is_dirty() && screen.has_button("review.write"));
     }
     assert!(!screen.studio().hiperdrive().unwrap().session.is_writing());
     down(&mut screen, Key::Enter);
-    screen.until("it is written", |studio| !studio.shown().unwrap().is_dirty());
+    screen.until("it is written", |studio| !studio.selected_device().unwrap().is_dirty());
 }

@@ -177,7 +177,7 @@ fn a_move_goes_on_in_another_tab_and_ends_by_stop() {
     desk.act(Action::Escape);
     until_standing(&desk);
     desk.until("the window knows it", |studio| !studio.moves());
-    assert!(desk.studio.shown().is_none() || desk.studio.settings.tab == crate::tabs::BISS);
+    assert!(desk.studio.selected_device().is_none() || desk.studio.settings.tab == crate::tabs::BISS);
 }
 
 #[test]

@@ -91,7 +91,7 @@ fn a_table_is_written_while_another_drive_is_shown() {
     until_recorded(&mut desk, 5);
     let path = desk.outside.path("table.csv");
     let whose = Whose::Device(unit(&desk).session.id);
-    let question = FileQuestion::Table { desk: whose, visible: false, suggested: path.clone() };
+    let question = FileQuestion::Table { owner: whose, visible: false, suggested: path.clone() };
     desk.act(Action::Chosen(question, path.clone()));
     act(&mut desk, Hiperdrive::SelectDrive(DriveNumber::new(3).unwrap()));
     desk.until("it is written", |studio| {

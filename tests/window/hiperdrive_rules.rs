@@ -10,8 +10,8 @@ use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use egui_kittest::kittest::Queryable;
-use encoder_studio::app::{Action, Severity, Studio, World};
-use encoder_studio::devices::hiperdrive::jobs::Way;
+use encoder_studio::app::{Action, Environment, Severity, Studio};
+use encoder_studio::devices::hiperdrive::jobs::DeviceConnection;
 use encoder_studio::devices::hiperdrive::procedures::Station;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, ErrorCode, State, Value};
 use encoder_studio::devices::hiperdrive::sim::{Config, Target};
@@ -108,7 +108,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
     let bad = Arc::new(AtomicBool::default());
     let outside = Outside::new("");
     let is_bad = bad.clone();
-    let world = World {
+    let world = Environment {
         given: outside.world().given.with(Opener::new(move |url, store| {
             let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
             let target = Target::new(&Config::from_pairs(&[]).unwrap());
@@ -117,7 +117,7 @@ fn over_a_bad_stream() -> (Desk, Arc<AtomicBool>) {
             let wire = Box::new(Damaging(stream, is_bad.clone()));
             let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
             let station = Station::from_query(&url.query, None, Duration::from_millis(20))?;
-            let way = Way { wire, port: Some(port), station, target: Some(target) };
+            let way = DeviceConnection { wire, port: Some(port), station, target: Some(target) };
             Ok(Session::to_target(way, clock, store))
         })),
         ..outside.world()

@@ -61,7 +61,7 @@ fn edit(desk: &mut Desk, edit: Edit) {
 }
 
 fn wish(desk: &mut Desk, wish: DeviceCommand) {
-    let action = desk.studio.shown().unwrap().command(wish);
+    let action = desk.studio.selected_device().unwrap().command(wish);
     desk.act(action);
 }
 
@@ -78,15 +78,15 @@ fn cam(number: u8) -> CamNumber {
 fn write(desk: &mut Desk) -> String {
     wish(desk, DeviceCommand::Review);
     desk.until("the plan is there", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     until_ready(desk);
-    let sheet = desk.studio.shown().unwrap().sheet().unwrap();
+    let sheet = desk.studio.selected_device().unwrap().sheet().unwrap();
     let Stage::Ready(plan) = sheet.stage else { panic!("no plan") };
     let id = encoder(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
     desk.until("it is written", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
     });
     until_ready(desk);
     desk.settle();

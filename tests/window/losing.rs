@@ -62,7 +62,7 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     assert_eq!(texts[0], crate::texts::text("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
     // Issue 22.14: the list of operations stays, with those that are done.
-    let sheet = desk.studio.shown().unwrap().sheet().unwrap();
+    let sheet = desk.studio.selected_device().unwrap().sheet().unwrap();
     assert!(matches!(sheet.stage, Stage::Failed { begun: true, done: 2, .. }), "{:?}", sheet.stage);
     assert_eq!(sheet.lines.len(), 4);
     let backups = fs::read_dir(desk.outside.path("data/backups/hiperface/GB0450179")).unwrap();

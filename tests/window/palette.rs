@@ -57,7 +57,7 @@ fn actions_of_the_shown_device_are_carried_out() {
     assert_eq!(screen.outside.wire(PORT).count(0x56), before + 1);
     find_and_choose(&mut screen, "check the device");
     screen.until("it is checked", |studio| studio.hiperface().is_some_and(|own| own.check.is_some()));
-    assert_eq!(*screen.studio().shown().unwrap().phase(), Phase::Connected);
+    assert_eq!(*screen.studio().selected_device().unwrap().phase(), Phase::Connected);
 }
 
 #[test]

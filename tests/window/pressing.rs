@@ -51,7 +51,9 @@ fn check(screen: &Screen, before: &BTreeMap<String, String>, what: &str) {
 }
 
 fn ready(screen: &mut Screen) {
-    screen.until("it is ready", |studio| studio.shown().is_some_and(|own| own.is_readable()) && !studio.works());
+    screen.until("it is ready", |studio| {
+        studio.selected_device().is_some_and(|own| own.is_readable()) && !studio.works()
+    });
 }
 
 /// Issue 21.7: a notice and a job that runs come and go by themselves.
@@ -60,7 +62,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
     for (tab, scheme, port, reads) in KINDS {
         let mut screen = Screen::opened_in(tab, &format!("{scheme}:{port}"), SIZE);
         ready(&mut screen);
-        let id = screen.studio().shown().unwrap().id();
+        let id = screen.studio().selected_device().unwrap().id();
         if tab == crate::tabs::INTERBUS {
             // Else it is not read.
             screen.act(Action::device(id, Interbus::Stopped(true)));
@@ -75,11 +77,11 @@ fn what_appears_elsewhere_exchanges_no_button() {
             check(&screen, &before, &format!("{tab:?}, {page}, without it"));
             let wire = screen.outside.wire(port).clone();
             wire.hold_at(reads, 1);
-            let read = screen.studio().shown().unwrap().command(DeviceCommand::Read);
+            let read = screen.studio().selected_device().unwrap().command(DeviceCommand::Read);
             screen.act(read);
             wire.wait_until_held();
             screen.steps();
-            assert!(screen.studio().shown().unwrap().running().is_some(), "{tab:?}");
+            assert!(screen.studio().selected_device().unwrap().running().is_some(), "{tab:?}");
             check(&screen, &before, &format!("{tab:?}, {page}, while it is read"));
             wire.release();
             ready(&mut screen);

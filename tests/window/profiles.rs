@@ -206,7 +206,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
 
 /// The sheet of the review that is shown.
 fn sheet(desk: &Desk) -> ReviewSheet {
-    desk.studio.shown().unwrap().sheet().unwrap()
+    desk.studio.selected_device().unwrap().sheet().unwrap()
 }
 
 /// A profile with these edits, refused by another encoder because that is of another serial number.
@@ -284,7 +284,7 @@ fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
     onto_another(&mut desk, &path);
     let [question] = &sheet(&desk).questions[..] else { panic!() };
     assert_eq!((question.permit, question.is_on), (Permit::Copy(0), false));
-    for text in [&question.what, &question.yes, &question.no] {
+    for text in [&question.title, &question.yes, &question.no] {
         crate::texts::check(text);
     }
     desk.toggle(Permit::Copy(0));
@@ -320,7 +320,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
     desk.put(0, 0, b"X");
     desk.wire().unplug();
     desk.until("it is lost", crate::losing::lost);
-    assert!(desk.studio.shown().unwrap().is_savable());
+    assert!(desk.studio.selected_device().unwrap().is_savable());
     let path = desk.outside.path("lost.ron");
     desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
@@ -337,7 +337,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it cannot be opened", crate::losing::lost);
-    assert!(!desk.studio.shown().unwrap().is_savable());
+    assert!(!desk.studio.selected_device().unwrap().is_savable());
 }
 
 /// A typed path replaces nothing without a question.

@@ -112,14 +112,14 @@ fn the_recording_is_saved_as_a_table() {
     let desk_of = own(&desk);
     desk.act(Action::Recorder(desk_of, recorder::RecorderAction::Clear));
     let path = desk.outside.path("samples.csv");
-    let question = |visible| FileQuestion::Table { desk: desk_of, visible, suggested: "x.csv".into() };
+    let question = |visible| FileQuestion::Table { owner: desk_of, visible, suggested: "x.csv".into() };
     desk.act(Action::Chosen(question(false), path.clone()));
     assert_eq!(desk.told(Severity::Warning), ["recorder.nothing_to_write"]);
     desk.command(FAST);
     desk.until("samples come", |studio| recorded(studio) > 50);
     desk.act(Action::Stop);
     desk.settle();
-    desk.act(Action::AskTable { desk: desk_of, visible: false });
+    desk.act(Action::AskTable { owner: desk_of, visible: false });
     let asked = desk.studio.take_file_question().unwrap();
     let FileQuestion::Table { visible: false, suggested, .. } = &asked else { panic!("{asked:?}") };
     let name = suggested.to_str().unwrap();

@@ -33,7 +33,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
 
 /// The profile of a file is shown.
 fn is_open(studio: &Studio) -> bool {
-    studio.shown().is_some_and(|own| *own.phase() == Phase::Offline)
+    studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline)
 }
 
 fn says(path: &Path) -> String {
@@ -41,13 +41,13 @@ fn says(path: &Path) -> String {
 }
 
 fn save(desk: &mut Desk) {
-    let id = desk.studio.shown().map(AnyDevice::id).unwrap();
+    let id = desk.studio.selected_device().map(AnyDevice::id).unwrap();
     desk.act(Action::Save(id));
 }
 
 /// Edits of what is shown are on disk.
 fn until_kept(desk: &mut Desk) {
-    desk.until("the draft is kept", |studio| studio.shown().is_some_and(AnyDevice::is_draft_kept));
+    desk.until("the draft is kept", |studio| studio.selected_device().is_some_and(AnyDevice::is_draft_kept));
     desk.settle();
 }
 
@@ -101,8 +101,8 @@ fn what_others_wrote_meanwhile_is_asked_about() {
         ("fields[number: 0].bytes[0]".to_owned(), Changed::Both, None),
     ];
     assert_eq!(told, expected);
-    assert!(rows[1].says(Side::Theirs).unwrap().starts_with("\"00 AA"));
-    assert!(rows[1].says(Side::Mine).unwrap().starts_with("\"58 01"));
+    assert!(rows[1].value(Side::Theirs).unwrap().starts_with("\"00 AA"));
+    assert!(rows[1].value(Side::Mine).unwrap().starts_with("\"58 01"));
     assert!(!desk.studio.diverged.as_ref().unwrap().can_merge(), "who decides what both changed?");
     desk.act(Action::Resolve(Resolve::Merge));
     assert!(desk.studio.diverged.is_some());
@@ -271,7 +271,7 @@ fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
     let shown = ProgramNumber::FIRST;
     assert!(desk.studio.interbus().unwrap().marks_beside(Some(shown)).is_empty(), "they stand beside the program");
     save(&mut desk);
-    desk.until("it is saved", |studio| !studio.shown().unwrap().is_dirty());
+    desk.until("it is saved", |studio| !studio.selected_device().unwrap().is_dirty());
     let standing = desk.studio.services.log.standing().unwrap();
     let ids: Vec<_> = standing.texts.iter().map(|text| text.id()).collect();
     assert_eq!((standing.severity, ids), (Severity::Warning, vec!["session.saved", "cams.mark_beyond"]));
@@ -303,9 +303,9 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
     for (text, make, (from, to), (was, is)) in cases {
         for crashes in [true, false] {
             let (mut desk, path) = opened(text);
-            let id = desk.studio.shown().unwrap().id();
+            let id = desk.studio.selected_device().unwrap().id();
             make(&mut desk, id);
-            assert!(desk.studio.shown().unwrap().is_dirty(), "{text}");
+            assert!(desk.studio.selected_device().unwrap().is_dirty(), "{text}");
             let theirs = text.replace(was, is);
             until_kept(&mut desk);
             if crashes {
@@ -317,11 +317,11 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
                 desk.act(Action::Open(path.clone()));
             }
             desk.until("the edits are there", |studio| {
-                is_open(studio) && studio.opening_files().is_empty() && studio.shown().unwrap().is_dirty()
+                is_open(studio) && studio.opening_files().is_empty() && studio.selected_device().unwrap().is_dirty()
             });
             desk.settle();
             save(&mut desk);
-            desk.until("it is saved", |studio| !studio.shown().unwrap().is_dirty());
+            desk.until("it is saved", |studio| !studio.selected_device().unwrap().is_dirty());
             assert!(desk.studio.diverged.is_none());
             assert_eq!(says(&path), theirs.replace(from, to), "{crashes}");
         }
@@ -337,21 +337,21 @@ fn edits_that_fit_no_more_are_left_out_and_told() {
     let mut desk = Desk::fresh("");
     let path = desk.outside.path("own.ron");
     fs::write(&path, text).unwrap();
-    let is_open = |studio: &Studio| studio.shown().is_some_and(|own| *own.phase() == Phase::Offline);
+    let is_open = |studio: &Studio| studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline);
     desk.studio.begin(None, Some(path.clone()));
     desk.until("it is open", is_open);
     desk.settle();
-    let id = desk.studio.shown().unwrap().id();
+    let id = desk.studio.selected_device().unwrap().id();
     let range = Range::Bits { multiturn: 12, singleturn: 11 };
     desk.act(Action::device(id, Ssi::Edit(Box::new(SsiEdit::Position(range, Code::Binary)))));
-    assert!(desk.studio.shown().unwrap().is_dirty());
+    assert!(desk.studio.selected_device().unwrap().is_dirty());
     until_kept(&mut desk);
     let mut desk = desk.crash();
     fs::write(&path, &theirs).unwrap();
     desk.studio.begin(None, Some(path.clone()));
     let problem = |studio: &Studio| studio.ssi().and_then(|own| own.designer.problem()).map(|own| own.id());
     desk.until("it is told", |studio| problem(studio) == Some("ssi.draft_unfit"));
-    assert!(is_open(&desk.studio) && !desk.studio.shown().unwrap().is_dirty());
+    assert!(is_open(&desk.studio) && !desk.studio.selected_device().unwrap().is_dirty());
     assert_eq!(says(&path), theirs);
 }
 
@@ -360,7 +360,7 @@ fn edits_that_fit_no_more_are_left_out_and_told() {
 fn a_draft_of_a_whole_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
     let (mut desk, path) = opened(text);
-    let id = desk.studio.shown().unwrap().id();
+    let id = desk.studio.selected_device().unwrap().id();
     desk.act(Action::device(id, Ssi::Edit(Box::new(SsiEdit::Preset(9)))));
     until_kept(&mut desk);
     let folder = desk.outside.path("data/drafts/ssi-files");
@@ -371,6 +371,6 @@ fn a_draft_of_a_whole_layout_still_opens() {
     fs::write(draft, format!("[\"{whole}\"]")).unwrap();
     let mut desk = desk;
     desk.studio.begin(None, Some(path));
-    desk.until("the edit is back", |studio| studio.shown().is_some_and(AnyDevice::is_dirty));
+    desk.until("the edit is back", |studio| studio.selected_device().is_some_and(AnyDevice::is_dirty));
     assert_eq!(desk.studio.ssi().unwrap().design().profile.preset, 11);
 }

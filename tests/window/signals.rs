@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use encoder_studio::analysis::capture::{Delimiter, TimeUnit};
-use encoder_studio::analysis::diagnosis::{DiagnosisFinding, What};
+use encoder_studio::analysis::diagnosis::{DiagnosisFinding, FindingKind};
 use encoder_studio::analysis::quality::{Family, QualityFinding as Parameter};
 use encoder_studio::analysis::wiring::Wire;
 use encoder_studio::app::{Action, FileQuestion, Language, Severity, Studio};
@@ -95,23 +95,23 @@ fn the_examples_are_as_good_as_their_names() {
     desk.until_measured();
     let found = desk.studio.signals().findings();
     for (label, wanted) in [
-        ("offset", (|own| matches!(own, What::Limit(Parameter::OffsetCosine(_)))) as fn(&What) -> bool),
-        ("gain", |own| matches!(own, What::Limit(Parameter::GainRatio(_)))),
-        ("phase", |own| matches!(own, What::Limit(Parameter::PhaseError(_)))),
+        ("offset", (|own| matches!(own, FindingKind::Limit(Parameter::OffsetCosine(_)))) as fn(&FindingKind) -> bool),
+        ("gain", |own| matches!(own, FindingKind::Limit(Parameter::GainRatio(_)))),
+        ("phase", |own| matches!(own, FindingKind::Limit(Parameter::PhaseError(_)))),
         ("amplitude", is_amplitude),
     ] {
-        assert!(found.iter().any(|own| wanted(&own.what)), "{label}: {found:?}");
+        assert!(found.iter().any(|own| wanted(&own.kind)), "{label}: {found:?}");
     }
     // 0.8928 V is within 0.8 … 1.2 V.
     desk.signals(Signals::SetFamily(Family::AfsAfm60));
     desk.until("it is judged again", |studio| {
         let found = studio.signals().findings();
-        !found.is_empty() && !found.iter().any(|own| is_amplitude(&own.what))
+        !found.is_empty() && !found.iter().any(|own| is_amplitude(&own.kind))
     });
 }
 
-fn is_amplitude(what: &What) -> bool {
-    matches!(what, What::Limit(Parameter::Amplitude { .. }))
+fn is_amplitude(what: &FindingKind) -> bool {
+    matches!(what, FindingKind::Limit(Parameter::Amplitude { .. }))
 }
 
 #[test]
@@ -403,7 +403,7 @@ fn the_scope_shows_a_capture_and_the_virtual_encoder_and_is_written_as_a_table_t
     assert_eq!(to.nanoseconds_since(from), 399 * 5_000);
     let path = desk.outside.path("scope.csv");
     let question = FileQuestion::Table {
-        desk: encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS),
+        owner: encoder_studio::app::RecorderOwner::Tool(crate::tabs::SIGNALS),
         visible: false,
         suggested: path.clone(),
     };
@@ -432,8 +432,8 @@ fn what_became_worse_since_the_kept_capture_is_told() {
     desk.signals(Signals::Keep);
     desk.source(SourceAction::Set(Quantity::Interference, 0.02));
     desk.until("the drive is seen", |studio| {
-        let rose = |own: &DiagnosisFinding| match own.what {
-            What::InterferenceRose { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
+        let rose = |own: &DiagnosisFinding| match own.kind {
+            FindingKind::InterferenceRose { frequency_hz, .. } => (frequency_hz - 8_000.0).abs() < 5.0,
             _ => false,
         };
         studio.signals().changes().is_some_and(|own| own.worse.iter().any(rose))

@@ -6,9 +6,11 @@ use std::time::Duration;
 use encoder_studio::app::session::{Phase, Source};
 use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
-use encoder_studio::devices::ssi::protocol::{Code, Doubt, Location, Range};
+use encoder_studio::devices::ssi::protocol::{Code, Location, Range, Uncertainty};
 use encoder_studio::devices::ssi::state::strip::Handle;
-use encoder_studio::devices::ssi::state::{Edit, Encoder, Entry, Field, Format, Hunt, Input, SsiAction as Ssi, Try};
+use encoder_studio::devices::ssi::state::{
+    Edit, Encoder, Entry, Field, Format, Input, SearchState, SsiAction as Ssi, Try,
+};
 
 use crate::support::Desk;
 
@@ -49,7 +51,7 @@ fn edit(desk: &mut Desk, edit: Edit) {
 }
 
 fn wish(desk: &mut Desk, wish: DeviceCommand) {
-    let action = desk.studio.shown().unwrap().command(wish);
+    let action = desk.studio.selected_device().unwrap().command(wish);
     desk.act(action);
 }
 
@@ -67,13 +69,13 @@ fn a_layout_needs_no_device() {
     assert_eq!(own.designer.family().unwrap().key, "ahm36");
     // Reference section 8: AHM36, MT 123h, ST 2A5Bh, binary and Gray.
     act(&mut desk, Ssi::Try(Try::Place(0x123, 0x2A5B)));
-    assert_eq!(encoder(&desk).shown().frame, 0x091_D4B6);
+    assert_eq!(encoder(&desk).displayed_frame().frame, 0x091_D4B6);
     act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
     assert_eq!(encoder(&desk).design().profile.descriptor.code, Code::Gray);
-    assert_eq!(encoder(&desk).shown().frame, 0x0D9_3EEC, "the position stays");
+    assert_eq!(encoder(&desk).displayed_frame().frame, 0x0D9_3EEC, "the position stays");
     act(&mut desk, Ssi::Try(Try::Bits("000110110010011111011101100".to_owned())));
     assert_eq!(
-        encoder(&desk).shown().place,
+        encoder(&desk).displayed_frame().place,
         Some((
             0x123 << 14 | 0x2A5B,
             Location::Shaft { turns: 0x123, steps: 0x2A5B, degrees: 10843.0 * 360.0 / 16384.0 }
@@ -239,10 +241,10 @@ fn the_layout_is_found_live_and_taken() {
     desk.until("enough is read", |studio| studio.ssi().unwrap().record.count(33) >= 2000);
     command(&mut desk, DeviceCommand::Poll(None));
     act(&mut desk, Ssi::Find);
-    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
-    let Hunt::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
+    let SearchState::Found { search, .. } = &encoder(&desk).hunt else { panic!() };
     // The end of 4096 turns was not passed.
-    assert_eq!(search.doubt, Some(Doubt::Open));
+    assert_eq!(search.doubt, Some(Uncertainty::Open));
     let members = &search.classes[0].members;
     let place = members.iter().position(|own| own.family.as_ref().is_some_and(|(key, _)| key == "afm60")).unwrap();
     act(&mut desk, Ssi::Take(0, place));
@@ -255,10 +257,10 @@ fn the_layout_is_found_live_and_taken() {
     desk.until("they are written", |_| path.exists());
     act(&mut desk, Ssi::ForgetSearch);
     act(&mut desk, Ssi::FindIn(path));
-    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    desk.until("it is found", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     let nowhere = desk.outside.path("nowhere.txt");
     act(&mut desk, Ssi::FindIn(nowhere));
-    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Failed(_)));
+    desk.until("it is told", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Failed(_)));
 }
 
 #[test]
@@ -274,7 +276,7 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
     // Nothing is written, and that is said.
     wish(&mut desk, DeviceCommand::Review);
-    assert!(!desk.studio.shown().unwrap().is_reviewing());
+    assert!(!desk.studio.selected_device().unwrap().is_reviewing());
 }
 
 #[test]
@@ -331,9 +333,9 @@ fn an_adapter_without_ssi_is_named() {
     desk.act(Action::ShowTab(crate::tabs::SSI));
     desk.open("sim:?version=2");
     desk.until("it is told", |studio| {
-        studio.shown().is_some_and(|own| matches!(own.phase(), Phase::Silent(_) | Phase::Lost(_)))
+        studio.selected_device().is_some_and(|own| matches!(own.phase(), Phase::Silent(_) | Phase::Lost(_)))
     });
-    let Phase::Silent(why) = desk.studio.shown().unwrap().phase() else { panic!() };
+    let Phase::Silent(why) = desk.studio.selected_device().unwrap().phase() else { panic!() };
     assert_eq!(why.id(), "adapter.version");
 }
 

@@ -11,11 +11,11 @@ use std::time::{Duration, Instant};
 
 use encoder_studio::app::review::Permit;
 use encoder_studio::app::session::Phase;
-use encoder_studio::app::{Action, GracePeriods, ReviewAction, Severity, Studio, World, connect};
+use encoder_studio::app::{Action, Environment, GracePeriods, ReviewAction, Severity, Studio, connect};
 use encoder_studio::devices::biss::jobs as biss;
-use encoder_studio::devices::biss::procedures::Way;
+use encoder_studio::devices::biss::procedures::Transport;
 use encoder_studio::devices::hiperdrive::jobs as hiperdrive;
-use encoder_studio::devices::hiperdrive::procedures::Found;
+use encoder_studio::devices::hiperdrive::procedures::DiscoveredDevice;
 use encoder_studio::devices::hiperdrive::state::Discover;
 use encoder_studio::devices::hiperface::procedures::Station;
 use encoder_studio::devices::hiperface::profile::{Base, HiperfacePlan};
@@ -45,7 +45,7 @@ pub(crate) struct Outside {
     pub(crate) opens: Arc<AtomicBool>,
     pub(crate) patience: GracePeriods,
     /// Who answers when all in the network are asked.
-    pub(crate) found: Vec<Found>,
+    pub(crate) found: Vec<DiscoveredDevice>,
     /// What kinds of devices there are.
     pub(crate) program: Program,
 }
@@ -114,15 +114,15 @@ impl Outside {
         &self.wires[port]
     }
 
-    pub(crate) fn world(&self) -> World {
+    pub(crate) fn world(&self) -> Environment {
         let (wires, opens, found) = (self.wires.clone(), self.opens.clone(), self.found.clone());
         let (kits, gates, drives) = (self.wires.clone(), self.wires.clone(), self.wires.clone());
         let novos = self.wires.clone();
-        World {
+        Environment {
             given: Given::default()
                 .with(Opener::new(move |url, store| {
                     let Some(wire) = kits.get(&url.target) else { return biss::open(url, store) };
-                    let way = if url.scheme == Scheme::Bridge { Way::Adapter } else { Way::ConfigPin };
+                    let way = if url.scheme == Scheme::Bridge { Transport::Adapter } else { Transport::ConfigPin };
                     let station =
                         encoder_studio::devices::biss::procedures::Station::from_query(&url.query, way, MARGIN)?;
                     let link = Box::new(TestLink::plug_into(wire)?);
@@ -142,7 +142,7 @@ impl Outside {
                     let station =
                         encoder_studio::devices::hiperdrive::procedures::Station::from_query(&url.query, None, MARGIN)?;
                     let link = Box::new(TestLink::plug_into(wire)?);
-                    let way = hiperdrive::Way { wire: link, port: None, station, target: None };
+                    let way = hiperdrive::DeviceConnection { wire: link, port: None, station, target: None };
                     Ok(Session::to_target(way, wire.clock(), store))
                 }))
                 .with(Opener::new(move |url, store| {
@@ -171,7 +171,7 @@ impl Outside {
             ports: Arc::new(|| Ok(Vec::new())),
             patience: self.patience,
             folders: Folders::at(&self.path("work"), &self.path("home")),
-            ..World::real(self.store(), self.program.studio)
+            ..Environment::real(self.store(), self.program.studio)
         }
     }
 

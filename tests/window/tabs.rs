@@ -41,23 +41,23 @@ pub(crate) trait Tabs {
 
 impl Tabs for Studio {
     fn hiperface(&self) -> Option<&hiperface::state::Encoder> {
-        self.shown_as()
+        self.selected_model()
     }
 
     fn biss(&self) -> Option<&biss::state::Encoder> {
-        self.shown_as()
+        self.selected_model()
     }
 
     fn ssi(&self) -> Option<&ssi::state::Encoder> {
-        self.shown_as()
+        self.selected_model()
     }
 
     fn interbus(&self) -> Option<&interbus::state::Encoder> {
-        self.shown_as()
+        self.selected_model()
     }
 
     fn hiperdrive(&self) -> Option<&hiperdrive::state::Unit> {
-        self.shown_as()
+        self.selected_model()
     }
 
     fn signals(&self) -> &Signals {

@@ -79,7 +79,7 @@ pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.notices().for_each(check_notice);
     studio.services.log.standing().iter().for_each(|notice| check_notice(notice));
     for job in studio.services.jobs() {
-        check(&job.what);
+        check(&job.title);
         if let JobEnd::Failed(why) = &job.end {
             check(why);
         }
@@ -118,7 +118,7 @@ fn check_encoder(encoder: &Encoder) {
         check(why);
     }
     let Some(review) = &encoder.session.review else { return };
-    check(&review.what);
+    check(&review.title);
     if let ReviewState::Failed { texts, .. } = &review.state {
         texts.iter().for_each(check);
     }

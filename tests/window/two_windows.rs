@@ -9,7 +9,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use std::{env, fs, thread};
 
-use encoder_studio::app::{Action, ColorScheme, Language, Settings, Studio, World};
+use encoder_studio::app::{Action, ColorScheme, Environment, Language, Settings, Studio};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
 use encoder_studio::devices::hiperdrive::protocol::{DriveNumber, Length, Value};
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Measure, Motor};
@@ -189,7 +189,7 @@ fn process(desk: &Desk, test: &str, name: &str) -> Child {
 
 fn studio_of_process() -> (Studio, String) {
     let folder = env::var_os(FOLDER).expect("run by a test of this module");
-    let world = World::real(Store::at(folder.as_ref()), program().studio);
+    let world = Environment::real(Store::at(folder.as_ref()), program().studio);
     (Studio::new(world, Arc::new(|| {})), env::var(NAME).unwrap())
 }
 

@@ -4,7 +4,7 @@
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
 
-use encoder_studio::devices::hiperdrive::jobs::{Hiperdrive, Way};
+use encoder_studio::devices::hiperdrive::jobs::{DeviceConnection, Hiperdrive};
 use encoder_studio::devices::hiperdrive::procedures::Station;
 use encoder_studio::devices::hiperdrive::sim::{Config, Target};
 use encoder_studio::link::{Clock, LinkUrl, RealClock, SimLink, SimPort};
@@ -37,5 +37,5 @@ pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, O
     let wire = Box::new(SimLink::connect(connection, clock.clone()));
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock.clone()));
     let station = Station::from_query(&url.query, None, MARGIN)?;
-    Ok(Session::to_target(Way { wire, port: Some(port), station, target: Some(target) }, clock, store))
+    Ok(Session::to_target(DeviceConnection { wire, port: Some(port), station, target: Some(target) }, clock, store))
 }

@@ -83,11 +83,11 @@ fn an_address_is_typed_looked_at_and_written() {
     assert!(screen.shows("The device uses the stored address 192.168.5.20."));
     screen.click("hd_net.write");
     screen.until("the plan is there", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
             && studio.hiperdrive().unwrap().session.is_ready()
     });
     // The dialog says it too, above the form that does.
-    let sheet = screen.studio().shown().unwrap().sheet().unwrap();
+    let sheet = screen.studio().selected_device().unwrap().sheet().unwrap();
     let warned =
         |text: &Text| text.terminal().contains("At the next power-up") && text.terminal().contains("192.168.5.20");
     assert!(sheet.warnings.iter().any(warned), "{:?}", sheet.warnings);
@@ -149,7 +149,7 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     // The review says it in millimetres, each under its own scale, old and new on one line.
     screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("there is a plan", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));

@@ -149,7 +149,7 @@ fn lines_are_hidden_and_seen_in_other_units() {
     let speed = screen.say("recorder.speed");
     screen.harness.get_by_role_and_label(Role::CheckBox, &speed).click();
     screen.steps();
-    assert_eq!(recorder(&screen).shown().count(), 1);
+    assert_eq!(recorder(&screen).visible_series().count(), 1);
     let degrees = format!("{}: °", screen.say("recorder.position"));
     screen.harness.get_by_role_and_label(Role::RadioButton, &degrees).click();
     screen.steps();
@@ -237,7 +237,7 @@ fn a_table_is_asked_for_from_the_menu() {
     screen.click("recorder.csv_visible");
     // Without a portal the window asks for a path itself, and the question is on its way there.
     screen.until("it asks for a path", |_| true);
-    let question = FileQuestion::Table { desk: of, visible: true, suggested: "x".into() };
+    let question = FileQuestion::Table { owner: of, visible: true, suggested: "x".into() };
     let path = screen.outside.path("samples.csv");
     screen.act(Action::Chosen(question, path.clone()));
     screen.until("it is written", |studio| {

@@ -2,7 +2,7 @@
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::app::session::Listed;
+use encoder_studio::app::session::DeviceHistory;
 use encoder_studio::app::{Action, Done, Language, PendingEdits, Severity, Text};
 use encoder_studio::devices::hiperface::jobs::Change;
 use encoder_studio::devices::hiperface::profile::HiperfaceProfile;
@@ -272,8 +272,12 @@ fn what_comes_late_for_another_encoder_is_dropped() {
         serial_number: "OTHER0001".to_owned(),
         is_virtual: true,
     };
-    let listed =
-        Box::new(Listed { backups: Ok(Vec::new()), writes: Ok(Vec::new()), cycles: Some(0), statuses: Vec::new() });
+    let listed = Box::new(DeviceHistory {
+        backups: Ok(Vec::new()),
+        writes: Ok(Vec::new()),
+        cycles: Some(0),
+        statuses: Vec::new(),
+    });
     desk.act(Action::Done(Done::Listed(id, other.clone(), listed)));
     assert_eq!(desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap().len(), 1);
     let path = desk.encoder().session.backups.as_ref().unwrap().as_ref().unwrap()[0].path.clone();

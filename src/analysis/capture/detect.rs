@@ -83,18 +83,18 @@ impl Layout {
     ///
     /// # Errors
     /// [`CaptureError`] where they hold no table with sine and cosine.
-    pub fn detect(head: &[u8], wishes: &TableHints) -> Result<Self, CaptureError> {
+    pub fn detect(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let decoded = decode_head(head);
         let text = whole_lines(&decoded, head.len());
         if text.iter().all(u8::is_ascii_whitespace) {
             return Err(CaptureError::Empty);
         }
-        let delimiter = wishes.delimiter.or_else(|| delimiter(text)).ok_or(match has_numbers(text) {
+        let delimiter = hints.delimiter.or_else(|| delimiter(text)).ok_or(match has_numbers(text) {
             true => CaptureError::OneColumn,
             false => CaptureError::NoNumbers,
         })?;
         let lines = lines(text, delimiter);
-        let decimal_comma = wishes.decimal_comma.unwrap_or_else(|| decimal_comma(&lines));
+        let decimal_comma = hints.decimal_comma.unwrap_or_else(|| decimal_comma(&lines));
         let usual = usual_width(&lines, decimal_comma);
         let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
         let (before, data) = lines.split_at(first);
@@ -108,7 +108,7 @@ impl Layout {
         let names = header.first().cloned().unwrap_or_default();
         let named = Columns::named(&names).map(|columns| fitting(columns, data.first(), decimal_comma));
         let named = named.map(|columns| if clock.is_some() { columns.counted() } else { columns });
-        let columns = match (wishes.columns, named) {
+        let columns = match (hints.columns, named) {
             (Some(columns), _) | (None, Some(columns)) => columns,
             (None, None) if width >= 3 => Columns::PLAIN,
             (None, None) if width == 1 => return Err(CaptureError::OneColumn),
@@ -126,10 +126,10 @@ impl Layout {
             first_row,
             names,
             columns,
-            time_unit: wishes.time_unit.or(time_unit).unwrap_or_default(),
-            volts_per_unit: wishes.volts_per_unit.unwrap_or(volt_unit.factor()),
+            time_unit: hints.time_unit.or(time_unit).unwrap_or_default(),
+            volts_per_unit: hints.volts_per_unit.unwrap_or(volt_unit.factor()),
             // A given unit of the time column excludes sample numbers.
-            clock: clock.filter(|_| columns.time.is_some() && wishes.time_unit.is_none()),
+            clock: clock.filter(|_| columns.time.is_some() && hints.time_unit.is_none()),
         })
     }
 }

@@ -22,13 +22,13 @@ pub struct Import {
     decoder: Decoder,
     /// The first row that was left out, and the value missing in it.
     first_left_out: Option<(u64, CaptureError)>,
-    taken: Taken,
+    taken: ColumnChoice,
     capture: Capture,
 }
 
 /// Columns from 0, and factors.
 #[derive(Clone, Copy, Debug)]
-struct Taken {
+struct ColumnChoice {
     columns: Columns,
     /// The time in seconds is the first, and the second for each unit of the column.
     seconds: (f64, f64),
@@ -59,15 +59,15 @@ impl Import {
     ///
     /// # Errors
     /// As [`Layout::detect`].
-    pub fn begin(head: &[u8], wishes: &TableHints) -> Result<Self, CaptureError> {
+    pub fn begin(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let head = head.get(..HEAD).unwrap_or(head);
-        let import = Import::with(Layout::detect(head, wishes)?);
+        let import = Import::with(Layout::detect(head, hints)?);
         Ok(Import { decoder: Decoder::of(head), ..import })
     }
 
     /// Begins with a layout that is known.
     pub fn with(layout: Layout) -> Self {
-        let taken = Taken {
+        let taken = ColumnChoice {
             columns: layout.columns,
             seconds: match layout.clock {
                 Some(clock) => (clock.start_s, clock.increment_s),
@@ -193,7 +193,7 @@ impl Import {
     }
 }
 
-impl Taken {
+impl ColumnChoice {
     /// Takes a row; returns what is missing if the row is left out.
     fn take(
         &self,

@@ -4,7 +4,7 @@
 use std::mem::discriminant;
 
 use super::lines::Interference;
-use super::{Diagnosis, DiagnosisFinding, LEAST_LINE, OutOfLimits, Severity, What, severity};
+use super::{Diagnosis, DiagnosisFinding, FindingKind, LEAST_LINE, OutOfLimits, Severity, severity};
 
 /// The changes from one capture to another.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,12 +14,12 @@ pub struct Changes {
     /// Findings that changed without being worse.
     pub changed: Vec<DiagnosisFinding>,
     /// Findings that cannot be compared.
-    pub untold: Vec<Untold>,
+    pub untold: Vec<NotComparable>,
 }
 
 /// Something that cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Untold {
+pub enum NotComparable {
     /// Anything about the ellipse: the first capture has none.
     NoEllipseBefore,
     /// Likewise: the second has none.
@@ -46,13 +46,13 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
         (Some(from_v), Some(to_v)) => {
             if (to_v / from_v - 1.0).abs() >= AMPLITUDE {
                 // One that left its limits is among what is worse as well.
-                let what = What::AmplitudeChanged { from_v, to_v };
-                changes.changed.push(DiagnosisFinding { severity: Severity::Notice, what });
+                let what = FindingKind::AmplitudeChanged { from_v, to_v };
+                changes.changed.push(DiagnosisFinding { severity: Severity::Notice, kind: what });
             }
             disturbances(before, after, to_v, &mut changes);
         }
-        (None, _) => changes.untold.push(Untold::NoEllipseBefore),
-        (Some(_), None) => changes.untold.push(Untold::NoEllipseAfter),
+        (None, _) => changes.untold.push(NotComparable::NoEllipseBefore),
+        (Some(_), None) => changes.untold.push(NotComparable::NoEllipseAfter),
     }
     changes.worse.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     changes
@@ -61,15 +61,15 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
 /// Noise and the lines of the spectrum, which are compared by their size.
 fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
-        changes.untold.push(Untold::NoSpectrum);
+        changes.untold.push(NotComparable::NoSpectrum);
         return;
     };
     if let (Some(from_v), Some(to_v)) = (before.noise_v, after.noise_v)
         && to_v >= MORE * from_v
         && to_v - from_v >= LEAST_NOISE * amplitude
     {
-        let what = What::NoiseRose { from_v, to_v };
-        changes.worse.push(DiagnosisFinding { severity: severity(to_v / amplitude), what });
+        let what = FindingKind::NoiseRose { from_v, to_v };
+        changes.worse.push(DiagnosisFinding { severity: severity(to_v / amplitude), kind: what });
     }
     let spacing = before.spacing_hz.unwrap_or(0.0).max(after.spacing_hz.unwrap_or(0.0));
     changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
@@ -77,16 +77,20 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
 
 /// A finding of the second capture is new, or more than in the first.
 fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -> bool {
-    match finding.what {
+    match finding.kind {
         // Without an ellipse to compare with, only these can be told.
-        What::Still | What::AtRest | What::Same | What::Dead { .. } | What::Level { .. } => {}
+        FindingKind::Still
+        | FindingKind::AtRest
+        | FindingKind::Same
+        | FindingKind::Dead { .. }
+        | FindingKind::Level { .. } => {}
         _ if before.amplitude_v.is_none() => return false,
         // Compared by their size.
-        What::Hum { .. } | What::Interference { .. } | What::Noise { .. } => return false,
+        FindingKind::Hum { .. } | FindingKind::Interference { .. } | FindingKind::Noise { .. } => return false,
         // Consequences of the others, and properties of the motion.
-        What::Uncertain { .. } | What::Reversed { .. } => return false,
+        FindingKind::Uncertain { .. } | FindingKind::Reversed { .. } => return false,
         // Something else may have explained it in the first.
-        What::Limit(OutOfLimits::Residual(_)) => {
+        FindingKind::Limit(OutOfLimits::Residual(_)) => {
             return match (before.residual, after.residual) {
                 (Some(before), Some(after)) => after >= FURTHER * before,
                 _ => false,
@@ -94,48 +98,50 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
         }
         _ => {}
     }
-    let same = |other: &&DiagnosisFinding| covers(&other.what, &finding.what);
+    let same = |other: &&DiagnosisFinding| covers(&other.kind, &finding.kind);
     let Some(earlier) = before.findings.iter().find(same) else { return true };
-    let factor = if matches!(finding.what, What::Limit(_) | What::Level { .. }) { FURTHER } else { MORE };
-    let comparable = discriminant(&earlier.what) == discriminant(&finding.what);
-    finding.severity > earlier.severity || comparable && amount(&finding.what) >= factor * amount(&earlier.what)
+    let factor = if matches!(finding.kind, FindingKind::Limit(_) | FindingKind::Level { .. }) { FURTHER } else { MORE };
+    let comparable = discriminant(&earlier.kind) == discriminant(&finding.kind);
+    finding.severity > earlier.severity || comparable && amount(&finding.kind) >= factor * amount(&earlier.kind)
 }
 
 /// The first finding is of the kind of the second, or a worse form of it.
-fn covers(earlier: &What, later: &What) -> bool {
+fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
-        (What::Limit(earlier), What::Limit(later)) => discriminant(earlier) == discriminant(later),
-        (What::Half { .. }, What::Limit(OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_)))
-        | (What::LetsGo { .. }, What::Spikes { .. }) => true,
+        (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),
+        (FindingKind::Half { .. }, FindingKind::Limit(OutOfLimits::Amplitude { .. } | OutOfLimits::GainRatio(_)))
+        | (FindingKind::LetsGo { .. }, FindingKind::Spikes { .. }) => true,
         (
-            What::Dead { channel: earlier, .. } | What::Half { channel: earlier, .. },
-            What::Half { channel: later, .. },
+            FindingKind::Dead { channel: earlier, .. } | FindingKind::Half { channel: earlier, .. },
+            FindingKind::Half { channel: later, .. },
         )
-        | (What::Dead { channel: earlier, .. }, What::Dead { channel: later, .. })
-        | (What::Clipping { channel: earlier, .. }, What::Clipping { channel: later, .. }) => earlier == later,
-        (What::Level { wire: earlier, .. }, What::Level { wire: later, .. }) => earlier == later,
+        | (FindingKind::Dead { channel: earlier, .. }, FindingKind::Dead { channel: later, .. })
+        | (FindingKind::Clipping { channel: earlier, .. }, FindingKind::Clipping { channel: later, .. }) => {
+            earlier == later
+        }
+        (FindingKind::Level { wire: earlier, .. }, FindingKind::Level { wire: later, .. }) => earlier == later,
         (earlier, later) => discriminant(earlier) == discriminant(later),
     }
 }
 
 /// Returns the amount of a finding, comparable with another of its kind.
-fn amount(what: &What) -> f64 {
+fn amount(what: &FindingKind) -> f64 {
     let beyond = |value: f64, (least, most): (f64, f64)| (least - value).max(value - most).max(0.0);
     match *what {
-        What::Limit(OutOfLimits::Amplitude { volts, ok_v, .. }) => beyond(volts, ok_v),
-        What::Limit(
+        FindingKind::Limit(OutOfLimits::Amplitude { volts, ok_v, .. }) => beyond(volts, ok_v),
+        FindingKind::Limit(
             OutOfLimits::OffsetSine(value)
             | OutOfLimits::OffsetCosine(value)
             | OutOfLimits::PhaseError(value)
             | OutOfLimits::Residual(value),
         ) => value.abs(),
-        What::Limit(OutOfLimits::GainRatio(ratio)) => ratio.ln().abs(),
-        What::Level { volts, ok_v, .. } => beyond(volts, ok_v),
-        What::Harmonics { share, .. } | What::Modulation { share } => share,
-        What::Clipping { samples, .. } => samples,
-        What::Spikes { count, .. } | What::LetsGo { count, .. } => count as f64,
-        What::Missing { gaps, .. } => gaps as f64,
-        What::Half { share, .. } => 1.0 / share,
+        FindingKind::Limit(OutOfLimits::GainRatio(ratio)) => ratio.ln().abs(),
+        FindingKind::Level { volts, ok_v, .. } => beyond(volts, ok_v),
+        FindingKind::Harmonics { share, .. } | FindingKind::Modulation { share } => share,
+        FindingKind::Clipping { samples, .. } => samples,
+        FindingKind::Spikes { count, .. } | FindingKind::LetsGo { count, .. } => count as f64,
+        FindingKind::Missing { gaps, .. } => gaps as f64,
+        FindingKind::Half { share, .. } => 1.0 / share,
         // Their presence counts: there is no amount to compare.
         _ => f64::NAN,
     }
@@ -149,6 +155,6 @@ fn rose(line: &Interference, earlier: &[Interference], spacing_hz: f64, amplitud
         return None;
     }
     let (frequency_hz, common) = (line.frequency_hz, line.common);
-    let what = What::InterferenceRose { frequency_hz, from_v, to_v, common };
-    Some(DiagnosisFinding { severity: severity(to_v / amplitude), what })
+    let what = FindingKind::InterferenceRose { frequency_hz, from_v, to_v, common };
+    Some(DiagnosisFinding { severity: severity(to_v / amplitude), kind: what })
 }

@@ -18,12 +18,12 @@ pub enum Severity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiagnosisFinding {
     pub severity: Severity,
-    pub what: What,
+    pub kind: FindingKind,
 }
 
 /// A kind of finding. Shares are of the amplitude of the cosine channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What {
+pub enum FindingKind {
     /// A parameter outside of the family's limits.
     Limit(OutOfLimits),
     /// Neither channel moves.

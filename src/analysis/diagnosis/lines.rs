@@ -59,13 +59,13 @@ pub struct Interference {
 }
 
 /// A line and what it does to the distance from the ellipse, mean square in V².
-struct Found {
+struct StrongLine {
     line: Interference,
     radial_v2: f64,
 }
 
 /// The content of a spectrum.
-pub(super) struct Seen {
+pub(super) struct SpectrumContent {
     /// The strongest first.
     pub(super) lines: Vec<Interference>,
     /// White noise of one channel, rms, in volts.
@@ -77,7 +77,7 @@ pub(super) struct Seen {
 }
 
 /// Finds the lines; `None` if the times are not even, or there are too few samples.
-pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Seen> {
+pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<SpectrumContent> {
     let count = samples.sine_v.len().min(samples.cosine_v.len()).min(samples.time_s.len());
     let all = samples.time_s.get(..count)?;
     let wanted = (SECONDS * count.saturating_sub(1) as f64 / (all.last()? - all.first()?)) as usize;
@@ -109,7 +109,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Seen> {
     let projector =
         Projector { sine: &sine, cosine: &cosine, analysis, correction: analysis.ellipse.correction(), rate_hz };
     let spacing_hz = spectra.0.spacing_hz();
-    let mut found: Vec<Found> = candidates(&both, &is_signal, analysis.ellipse.amplitude_v)
+    let mut found: Vec<StrongLine> = candidates(&both, &is_signal, analysis.ellipse.amplitude_v)
         .into_iter()
         .filter_map(|at| {
             let louder = |at: usize| height(spectra.0.amplitudes_v(), at) > height(spectra.1.amplitudes_v(), at);
@@ -123,7 +123,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Seen> {
     let radial_v2 = found.iter().map(|found| found.radial_v2).sum();
     let mut lines: Vec<Interference> = found.into_iter().map(|found| found.line).collect();
     name_mains(&mut lines, spacing_hz);
-    Some(Seen { lines, noise_v, spacing_hz, radial_v2 })
+    Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
 /// Outliers have the value before them: a spike would raise every line.
@@ -256,7 +256,7 @@ struct Projector<'a> {
 
 impl Projector<'_> {
     /// The line at a frequency, if it is interference.
-    fn line(&self, frequency_hz: f64) -> Option<Found> {
+    fn line(&self, frequency_hz: f64) -> Option<StrongLine> {
         let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);
         let stretch = self.correction.stretch();
         // The correction is linear, so that it can be done to the line instead of the samples.
@@ -271,7 +271,7 @@ impl Projector<'_> {
         let common = equal && apart.abs() < IN_PHASE;
         let line = Interference { frequency_hz, volts: sine_v.max(cosine_v), common, mains_hz: None };
         // Of the mean squares of both channels half goes along the radius.
-        Some(Found { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
+        Some(StrongLine { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
     }
 
     /// Amplitude and phase of sine, cosine and what of their corrected values goes along the radius, in a Hann window.

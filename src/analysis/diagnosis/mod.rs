@@ -11,8 +11,8 @@ mod lines;
 mod shape;
 mod trust;
 
-pub use compare::{Changes, Untold, compare};
-pub use finding::{DiagnosisFinding, Severity, Stuck, What};
+pub use compare::{Changes, NotComparable, compare};
+pub use finding::{DiagnosisFinding, FindingKind, Severity, Stuck};
 pub use lines::Interference;
 
 use super::ellipse::{Channel, FitError};
@@ -75,7 +75,7 @@ pub struct Diagnosis {
 /// Looks at a capture and at what its analysis gave.
 pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
-    let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, what });
+    let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
     levels(record.references_v.map(|(refsin, refcos)| (mean(refsin), mean(refcos))), limits, &mut say);
     match analysis {
         Err(error) => without_ellipse(record, error, &mut say),
@@ -91,7 +91,7 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             trust::times(analysis, &mut say);
             trust::correction(analysis, &mut say);
             if let Some(what) = trust::uncertain(&diagnosis.findings) {
-                diagnosis.findings.push(DiagnosisFinding { severity: Severity::Warning, what });
+                diagnosis.findings.push(DiagnosisFinding { severity: Severity::Warning, kind: what });
             }
             let by_lines =
                 seen.as_ref().map_or(0.0, |seen| (seen.radial_v2 + noise_v * noise_v) / (amplitude * amplitude));
@@ -122,11 +122,17 @@ impl Diagnosis {
         limits: &Limits,
     ) -> Self {
         let mut diagnosis = self.clone();
-        let depends = |what: &What| {
-            matches!(what, What::Limit(_) | What::Level { .. } | What::Half { .. } | What::SingleEnded { .. })
+        let depends = |what: &FindingKind| {
+            matches!(
+                what,
+                FindingKind::Limit(_)
+                    | FindingKind::Level { .. }
+                    | FindingKind::Half { .. }
+                    | FindingKind::SingleEnded { .. }
+            )
         };
-        diagnosis.findings.retain(|finding| !depends(&finding.what));
-        let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, what });
+        diagnosis.findings.retain(|finding| !depends(&finding.kind));
+        let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
         levels(levels_v.map(|(sine, cosine)| (Some(sine), Some(cosine))), limits, &mut say);
         if let Ok(analysis) = analysis {
             parameters(analysis, limits, &mut say);
@@ -139,7 +145,7 @@ impl Diagnosis {
     /// A residual whose causes are told needs no words of its own.
     fn leave_out_explained(&mut self) {
         if self.explained {
-            self.findings.retain(|finding| !matches!(finding.what, What::Limit(OutOfLimits::Residual(_))));
+            self.findings.retain(|finding| !matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))));
         }
     }
 }
@@ -149,26 +155,26 @@ fn severity(share: f64) -> Severity {
 }
 
 /// Mean levels of REFSIN and REFCOS in volts.
-fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
+fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Some((refsin, refcos)) = levels_v else { return };
     let ok_v = limits.level_v;
     for (wire, level) in [(Wire::Refsin, refsin), (Wire::Refcos, refcos)] {
         if let Some(volts) = level
             && !within(volts, ok_v)
         {
-            say(Severity::Warning, What::Level { wire, volts, ok_v });
+            say(Severity::Warning, FindingKind::Level { wire, volts, ok_v });
         }
     }
 }
 
 /// Diagnoses samples without an ellipse: their distribution still shows the cause.
-fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, What)) {
+fn without_ellipse(record: &Record<'_>, error: &AnalysisError, say: &mut dyn FnMut(Severity, FindingKind)) {
     match error {
-        AnalysisError::AtRest => say(Severity::Warning, What::AtRest),
-        AnalysisError::Fit(FitError::Constant) => say(Severity::Fault, What::Still),
-        AnalysisError::Fit(FitError::Line) => say(Severity::Fault, What::Same),
+        AnalysisError::AtRest => say(Severity::Warning, FindingKind::AtRest),
+        AnalysisError::Fit(FitError::Constant) => say(Severity::Fault, FindingKind::Still),
+        AnalysisError::Fit(FitError::Line) => say(Severity::Fault, FindingKind::Same),
         AnalysisError::Fit(FitError::Dead(channel)) => {
-            say(Severity::Fault, What::Dead { channel: *channel, stuck: stuck(record, *channel) });
+            say(Severity::Fault, FindingKind::Dead { channel: *channel, stuck: stuck(record, *channel) });
         }
         _ => {}
     }
@@ -194,7 +200,7 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
 }
 
 /// The ellipse against its limits. A channel that has lost a wire explains amplitude and gain.
-fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
+fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if within(1.0 / ratio, HALF) {
         Some((Channel::Sine, 1.0 / ratio))
@@ -204,7 +210,7 @@ fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity
         None
     };
     if let Some((channel, share)) = half {
-        say(Severity::Fault, What::Half { channel, share });
+        say(Severity::Fault, FindingKind::Half { channel, share });
     }
     let single = trust::single_ended(&analysis.ellipse);
     if let Some(what) = single {
@@ -220,29 +226,34 @@ fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity
             _ => Severity::Warning,
         };
         if half.is_none() || !explained {
-            say(severity, What::Limit(found));
+            say(severity, FindingKind::Limit(found));
         }
     }
 }
 
-fn disturbances(amplitude: f64, noise_v: f64, seen: Option<&lines::Seen>, say: &mut dyn FnMut(Severity, What)) {
+fn disturbances(
+    amplitude: f64,
+    noise_v: f64,
+    seen: Option<&lines::SpectrumContent>,
+    say: &mut dyn FnMut(Severity, FindingKind),
+) {
     let lines = seen.map_or(&[][..], |seen| &seen.lines);
     for mains_hz in lines::MAINS_HZ {
         let of_it = || lines.iter().filter(|line| line.mains_hz == Some(mains_hz));
         if let Some(strongest) = of_it().next() {
             let volts = of_it().map(|line| line.volts * line.volts).sum::<f64>().sqrt();
             let share = volts / amplitude;
-            say(severity(share), What::Hum { mains_hz, volts, share, common: strongest.common });
+            say(severity(share), FindingKind::Hum { mains_hz, volts, share, common: strongest.common });
         }
     }
     for line in lines.iter().filter(|line| line.mains_hz.is_none()) {
         let Interference { frequency_hz, volts, common, .. } = *line;
         let share = volts / amplitude;
-        say(severity(share), What::Interference { frequency_hz, volts, share, common });
+        say(severity(share), FindingKind::Interference { frequency_hz, volts, share, common });
     }
     let share = noise_v / amplitude;
     if share >= WARNING_SHARE && seen.is_some() {
-        say(Severity::Warning, What::Noise { volts: noise_v, share });
+        say(Severity::Warning, FindingKind::Noise { volts: noise_v, share });
     }
 }
 
@@ -251,30 +262,30 @@ fn shapes(
     analysis: &Analysis,
     harmonics: Option<(usize, f64)>,
     modulation: Option<f64>,
-    say: &mut dyn FnMut(Severity, What),
+    say: &mut dyn FnMut(Severity, FindingKind),
 ) {
     if let Some((order, share)) = harmonics
         && share >= WARNING_SHARE
     {
-        say(Severity::Warning, What::Harmonics { order, share });
+        say(Severity::Warning, FindingKind::Harmonics { order, share });
     }
     for (channel, volts, samples) in shape::clipping(&record.samples, analysis) {
-        say(Severity::Warning, What::Clipping { channel, volts, samples });
+        say(Severity::Warning, FindingKind::Clipping { channel, volts, samples });
     }
     if let Some(share) = modulation
         && share >= MODULATION.0
     {
         let severity = if share >= MODULATION.1 { Severity::Warning } else { Severity::Notice };
-        say(severity, What::Modulation { share });
+        say(severity, FindingKind::Modulation { share });
     }
     if let Some(outliers) = &analysis.outliers {
         let many = outliers.count as f64 > MANY_SPIKES * analysis.samples as f64;
         let severity = if many { Severity::Warning } else { Severity::Notice };
         if outliers.longest >= LETS_GO {
             let (count, longest) = (outliers.count, outliers.longest);
-            say(Severity::Fault, What::LetsGo { count, longest });
+            say(Severity::Fault, FindingKind::LetsGo { count, longest });
         } else {
-            say(severity, What::Spikes { count: outliers.count, volts: outliers.farthest_v });
+            say(severity, FindingKind::Spikes { count: outliers.count, volts: outliers.farthest_v });
         }
     }
 }

@@ -65,7 +65,7 @@ impl Made {
     #[track_caller]
     fn finding(&self) -> DiagnosisFinding {
         let mut found = self.diagnosed().findings;
-        found.retain(|finding| !matches!(finding.what, What::Uncertain { .. }));
+        found.retain(|finding| !matches!(finding.kind, FindingKind::Uncertain { .. }));
         assert_eq!(found.len(), 1, "{found:?}");
         found[0]
     }
@@ -109,14 +109,14 @@ fn an_amplitude_that_changes_over_the_revolution_is_no_interference() {
     assert_eq!(capture.diagnosed().interference, Some(vec![]));
     capture.periods = Some(16);
     let finding = capture.finding();
-    let What::Modulation { share } = finding.what else { panic!("{finding:?}") };
+    let FindingKind::Modulation { share } = finding.kind else { panic!("{finding:?}") };
     assert_eq!(finding.severity, Severity::Notice);
     // The mean over a 36th of a revolution lessens it by a thousandth.
     near(share, 0.04, 3e-4);
     capture.periods = Some(2_000);
     // Less than a revolution says nothing of it, so that the distance from the ellipse is what there is to tell.
     let finding = capture.finding();
-    assert!(matches!(finding.what, What::Limit(OutOfLimits::Residual(_))), "{finding:?}");
+    assert!(matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))), "{finding:?}");
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_drive_is_told_by_its_frequency_and_amplitude() {
     for (volts, severity) in [(0.02, Severity::Warning), (0.002, Severity::Notice)] {
         for hertz in [8_000.0, 8_003.7, 1_300.0, 21_234.5] {
             let finding = made(steady, added(volts, -0.5 * volts, hertz)).finding();
-            let What::Interference { frequency_hz, volts: found, share, common } = finding.what else {
+            let FindingKind::Interference { frequency_hz, volts: found, share, common } = finding.kind else {
                 panic!("{finding:?}")
             };
             near(frequency_hz, hertz, 0.5);
@@ -139,7 +139,7 @@ fn a_drive_is_told_by_its_frequency_and_amplitude() {
 #[test]
 fn also_while_the_speed_changes() {
     let finding = made(|time| 500.0 * time + 100.0 * time * time, added(0.02, 0.015, 8_000.0)).finding();
-    let What::Interference { frequency_hz, volts, common, .. } = finding.what else { panic!("{finding:?}") };
+    let FindingKind::Interference { frequency_hz, volts, common, .. } = finding.kind else { panic!("{finding:?}") };
     near(frequency_hz, 8_000.0, 0.5);
     near(volts, 0.02, 2e-4);
     assert!(common, "in phase and of nearly the same strength");
@@ -153,7 +153,7 @@ fn the_mains_are_told_with_their_multiples() {
             (sine + wave, cosine + wave)
         };
         let finding = made(steady, hum).finding();
-        let What::Hum { mains_hz, volts, share, common } = finding.what else { panic!("{finding:?}") };
+        let FindingKind::Hum { mains_hz, volts, share, common } = finding.kind else { panic!("{finding:?}") };
         assert_eq!((mains_hz, common, finding.severity), (mains, true, Severity::Warning));
         near(volts, 0.01, 5e-5);
         near(share, 0.02, 1e-4);
@@ -163,7 +163,7 @@ fn the_mains_are_told_with_their_multiples() {
     for column in [&mut short.time, &mut short.sine, &mut short.cosine] {
         column.truncate(1_000);
     }
-    assert!(!short.diagnosed().findings.iter().any(|finding| matches!(finding.what, What::Hum { .. })));
+    assert!(!short.diagnosed().findings.iter().any(|finding| matches!(finding.kind, FindingKind::Hum { .. })));
 }
 
 #[test]
@@ -174,8 +174,8 @@ fn noise_is_told_beside_the_lines() {
         *value += 0.01 * 3.0_f64.sqrt() * ((0..4).map(|_| random.f64()).sum::<f64>() - 2.0);
     }
     let found = capture.diagnosed().findings;
-    let noise = found.iter().find_map(|finding| match finding.what {
-        What::Noise { volts, share } => Some((finding.severity, volts, share)),
+    let noise = found.iter().find_map(|finding| match finding.kind {
+        FindingKind::Noise { volts, share } => Some((finding.severity, volts, share)),
         _ => None,
     });
     let (severity, volts, share) = noise.unwrap();
@@ -192,7 +192,7 @@ fn a_third_harmonic_is_told_whatever_the_motion() {
     for made in [made(steady, third), made(|time| 30.0 * time * time, third)] {
         // Of a few periods of an uneven motion the ellipse takes a part of it, which is told as well.
         let finding = made.diagnosed().findings[0];
-        let What::Harmonics { order, share } = finding.what else { panic!("{finding:?}") };
+        let FindingKind::Harmonics { order, share } = finding.kind else { panic!("{finding:?}") };
         assert_eq!((order, finding.severity), (4, Severity::Warning));
         near(share, 0.02, 2e-4);
     }
@@ -205,8 +205,8 @@ fn a_channel_that_is_cut_off_is_told_with_its_voltage() {
     // A converter at its end has no noise.
     capture.cosine.iter_mut().for_each(|value| *value = value.min(0.45));
     let found = capture.diagnosed().findings;
-    let cut_off = found.iter().find_map(|finding| match finding.what {
-        What::Clipping { channel, volts, samples } => Some((channel, volts, samples)),
+    let cut_off = found.iter().find_map(|finding| match finding.kind {
+        FindingKind::Clipping { channel, volts, samples } => Some((channel, volts, samples)),
         _ => None,
     });
     let (channel, volts, samples) = cut_off.unwrap();
@@ -233,7 +233,7 @@ fn broken_wires() {
     ];
     for (label, made, expected) in cases {
         let found = made.diagnosed().findings;
-        let What::Dead { channel, stuck } = found[0].what else { panic!("{label}: {found:?}") };
+        let FindingKind::Dead { channel, stuck } = found[0].kind else { panic!("{label}: {found:?}") };
         assert_eq!((channel, found[0].severity), (Channel::Cosine, Severity::Fault));
         match (stuck, expected) {
             (Stuck::Apart(found), Stuck::Apart(expected)) => near(found, expected, 1e-4),
@@ -241,14 +241,14 @@ fn broken_wires() {
         }
     }
     let half = made(steady, |_, _, (sine, cosine)| (sine / 2.0, cosine)).finding();
-    let What::Half { channel: Channel::Sine, share } = half.what else { panic!("{half:?}") };
+    let FindingKind::Half { channel: Channel::Sine, share } = half.kind else { panic!("{half:?}") };
     near(share, 0.5, 1e-3);
     let same = made(steady, |_, _, (sine, _)| (sine, -sine)).finding();
-    assert_eq!(same, DiagnosisFinding { severity: Severity::Fault, what: What::Same });
+    assert_eq!(same, DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::Same });
     let mut still = made(steady, |_, _, _| (0.0, 0.0));
     still.sine.fill(0.3);
     still.cosine.fill(-0.1);
-    assert_eq!(still.finding(), DiagnosisFinding { severity: Severity::Fault, what: What::Still });
+    assert_eq!(still.finding(), DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::Still });
 }
 
 #[test]
@@ -256,7 +256,9 @@ fn levels_of_the_references_are_judged_by_the_family() {
     let mut capture = made(steady, |_, _, signal| signal);
     capture.references = Some((vec![2.3; COUNT], vec![3.2; COUNT]));
     let finding = capture.finding();
-    let What::Level { wire: Wire::Refcos, volts, ok_v: (2.0, 3.0) } = finding.what else { panic!("{finding:?}") };
+    let FindingKind::Level { wire: Wire::Refcos, volts, ok_v: (2.0, 3.0) } = finding.kind else {
+        panic!("{finding:?}")
+    };
     near(volts, 3.2, 1e-9);
     let record = capture.record();
     let narrow = diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::TTK70);
@@ -268,7 +270,7 @@ fn spikes_are_told_and_are_no_interference() {
     let mut capture = made(steady, |_, _, signal| signal);
     (0..20).for_each(|at| capture.sine[2_000 * at + 77] = 2.0);
     let finding = capture.finding();
-    let What::Spikes { count: 20, volts } = finding.what else { panic!("{finding:?}") };
+    let FindingKind::Spikes { count: 20, volts } = finding.kind else { panic!("{finding:?}") };
     assert!(volts > 1.0 && finding.severity == Severity::Notice);
     // One of the spikes is among them.
     for at in 24_000..24_300 {
@@ -277,7 +279,7 @@ fn spikes_are_told_and_are_no_interference() {
     let finding = capture.finding();
     assert_eq!(
         finding,
-        DiagnosisFinding { severity: Severity::Fault, what: What::LetsGo { count: 319, longest: 300 } }
+        DiagnosisFinding { severity: Severity::Fault, kind: FindingKind::LetsGo { count: 319, longest: 300 } }
     );
 }
 
@@ -309,7 +311,7 @@ fn of_two_captures_it_is_told_what_became_worse() {
     let [
         DiagnosisFinding {
             severity: Severity::Warning,
-            what: What::InterferenceRose { frequency_hz, from_v, to_v, common: false },
+            kind: FindingKind::InterferenceRose { frequency_hz, from_v, to_v, common: false },
         },
     ] = on.as_slice()
     else {
@@ -322,7 +324,8 @@ fn of_two_captures_it_is_told_what_became_worse() {
     let mut random = fastrand::Rng::with_seed(5);
     noisy.sine.iter_mut().chain(&mut noisy.cosine).for_each(|value| *value += 0.01 * (random.f64() - 0.5));
     let rose = compare(&off, &noisy.diagnosed()).worse;
-    let [DiagnosisFinding { severity: Severity::Notice, what: What::NoiseRose { to_v, .. } }] = rose.as_slice() else {
+    let [DiagnosisFinding { severity: Severity::Notice, kind: FindingKind::NoiseRose { to_v, .. } }] = rose.as_slice()
+    else {
         panic!("{rose:?}")
     };
     // Even numbers over 10 mV deviate by 10/√12 mV.
@@ -340,7 +343,7 @@ fn an_amplitude_that_changes_is_worse_only_where_it_leaves_its_limits() {
     for (from, to, worse) in [(1.0, 0.95, 0), (0.8, 1.0, 0), (1.0, 0.8, 1), (0.8, 0.7, 1), (0.7, 0.8, 0)] {
         let changes = compare(&at(from), &at(to));
         assert_eq!(changes.worse.len(), worse, "{from} {to}: {changes:?}");
-        let [DiagnosisFinding { severity: Severity::Notice, what: What::AmplitudeChanged { from_v, to_v } }] =
+        let [DiagnosisFinding { severity: Severity::Notice, kind: FindingKind::AmplitudeChanged { from_v, to_v } }] =
             changes.changed.as_slice()
         else {
             panic!("{changes:?}")
@@ -381,7 +384,8 @@ fn what_comes_up_is_worse_whatever_it_is() {
         assert_eq!((back.worse, back.untold), (vec![], vec![]), "{label}");
     }
     let more = compare(&ellipse(1.0, 0.03, 0.0).diagnosed(), &ellipse(1.0, 0.06, 0.0).diagnosed());
-    let [DiagnosisFinding { what: What::Limit(OutOfLimits::OffsetSine(share)), .. }] = more.worse.as_slice() else {
+    let [DiagnosisFinding { kind: FindingKind::Limit(OutOfLimits::OffsetSine(share)), .. }] = more.worse.as_slice()
+    else {
         panic!("{more:?}")
     };
     near(*share, 0.12, 1e-3);
@@ -393,15 +397,15 @@ fn what_cannot_be_compared_is_told() {
     let mut timeless = ellipse(1.0, 0.0, 0.0);
     timeless.time.clear();
     let timeless = timeless.diagnosed();
-    assert_eq!(compare(&good, &timeless).untold, [Untold::NoSpectrum]);
-    assert_eq!(compare(&timeless, &good), Changes { untold: vec![Untold::NoSpectrum], ..Changes::default() });
+    assert_eq!(compare(&good, &timeless).untold, [NotComparable::NoSpectrum]);
+    assert_eq!(compare(&timeless, &good), Changes { untold: vec![NotComparable::NoSpectrum], ..Changes::default() });
     let dead = made(steady, |_, _, (sine, _)| (sine, 0.0)).diagnosed();
     let died = compare(&good, &dead);
-    assert_eq!(died.untold, [Untold::NoEllipseAfter]);
-    assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { what: What::Dead { .. }, .. }]), "{died:?}");
+    assert_eq!(died.untold, [NotComparable::NoEllipseAfter]);
+    assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { kind: FindingKind::Dead { .. }, .. }]), "{died:?}");
     // Nobody knows the offset that the first had.
     let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
-    assert_eq!(mended, Changes { untold: vec![Untold::NoEllipseBefore], ..Changes::default() });
+    assert_eq!(mended, Changes { untold: vec![NotComparable::NoEllipseBefore], ..Changes::default() });
 }
 
 #[test]

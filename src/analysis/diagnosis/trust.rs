@@ -1,7 +1,7 @@
 //! Reasons to doubt the numbers of an analysis: gaps in the times, a shaft that reversed, few samples a period,
 //! disturbances in the samples of the ellipse, columns that are not differences.
 
-use super::{DiagnosisFinding, OutOfLimits, Severity, WARNING_SHARE, What};
+use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
 use crate::analysis::ellipse::Ellipse;
 use crate::analysis::position_error::Basis;
 use crate::analysis::signal_analysis::Analysis;
@@ -15,50 +15,52 @@ const LARGER: f64 = 1.1;
 const LARGER_DEG: f64 = 0.2;
 
 /// Reports findings about the times of the samples.
-pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, What)) {
+pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     if let Some(sample) = analysis.continuity.back {
-        say(Severity::Warning, What::TimeBack { sample });
+        say(Severity::Warning, FindingKind::TimeBack { sample });
     }
     if let Some(missing) = analysis.continuity.missing {
-        say(Severity::Warning, What::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
+        say(Severity::Warning, FindingKind::Missing { gaps: missing.gaps, longest_s: missing.longest_s });
     }
     if !analysis.is_followed() {
         // An apparent reversal may be half a period too much.
-        say(Severity::Warning, What::Coarse { step_deg: analysis.step_deg });
+        say(Severity::Warning, FindingKind::Coarse { step_deg: analysis.step_deg });
     } else if analysis.coverage.reversals > 0 {
-        say(Severity::Notice, What::Reversed { times: analysis.coverage.reversals });
+        say(Severity::Notice, FindingKind::Reversed { times: analysis.coverage.reversals });
     }
 }
 
 /// An ellipse that takes harmonics for gain or phase adds them once more. Only a motion shows it: the distance from the
 /// ellipse has noise in it.
-pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, What)) {
+pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Basis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_pp_deg(), analysis.error.corrected_pp_deg);
     if corrected_deg > LARGER * raw_deg && corrected_deg - raw_deg > LARGER_DEG.max(noise_deg) {
-        say(Severity::Warning, What::CorrectionHarms { raw_deg, corrected_deg });
+        say(Severity::Warning, FindingKind::CorrectionHarms { raw_deg, corrected_deg });
     }
 }
 
 /// Returns the uncertainty of the ellipse: about the share of the disturbances found.
-pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<What> {
-    let share = |finding: &DiagnosisFinding| match finding.what {
-        What::Hum { share, .. } | What::Interference { share, .. } | What::Harmonics { share, .. } => Some(share),
+pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
+    let share = |finding: &DiagnosisFinding| match finding.kind {
+        FindingKind::Hum { share, .. }
+        | FindingKind::Interference { share, .. }
+        | FindingKind::Harmonics { share, .. } => Some(share),
         _ => None,
     };
     let squares = findings.iter().filter_map(share).filter(|share| *share >= WARNING_SHARE).map(|share| share * share);
     let share = squares.sum::<f64>().sqrt();
-    (share > 0.0).then_some(What::Uncertain { share })
+    (share > 0.0).then_some(FindingKind::Uncertain { share })
 }
 
 /// SIN and COS against ground instead of against their references.
-pub(super) fn single_ended(ellipse: &Ellipse) -> Option<What> {
+pub(super) fn single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     let within = |value: f64, (least, most): (f64, f64)| (least..=most).contains(&value);
     let (sine_v, cosine_v) = (ellipse.offset_sine_v, ellipse.offset_cosine_v);
     let levels = [sine_v, cosine_v].iter().all(|level| within(*level, WIRE_LEVEL_V));
     let amplitudes = [ellipse.amplitude_v, ellipse.amplitude_sine_v()];
     let amplitudes = amplitudes.iter().all(|amplitude| within(*amplitude, WIRE_AMPLITUDE_V));
-    (levels && amplitudes).then_some(What::SingleEnded { sine_v, cosine_v })
+    (levels && amplitudes).then_some(FindingKind::SingleEnded { sine_v, cosine_v })
 }
 
 /// Such columns have the wire's level for an offset and half of the amplitude.

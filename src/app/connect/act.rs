@@ -14,7 +14,7 @@ impl Studio {
             ConnectAction::Open => {
                 let kinds = self.services.world.kinds;
                 let tab = Some(self.settings.tab).filter(|tab| kinds.of_tab(*tab).is_some());
-                let shown = || self.shown().map(|device| device.tab());
+                let shown = || self.selected_device().map(|device| device.tab());
                 let device = tab.or_else(shown).unwrap_or_else(|| kinds.first_tab());
                 // The last used target comes first.
                 let last = |tab| self.settings.links(tab).first().and_then(|link| link.parse().ok());

@@ -10,7 +10,7 @@ use crate::app::action::{ReadError, ReviewAction};
 use crate::app::closing::MUCH;
 use crate::app::review::ReviewSheet;
 use crate::app::services::Services;
-use crate::app::session::{Listed, Opening, Phase, Source};
+use crate::app::session::{DeviceHistory, Opening, Phase, Source};
 use crate::app::studio::SessionId;
 use crate::app::trace::TraceLog;
 use crate::profile::Document;
@@ -122,7 +122,7 @@ impl AnyDevice {
     }
 
     /// Backups and writes were listed.
-    pub(in crate::app) fn listed(&mut self, of: &DeviceKey, listed: Listed) {
+    pub(in crate::app) fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory) {
         if let Some(memory) = self.memory_mut() {
             memory.listed(of, listed);
         }

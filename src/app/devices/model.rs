@@ -9,8 +9,8 @@ use crate::app::action::{Opened, ReadError, ReviewAction};
 use crate::app::documents::only_looked_at;
 use crate::app::recorder::Recorder;
 use crate::app::review::ReviewSheet;
-use crate::app::services::{Services, World};
-use crate::app::session::{Drafted, HasSession, Kind, Listed, Saved, SessionEvents, WithMemory};
+use crate::app::services::{Environment, Services};
+use crate::app::session::{DeviceHistory, Drafted, HasSession, Kind, Saved, SessionEvents, WithMemory};
 use crate::app::studio::SessionId;
 use crate::app::{
     AnyDevice, DeviceAction, DeviceCommand, EditStep, Recording, RemembersDrives, Severity, SineCosineSource, Tab, Text,
@@ -34,7 +34,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     type Done: Any + Send;
 
     /// Returns what is done with a session before it goes to its thread.
-    fn prepare(&self, _world: &World) -> Prepare<Self::Device> {
+    fn prepare(&self, _world: &Environment) -> Prepare<Self::Device> {
         Box::new(|_| ())
     }
 
@@ -150,7 +150,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         match self.memory_mut() {
             Ok(memory) => Some(act(memory, services)),
             Err(why) => {
-                services.tell(Severity::Note, vec![why], Some(&self.session().name()));
+                services.notify(Severity::Note, vec![why], Some(&self.session().name()));
                 None
             }
         }
@@ -312,7 +312,7 @@ pub trait DeviceMemory {
     fn read_backup(&mut self, path: PathBuf, services: &mut Services);
 
     /// Takes the lists of backups and writes; drops those of another device.
-    fn listed(&mut self, of: &DeviceKey, listed: Listed);
+    fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory);
 
     /// Takes a backup that was read, or the error; drops one of another device.
     fn take_backup(
@@ -376,7 +376,7 @@ impl<T: Saved> DeviceMemory for T {
         Saved::read_backup(self, path, services);
     }
 
-    fn listed(&mut self, of: &DeviceKey, listed: Listed) {
+    fn listed(&mut self, of: &DeviceKey, listed: DeviceHistory) {
         if self.key().as_ref() == Some(of) {
             self.session_mut().take_backups(listed);
         }

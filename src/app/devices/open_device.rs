@@ -116,13 +116,13 @@ pub trait OpenDevice: Any {
     #[doc(hidden)]
     fn stop(&mut self, services: &mut Services);
     #[doc(hidden)]
-    fn lose(&mut self, why: Text, services: &mut Services);
+    fn connection_lost(&mut self, why: Text, services: &mut Services);
     #[doc(hidden)]
     fn let_go(&mut self, end: JobEnd, services: &mut Services);
     #[doc(hidden)]
     fn may_have_changed(&mut self);
     #[doc(hidden)]
-    fn keep_draft(&mut self, services: &mut Services);
+    fn write_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
     fn leave_draft(&mut self, services: &mut Services);
     #[doc(hidden)]
@@ -326,8 +326,8 @@ impl<M: DeviceModel> OpenDevice for M {
         DeviceModel::stop(self, services);
     }
 
-    fn lose(&mut self, why: Text, services: &mut Services) {
-        SessionEvents::lose(self, why, services);
+    fn connection_lost(&mut self, why: Text, services: &mut Services) {
+        SessionEvents::connection_lost(self, why, services);
     }
 
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
@@ -338,8 +338,8 @@ impl<M: DeviceModel> OpenDevice for M {
         self.session_mut().drafting.may_have_changed();
     }
 
-    fn keep_draft(&mut self, services: &mut Services) {
-        Drafted::keep_draft(self, services);
+    fn write_draft(&mut self, services: &mut Services) {
+        Drafted::write_draft(self, services);
     }
 
     fn leave_draft(&mut self, services: &mut Services) {

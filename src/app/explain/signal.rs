@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::file;
 use crate::analysis::capture::CaptureError;
-use crate::analysis::diagnosis::{DiagnosisFinding, Stuck, Untold, What};
+use crate::analysis::diagnosis::{DiagnosisFinding, FindingKind, NotComparable, Stuck};
 use crate::analysis::ellipse::{Channel, FitError, LEAST_POINTS};
 use crate::analysis::nonlinearity::NonlinearityError;
 use crate::analysis::quality::{QualityFinding as Parameter, Verdict};
@@ -120,85 +120,87 @@ pub fn diagnosis(finding: &DiagnosisFinding) -> Text {
     let millivolts = |id, volts: f64, share: f64| {
         Text::new(id).with_number("millivolts", volts * 1e3, 1).with_number("percent", share * 100.0, 1)
     };
-    match finding.what {
-        What::Limit(parameter) => self::finding(&parameter),
-        What::AtRest => Text::new("diagnosis.at_rest"),
-        What::Still => Text::new("diagnosis.still"),
-        What::Same => Text::new("diagnosis.same"),
-        What::Dead { channel, stuck: Stuck::Together } => of("diagnosis.dead_together", channel),
-        What::Dead { channel, stuck: Stuck::Ground(wire) } => {
+    match finding.kind {
+        FindingKind::Limit(parameter) => self::finding(&parameter),
+        FindingKind::AtRest => Text::new("diagnosis.at_rest"),
+        FindingKind::Still => Text::new("diagnosis.still"),
+        FindingKind::Same => Text::new("diagnosis.same"),
+        FindingKind::Dead { channel, stuck: Stuck::Together } => of("diagnosis.dead_together", channel),
+        FindingKind::Dead { channel, stuck: Stuck::Ground(wire) } => {
             of("diagnosis.dead_ground", channel).with("wire", wire.name())
         }
-        What::Dead { channel, stuck: Stuck::Supply(wire) } => {
+        FindingKind::Dead { channel, stuck: Stuck::Supply(wire) } => {
             of("diagnosis.dead_supply", channel).with("wire", wire.name())
         }
-        What::Dead { channel, stuck: Stuck::Apart(volts) } => {
+        FindingKind::Dead { channel, stuck: Stuck::Apart(volts) } => {
             of("diagnosis.dead_apart", channel).with_number("volts", volts, 2)
         }
-        What::Half { channel, share } => of("diagnosis.half", channel).with_number("percent", share * 100.0, 0),
-        What::Level { wire, volts, ok_v: (least, most) } => Text::new("diagnosis.level")
+        FindingKind::Half { channel, share } => of("diagnosis.half", channel).with_number("percent", share * 100.0, 0),
+        FindingKind::Level { wire, volts, ok_v: (least, most) } => Text::new("diagnosis.level")
             .with("wire", wire.name())
             .with_number("volts", volts, 2)
             .with_number("least", least, decimals(least).max(1))
             .with_number("most", most, decimals(most).max(1)),
-        What::Hum { mains_hz, volts, share, common } => {
+        FindingKind::Hum { mains_hz, volts, share, common } => {
             let id = if common { "diagnosis.hum_common" } else { "diagnosis.hum" };
             millivolts(id, volts, share).with_number("hertz", mains_hz, 0)
         }
-        What::Interference { frequency_hz, volts, share, common } => {
+        FindingKind::Interference { frequency_hz, volts, share, common } => {
             let id = if common { "diagnosis.interference_common" } else { "diagnosis.interference" };
             hertz(millivolts(id, volts, share), frequency_hz)
         }
-        What::Noise { volts, share } => millivolts("diagnosis.noise", volts, share),
-        What::Harmonics { order, share } => Text::new("diagnosis.harmonics")
+        FindingKind::Noise { volts, share } => millivolts("diagnosis.noise", volts, share),
+        FindingKind::Harmonics { order, share } => Text::new("diagnosis.harmonics")
             .with("below", order - 1)
             .with("above", order + 1)
             .with_number("percent", share * 100.0, 1)
             .with_number("degrees", share.to_degrees(), 1),
-        What::Clipping { channel, volts, samples } => {
+        FindingKind::Clipping { channel, volts, samples } => {
             of("diagnosis.clipping", channel).with_number("volts", volts, 3).with_number("percent", samples * 100.0, 0)
         }
-        What::Modulation { share } => Text::new("diagnosis.modulation").with_number("percent", share * 100.0, 1),
-        What::Spikes { count, volts } => {
+        FindingKind::Modulation { share } => Text::new("diagnosis.modulation").with_number("percent", share * 100.0, 1),
+        FindingKind::Spikes { count, volts } => {
             Text::new("diagnosis.spikes").with("count", count).with_number("volts", volts, 2)
         }
-        What::LetsGo { count, longest } => Text::new("diagnosis.lets_go").with("count", count).with("longest", longest),
-        What::Missing { gaps, longest_s } => {
+        FindingKind::LetsGo { count, longest } => {
+            Text::new("diagnosis.lets_go").with("count", count).with("longest", longest)
+        }
+        FindingKind::Missing { gaps, longest_s } => {
             Text::new("diagnosis.missing").with("count", gaps).with_number("longest", longest_s * 1e3, 3)
         }
-        What::TimeBack { sample } => Text::new("diagnosis.time_back").with("sample", sample + 1),
-        What::Reversed { times } => Text::new("diagnosis.reversed").with("count", times),
-        What::Coarse { step_deg } => Text::new("diagnosis.coarse").with_number("degrees", step_deg, 0).with_number(
-            "samples",
-            360.0 / step_deg,
-            1,
-        ),
-        What::Uncertain { share } => Text::new("diagnosis.uncertain")
+        FindingKind::TimeBack { sample } => Text::new("diagnosis.time_back").with("sample", sample + 1),
+        FindingKind::Reversed { times } => Text::new("diagnosis.reversed").with("count", times),
+        FindingKind::Coarse { step_deg } => Text::new("diagnosis.coarse")
+            .with_number("degrees", step_deg, 0)
+            .with_number("samples", 360.0 / step_deg, 1),
+        FindingKind::Uncertain { share } => Text::new("diagnosis.uncertain")
             .with_number("percent", share * 100.0, 1)
             .with_number("degrees", share.to_degrees(), 1),
-        What::CorrectionHarms { raw_deg, corrected_deg } => Text::new("diagnosis.correction_harms")
+        FindingKind::CorrectionHarms { raw_deg, corrected_deg } => Text::new("diagnosis.correction_harms")
             .with_number("raw", raw_deg, 2)
             .with_number("corrected", corrected_deg, 2),
-        What::SingleEnded { sine_v, cosine_v } => {
+        FindingKind::SingleEnded { sine_v, cosine_v } => {
             Text::new("diagnosis.single_ended").with_number("sine", sine_v, 2).with_number("cosine", cosine_v, 2)
         }
-        What::NoiseRose { from_v, to_v } => changed("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
-        What::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
+        FindingKind::NoiseRose { from_v, to_v } => changed("diagnosis.noise_rose", from_v * 1e3, to_v * 1e3, 1),
+        FindingKind::InterferenceRose { frequency_hz, from_v: 0.0, to_v, .. } => {
             hertz(Text::new("diagnosis.interference_new").with_number("to", to_v * 1e3, 1), frequency_hz)
         }
-        What::InterferenceRose { frequency_hz, from_v, to_v, .. } => {
+        FindingKind::InterferenceRose { frequency_hz, from_v, to_v, .. } => {
             hertz(changed("diagnosis.interference_rose", from_v * 1e3, to_v * 1e3, 1), frequency_hz)
         }
-        What::AmplitudeChanged { from_v, to_v } => changed("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3),
+        FindingKind::AmplitudeChanged { from_v, to_v } => {
+            changed("diagnosis.amplitude_changed", 2.0 * from_v, 2.0 * to_v, 3)
+        }
     }
 }
 
 /// Returns why two captures cannot be compared.
-pub fn untold(untold: Untold) -> Text {
+pub fn untold(untold: NotComparable) -> Text {
     Text::new(match untold {
-        Untold::NoEllipseBefore => "compare.no_ellipse_before",
-        Untold::NoEllipseAfter => "compare.no_ellipse_after",
-        Untold::NoSpectrum => "compare.no_spectrum",
+        NotComparable::NoEllipseBefore => "compare.no_ellipse_before",
+        NotComparable::NoEllipseAfter => "compare.no_ellipse_after",
+        NotComparable::NoSpectrum => "compare.no_spectrum",
     })
 }
 
@@ -277,10 +279,10 @@ mod tests {
     #[test]
     fn a_finding_says_what_to_do_in_both_languages() {
         let said = |what| {
-            let finding = DiagnosisFinding { severity: Severity::Warning, what };
+            let finding = DiagnosisFinding { severity: Severity::Warning, kind: what };
             [Language::English, Language::German].map(|language| diagnosis(&finding).words(language))
         };
-        let drive = What::Interference { frequency_hz: 8_000.3, volts: 0.0123, share: 0.0246, common: true };
+        let drive = FindingKind::Interference { frequency_hz: 8_000.3, volts: 0.0123, share: 0.0246, common: true };
         assert_eq!(
             said(drive),
             [
@@ -290,11 +292,11 @@ mod tests {
                  Schirm oder Masse. Den Schirm beidseitig auflegen.",
             ]
         );
-        let dead = What::Dead { channel: Channel::Sine, stuck: Stuck::Ground(Wire::Refsin) };
+        let dead = FindingKind::Dead { channel: Channel::Sine, stuck: Stuck::Ground(Wire::Refsin) };
         assert!(said(dead)[1].starts_with("Der Sinus hat kein Signal: REFSIN liegt auf Masse."));
-        let level = What::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
+        let level = FindingKind::Level { wire: Wire::Refcos, volts: 3.2, ok_v: (2.375, 2.625) };
         assert!(said(level)[0].contains("3.20 V, outside 2.375 … 2.625 V"));
-        let harmonics = What::Harmonics { order: 4, share: 0.02 };
+        let harmonics = FindingKind::Harmonics { order: 4, share: 0.02 };
         assert!(
             said(harmonics)[0]
                 .starts_with("Harmonics 3 and 5 of the signal, 2.0 %: an error of 1.1° within the signal period")

@@ -34,12 +34,12 @@ pub struct Measured {
     /// B minus A.
     pub difference: Option<f64>,
     /// Mean, least, greatest value and standard deviation of the samples from one cursor to the other, both included.
-    pub between: Option<Between>,
+    pub between: Option<CursorStatistics>,
 }
 
 /// Of the samples between two cursors, in the line's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Between {
+pub struct CursorStatistics {
     /// Samples with a value.
     pub count: u64,
     /// Samples without a value to believe.
@@ -85,12 +85,12 @@ impl Recorder {
         })
     }
 
-    fn between(&self, line: &Series, from: Time, to: Time) -> Option<Between> {
+    fn between(&self, line: &Series, from: Time, to: Time) -> Option<CursorStatistics> {
         let history = self.history(line)?;
         let statistics = history.statistics(line.column, history.indices(from, to.plus(1)))?;
         let factor = line.factor();
         let ends = (statistics.min.to_f64() * factor, statistics.max.to_f64() * factor);
-        Some(Between {
+        Some(CursorStatistics {
             count: statistics.count,
             bad: statistics.bad,
             mean: statistics.mean * factor,
@@ -116,7 +116,7 @@ impl Recorder {
     /// it stands where it was put.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
         let nearest = |time: Time| {
-            let samples = self.shown().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
+            let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);
             samples.min_by_key(|own| own.nanoseconds_since(time).saturating_abs()).unwrap_or(time)
         };
         let time = time.map(nearest);

@@ -137,7 +137,8 @@ impl Recorder {
         let (from, to) = self.window();
         let mut heads: Vec<Head> = Vec::new();
         let mut columns = Vec::new();
-        for line in self.wanted().filter(|line| !visible || self.shown().any(|own| own.id == line.id)) {
+        for line in self.selected_series().filter(|line| !visible || self.visible_series().any(|own| own.id == line.id))
+        {
             let history = self.history(line)?;
             let range = if visible { history.indices(from, to.plus(1)) } else { history.all() };
             let head = heads.iter().position(|head| head.group == line.group).unwrap_or(heads.len());

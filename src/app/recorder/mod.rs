@@ -226,7 +226,7 @@ impl Recorder {
             RecorderAction::Follow => self.follow(),
             RecorderAction::Pause => self.pause(),
             RecorderAction::Fit => self.fit(),
-            RecorderAction::Look(from, to) => self.look(from, to),
+            RecorderAction::Look(from, to) => self.zoom_to(from, to),
             RecorderAction::SetSpan(span) => self.set_span(span),
             RecorderAction::Zoom(about, factor) => self.zoom(about, factor),
             RecorderAction::SetCursor(cursor, time) => self.set_cursor(cursor, time),
@@ -253,16 +253,16 @@ impl Recorder {
     }
 
     /// The lines that are shown; those that have ended, where there are samples of them in what is visible.
-    pub fn shown(&self) -> impl Iterator<Item = &Series> {
+    pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window();
         let is_visible = move |line: &&Series| {
             !line.ended || self.history(line).is_some_and(|history| !history.indices(from, to.plus(1)).is_empty())
         };
-        self.wanted().filter(is_visible)
+        self.selected_series().filter(is_visible)
     }
 
     /// The lines that are to be shown, whatever is visible.
-    fn wanted(&self) -> impl Iterator<Item = &Series> {
+    fn selected_series(&self) -> impl Iterator<Item = &Series> {
         self.lines.iter().filter(|line| line.shown)
     }
 

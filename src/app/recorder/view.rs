@@ -78,7 +78,7 @@ impl Recorder {
         self.view = TimeWindow::Fixed { from: first, to: last.plus(span / 200 + 1) };
     }
 
-    pub(super) fn look(&mut self, from: Time, to: Time) {
+    pub(super) fn zoom_to(&mut self, from: Time, to: Time) {
         let (from, to) = (from.min(to), from.max(to));
         let span = to.nanoseconds_since(from).clamp(SHORTEST, LONGEST);
         self.view = TimeWindow::Fixed { from, to: from.plus(span) };

@@ -83,25 +83,25 @@ pub trait Drafted: HasSession {
     }
 
     /// Keeps the edits when they have changed. Called for every picture.
-    fn keep_draft(&mut self, services: &mut Services) {
+    fn write_draft(&mut self, services: &mut Services) {
         if !self.session().drafting.is_due() {
             return;
         }
         let (key, name, edits) = (self.draft_key(), self.session().name(), self.edited());
         let nameless = key.is_none() && self.type_and_serial().is_some();
         if nameless && !edits.is_nothing() {
-            self.session_mut().drafting.tell_of_none(&name, services);
+            self.session_mut().drafting.report_no_draft(&name, services);
         }
         if edits.is_nothing() {
             // They were written, saved or taken back.
             services.log.settle(DRAFT_BACK, Some(&name));
         }
-        self.session_mut().drafting.keep(key, edits, services);
+        self.session_mut().drafting.save(key, edits, services);
     }
 
     /// Returns whether its edits come back after it is closed.
     fn keeps_edits(&self) -> bool {
-        self.session().drafting.has_looked() && self.draft_key().is_some()
+        self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
     /// Leaves the edits of the previous device on disk: another device comes, or none.
@@ -116,7 +116,7 @@ pub trait Drafted: HasSession {
         self.session_mut().is_saving = false;
         if let Err(error) = result {
             let texts = vec![explain::file(&error), Text::new(NOT_SAVED)];
-            return services.tell(Severity::Error, texts, Some(&name));
+            return services.notify(Severity::Error, texts, Some(&name));
         }
         let severity = if saving.remarks.is_empty() { Severity::Good } else { Severity::Warning };
         let saved = Text::new("session.saved").with("path", saving.path.display());
@@ -134,7 +134,7 @@ pub trait Drafted: HasSession {
         if self.edited().is_nothing() {
             services.log.settle(DRAFT_BACK, Some(&name));
         }
-        services.tell(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
+        services.notify(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
     }
 
     /// The profile stands in this file now.

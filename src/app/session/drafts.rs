@@ -83,11 +83,11 @@ pub(crate) struct Drafting<E> {
     /// The edits may be others than those that were handed over.
     due: bool,
     /// The draft of an earlier time has been looked for: before that, nothing is kept over it.
-    looked: bool,
+    is_loaded: bool,
     /// The right to keep it; without, it belongs to another window or session.
     claim: Option<Arc<Claim>>,
     /// The failure to keep it has been reported.
-    told: bool,
+    is_failure_reported: bool,
 }
 
 /// The name of a file's draft: of the file itself, whichever way leads to it. As a task: it asks the disk.
@@ -104,7 +104,15 @@ pub(in crate::app) fn file_key(path: &Path) -> String {
 impl<E: DraftEdits> Drafting<E> {
     /// Creates the drafting of a session, before any draft was looked for.
     pub(in crate::app) fn new(session: SessionId) -> Self {
-        Drafting { session, kept: E::default(), busy: false, due: true, looked: false, claim: None, told: false }
+        Drafting {
+            session,
+            kept: E::default(),
+            busy: false,
+            due: true,
+            is_loaded: false,
+            claim: None,
+            is_failure_reported: false,
+        }
     }
 
     /// Looks for the draft of an earlier time.
@@ -164,17 +172,17 @@ impl<E: DraftEdits> Drafting<E> {
         match claim {
             Ok(Some(claim)) => self.claim = Some(Arc::new(claim)),
             Ok(None) => {
-                services.tell(Severity::Warning, vec![Text::new("session.draft_elsewhere")], Some(name));
+                services.notify(Severity::Warning, vec![Text::new("session.draft_elsewhere")], Some(name));
                 return None;
             }
             // A draft cannot be kept in such a folder, which is reported when there is something to keep.
             Err(_) => {}
         }
-        self.looked = true;
+        self.is_loaded = true;
         let text = match result {
             Ok(text) => text?,
             Err(error) => {
-                services.tell(Severity::Warning, vec![explain::file(&error)], Some(name));
+                services.notify(Severity::Warning, vec![explain::file(&error)], Some(name));
                 return None;
             }
         };
@@ -185,7 +193,7 @@ impl<E: DraftEdits> Drafting<E> {
             Ok(edits) => Some(edits),
             Err(error) => {
                 let text = Text::new("session.draft_broken").with("why", error);
-                services.tell(Severity::Warning, vec![text], Some(name));
+                services.notify(Severity::Warning, vec![text], Some(name));
                 None
             }
         }
@@ -194,7 +202,7 @@ impl<E: DraftEdits> Drafting<E> {
     /// The edits of an earlier time stand again; `edits` are those that still make sense.
     pub(in crate::app) fn came_back(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.is_nothing() {
-            services.tell(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
+            services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
         }
         self.kept = edits;
     }
@@ -204,10 +212,10 @@ impl<E: DraftEdits> Drafting<E> {
             self.busy = false;
         }
         if let Err(error) = result
-            && !std::mem::replace(&mut self.told, true)
+            && !std::mem::replace(&mut self.is_failure_reported, true)
         {
             let text = Text::new("session.draft_not_kept").with_text("why", explain::file(&error));
-            services.tell(Severity::Warning, vec![text], Some(name));
+            services.notify(Severity::Warning, vec![text], Some(name));
         }
     }
 
@@ -222,30 +230,30 @@ impl<E: DraftEdits> Drafting<E> {
     }
 
     /// Keeps the edits when they have changed. One task at a time: what comes meanwhile goes with the next one.
-    pub(in crate::app) fn keep(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
+    pub(in crate::app) fn save(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         if self.busy {
             return;
         }
         self.due = false;
-        if !self.looked || edits == self.kept {
+        if !self.is_loaded || edits == self.kept {
             return;
         }
         let Some(key) = key else { return };
         self.kept.clone_from(&edits);
         self.busy = true;
-        keep(key, edits, self.claim.clone(), self.session, services);
+        store_edits(key, edits, self.claim.clone(), self.session, services);
     }
 
     /// A device without a serial number has no draft, which is said once, with the first edit.
-    pub(in crate::app) fn tell_of_none(&mut self, name: &str, services: &mut Services) {
-        if !std::mem::replace(&mut self.told, true) {
-            services.tell(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
+    pub(in crate::app) fn report_no_draft(&mut self, name: &str, services: &mut Services) {
+        if !std::mem::replace(&mut self.is_failure_reported, true) {
+            services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }
 
     /// The draft of an earlier time has been looked for: edits come back after the session was closed.
-    pub(crate) fn has_looked(&self) -> bool {
-        self.looked
+    pub(crate) fn is_loaded(&self) -> bool {
+        self.is_loaded
     }
 
     /// Returns whether every edit is on disk, as far as the disk accepts it.
@@ -257,10 +265,10 @@ impl<E: DraftEdits> Drafting<E> {
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key
-            && before.looked
+            && before.is_loaded
             && edits != before.kept
         {
-            keep(key, edits, before.claim, self.session, services);
+            store_edits(key, edits, before.claim, self.session, services);
         }
     }
 
@@ -268,15 +276,15 @@ impl<E: DraftEdits> Drafting<E> {
     pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key
-            && before.looked
+            && before.is_loaded
         {
-            keep(key, E::default(), before.claim, self.session, services);
+            store_edits(key, E::default(), before.claim, self.session, services);
         }
     }
 }
 
 /// Hands edits over to be kept; the claim lives until they are.
-fn keep<E: DraftEdits>(
+fn store_edits<E: DraftEdits>(
     key: DraftKey,
     edits: E,
     claim: Option<Arc<Claim>>,
@@ -289,7 +297,7 @@ fn keep<E: DraftEdits>(
         let result = if edits.is_nothing() {
             drafts.remove(&key.kind, &key.name)
         } else {
-            drafts.keep(&key.kind, &key.name, &ron::to_string(&edits).unwrap_or_default())
+            drafts.save(&key.kind, &key.name, &ron::to_string(&edits).unwrap_or_default())
         };
         drop(claim);
         Action::Done(Done::Draft(session, DraftDone::Kept { key, result }))

@@ -66,15 +66,15 @@ pub trait Kind: Device + Sized {
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
     /// The wire itself failed, so that nothing more can be asked over it: why.
-    fn loss(error: &Self::Error) -> Option<Text>;
+    fn connection_error(error: &Self::Error) -> Option<Text>;
 
     /// Returns the last message about the job in an event of a released session.
-    fn last_words(event: &Event<Self>) -> Option<LastWords> {
+    fn job_endings(event: &Event<Self>) -> Option<JobEnding> {
         let (job, end, (severity, texts)) = match event {
             Event::Finished(job, output) => {
-                let told =
+                let result =
                     Self::result_texts(output).unwrap_or_else(|| (Severity::Note, vec![Text::new("session.ended")]));
-                (job, JobEnd::Done, told)
+                (job, JobEnd::Done, result)
             }
             Event::Cancelled(job, error) => (job, JobEnd::Cancelled, (Severity::Warning, Self::error_texts(error))),
             Event::Failed(job, error) => {
@@ -83,12 +83,12 @@ pub trait Kind: Device + Sized {
             }
             _ => return None,
         };
-        Some(LastWords { job: *job, end, severity, texts })
+        Some(JobEnding { job: *job, end, severity, texts })
     }
 }
 
 /// How the last job of a released session ended.
-pub struct LastWords {
+pub struct JobEnding {
     pub(in crate::app) job: JobId,
     pub(in crate::app) end: JobEnd,
     pub(in crate::app) severity: Severity,

@@ -101,7 +101,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
             Some(change) => self.plan(change, services),
             None => {
                 let text = Text::new("session.nothing_edited");
-                services.tell(Severity::Note, vec![text], Some(&self.session().name()));
+                services.notify(Severity::Note, vec![text], Some(&self.session().name()));
             }
         }
     }
@@ -110,7 +110,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
         self.before_review();
         if let Some(why) = self.session().why_not_ready() {
-            return services.tell(Severity::Warning, vec![why], Some(&self.session().name()));
+            return services.notify(Severity::Warning, vec![why], Some(&self.session().name()));
         }
         let review = Review::new(change.clone(), self.is_for_another(&change), self.is_for_another_type(&change));
         let objection = self.objection(&change);
@@ -149,7 +149,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
             if !self.pending().is_dirty() {
                 let serial = prepared.device(self.session().is_virtual()).serial_number;
                 let text = Text::new("session.plan_of_another").with("serial", serial);
-                services.tell(Severity::Warning, vec![text], Some(&self.session().name()));
+                services.notify(Severity::Warning, vec![text], Some(&self.session().name()));
             }
             return self.submit(Self::Device::survey(), services);
         }
@@ -167,7 +167,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
             let is_kept = self.type_and_serial().is_some_and(|(_, serial)| !serial.is_empty());
             let text = if is_kept { "session.other_encoder" } else { "session.edits_gone" };
             let text = Text::new(text).with("serial", serial);
-            services.tell(Severity::Warning, vec![text], Some(&self.session().name()));
+            services.notify(Severity::Warning, vec![text], Some(&self.session().name()));
         }
         self.leave_draft(services);
         self.forget_device();
@@ -199,7 +199,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     fn begin_write(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         let Some(review) = self.review_mut() else { return false };
         let ReviewState::Ready(prepared) = &review.state else { return false };
-        let (prepared, what) = (prepared.clone(), review.what.clone());
+        let (prepared, what) = (prepared.clone(), review.title.clone());
         review.state = ReviewState::Writing(prepared.clone());
         let begins = self.try_submit(job, services);
         if begins {
@@ -228,7 +228,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         if severity == Severity::Good && stands {
             services.note(severity, texts, Some(&name));
         } else {
-            services.tell(severity, texts, Some(&name));
+            services.notify(severity, texts, Some(&name));
         }
         self.pending_mut().forget_steps();
         self.reads_again();

@@ -20,12 +20,12 @@ pub use drafted::Drafted;
 pub use drafts::{DraftDone, DraftEdits, DraftKey};
 pub(in crate::app) use drafts::{Drafting, file_key};
 pub use has_session::HasSession;
-pub use kind::{Kind, LastWords};
+pub use kind::{JobEnding, Kind};
 pub use memory::{ApprovedPlanOf, WithMemory};
-pub use profiles::Listed;
+pub use profiles::DeviceHistory;
 pub(crate) use saved::some;
-pub use saved::{Known, Saved, without_edits};
-pub(in crate::app) use saving::Found;
+pub use saved::{KnownProfile, Saved, without_edits};
+pub(in crate::app) use saving::DivergedFile;
 pub use saving::{Guard, ProfileFile, Saving};
 pub(crate) use session_events::first;
 pub use session_events::{EarlyEnd, SessionEvents};
@@ -34,7 +34,7 @@ pub use state::SessionState;
 use super::action::Opened;
 use super::live_session::LiveSession;
 use super::services::{JobEnd, Services};
-use super::shutdown::Leaver;
+use super::shutdown::ClosingSessionInfo;
 use super::studio::SessionId;
 use super::{Severity, Text};
 use crate::link::{LinkUrl, Scheme};
@@ -225,14 +225,14 @@ impl<D: Kind> Session<D> {
             self.phase = Phase::Silent(first.clone());
         }
         let texts = std::iter::once(Text::new("session.poll_failed")).chain(why).collect();
-        services.tell(Severity::Error, texts, Some(&self.name()));
+        services.notify(Severity::Error, texts, Some(&self.name()));
     }
 
     /// Starts a job, or says why not and gives false.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
-            services.tell(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
+            services.notify(Severity::Error, vec![Text::new("session.not_connected")], Some(&name));
             return false;
         };
         match line.submit(job, what.clone(), writes, services.now()) {
@@ -241,7 +241,7 @@ impl<D: Kind> Session<D> {
                 return true;
             }
             Err(SubmitError::Busy | SubmitError::Unread) => {
-                services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
+                services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
             }
             // How the session ended comes with its last events.
             Err(SubmitError::Ended) => {}
@@ -285,11 +285,11 @@ impl<D: Kind> Session<D> {
         if let Some(running) = line.running().filter(|_| write.is_none()) {
             services.job_ends(self.id, running.id, end);
         }
-        services.leave(line.into_worker(), Leaver { session: self.id, about, url, write }, None);
+        services.leave(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
     }
 
     /// The connection is gone.
-    pub(in crate::app) fn lose(&mut self, why: Text, services: &mut Services) {
+    pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
         // It stands where the session is shown.
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.let_go(JobEnd::Failed(why.clone()), services);

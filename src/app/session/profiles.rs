@@ -59,7 +59,7 @@ impl SessionState {
         services: &mut Services,
     ) {
         if self.is_saving {
-            return services.tell(Severity::Warning, vec![Text::new("session.busy")], Some(&self.name()));
+            return services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&self.name()));
         }
         self.is_saving = true;
         let opened = match &self.source {
@@ -76,7 +76,7 @@ impl SessionState {
     pub(in crate::app) fn list_backups(&self, of: DeviceKey, services: &Services) {
         let (store, id) = (services.world.store.clone(), self.id);
         services.tasks.run("backups", move || {
-            let listed = Box::new(Listed::of(&of, &store));
+            let listed = Box::new(DeviceHistory::of(&of, &store));
             Action::Done(Done::Listed(id, of, listed))
         });
     }
@@ -91,7 +91,7 @@ impl SessionState {
     }
 
     /// Takes the lists of backups and writes.
-    pub(in crate::app) fn take_backups(&mut self, listed: Listed) {
+    pub(in crate::app) fn take_backups(&mut self, listed: DeviceHistory) {
         self.backups = Some(listed.backups.map_err(|error| explain::file(&error)));
         self.cycles = listed.cycles;
         self.statuses = listed.statuses;
@@ -104,7 +104,7 @@ impl SessionState {
 }
 
 /// Backups and writes of a device, as a task found them.
-pub struct Listed {
+pub struct DeviceHistory {
     /// Backups, the newest first.
     pub backups: Result<Vec<Backup>, FileError>,
     /// Writes, the newest first, or why the logbook does not tell.
@@ -115,7 +115,7 @@ pub struct Listed {
     pub statuses: Vec<StatusEntry>,
 }
 
-impl Listed {
+impl DeviceHistory {
     /// Readings of status codes that are shown.
     const STATUSES: u32 = 20;
     /// Entries of the logbook that are shown.
@@ -134,6 +134,6 @@ impl Listed {
                 Err(error) => (Err(error), None, Vec::new()),
             },
         };
-        Listed { backups, writes, cycles, statuses }
+        DeviceHistory { backups, writes, cycles, statuses }
     }
 }

@@ -13,7 +13,7 @@ use crate::worker::Device;
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
 /// A profile of what was read, with remarks; or a text for each missing part.
-pub type Known = Result<(Body, Vec<Text>), Vec<Text>>;
+pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// Returns the remark that a number of edits is not included.
 pub fn without_edits(count: usize) -> Option<Text> {
@@ -32,7 +32,7 @@ pub trait Saved: WithMemory {
     ///
     /// # Errors
     /// What a profile needs beyond what was read, a text each.
-    fn known_body(&self) -> Option<Known>;
+    fn known_body(&self) -> Option<KnownProfile>;
 
     /// Saves what was read earlier: the device no longer answers.
     fn saves_what_was_read(&self) -> bool {

@@ -86,7 +86,7 @@ impl Saving {
 
 /// The content of a file that differs from what was opened.
 #[derive(Debug)]
-pub(in crate::app) struct Found {
+pub(in crate::app) struct DivergedFile {
     /// As it is written; empty where it cannot be read.
     pub(in crate::app) text: String,
     /// As a profile.
@@ -95,18 +95,20 @@ pub(in crate::app) struct Found {
 
 /// The text over which is written; or what stands there where it says something else than was opened, or is to be said. A
 /// file that is gone says nothing else.
-fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<Found>> {
+fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<DivergedFile>> {
     let text = match read_file(path) {
         Ok(text) => text,
         Err(FileError { problem: FileProblem::NotFound, .. }) => return Ok(opened.to_owned()),
-        Err(error) => return Err(Box::new(Found { text: String::new(), document: Err(ReadError::File(error)) })),
+        Err(error) => {
+            return Err(Box::new(DivergedFile { text: String::new(), document: Err(ReadError::File(error)) }));
+        }
     };
-    let says = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
-    let found = says(&text);
+    let normalized = |text: &str| Document::parse(text, formats).ok().map(|document| document.emit());
+    let found = normalized(&text);
     // A change of comments only: they are kept like any others.
-    if text == opened || found.is_some() && (found == says(opened) || found == Some(wanted.emit())) {
+    if text == opened || found.is_some() && (found == normalized(opened) || found == Some(wanted.emit())) {
         return Ok(text);
     }
     let document = Document::parse(&text, formats).map(Box::new).map_err(ReadError::Profile);
-    Err(Box::new(Found { text, document }))
+    Err(Box::new(DivergedFile { text, document }))
 }

@@ -93,7 +93,7 @@ pub trait SessionEvents: HasSession {
             self.take(event, services);
         }
         if self.session().line.as_ref().is_some_and(LiveSession::is_dead) {
-            self.lose(Text::new("session.ended"), services);
+            self.connection_lost(Text::new("session.ended"), services);
         }
     }
 
@@ -116,7 +116,7 @@ pub trait SessionEvents: HasSession {
     fn take(&mut self, event: Event<Self::Device>, services: &mut Services) {
         match event {
             Event::Started(_) => {}
-            Event::Progress(_, progress) => self.progressed(progress.what),
+            Event::Progress(_, progress) => self.progressed(progress.step),
             Event::Remark(remark) => self.message_received(remark, services),
             Event::Finished(id, output) => {
                 services.job_ends(self.session().id, id, JobEnd::Done);
@@ -128,7 +128,7 @@ pub trait SessionEvents: HasSession {
             Event::Failed(id, error) => self.failed(id, &error, services),
             Event::Cancelled(id, error) => self.cancelled(id, &error, services),
             Event::PollFailed(error) => self.poll_failed(&error, services),
-            Event::Lost(error) => self.lose(explain::link(&error), services),
+            Event::Lost(error) => self.connection_lost(explain::link(&error), services),
         }
         self.session_mut().drafting.may_have_changed();
     }
@@ -136,8 +136,8 @@ pub trait SessionEvents: HasSession {
     /// A sample failed, and polling is off.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.polling_ends();
-        match Self::Device::loss(error) {
-            Some(why) => self.lose(why, services),
+        match Self::Device::connection_error(error) {
+            Some(why) => self.connection_lost(why, services),
             None => {
                 let is_silent = self.is_silence(error);
                 self.session_mut().polling_failed(Self::Device::error_texts(error), is_silent, services);
@@ -152,7 +152,7 @@ pub trait SessionEvents: HasSession {
         let (texts, begun) = (Self::Device::error_texts(error), error.has_begun());
         let stands_there = self.ended_early(EarlyEnd::Cancelled(error), &texts, services);
         let severity = if begun { Severity::Warning } else { Severity::Note };
-        self.session().say(severity, texts, stands_there, services);
+        self.session().report(severity, texts, stands_there, services);
         if begun {
             self.submit(Self::Device::survey(), services);
         }
@@ -164,14 +164,14 @@ pub trait SessionEvents: HasSession {
         services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));
         let stands_there = self.ended_early(EarlyEnd::Failed(error), &texts, services);
         self.session_mut().save_to = None;
-        match Self::Device::loss(error) {
-            Some(why) => self.lose(why, services),
+        match Self::Device::connection_error(error) {
+            Some(why) => self.connection_lost(why, services),
             None if self.is_silence(error) || self.session().just_connected => {
                 self.session_mut().fall_silent(texts, services);
             }
             None => {
                 self.session_mut().answers();
-                self.session().say(Severity::Error, texts, stands_there, services);
+                self.session().report(Severity::Error, texts, stands_there, services);
                 if error.has_begun() {
                     self.submit(Self::Device::survey(), services);
                 }
@@ -180,13 +180,13 @@ pub trait SessionEvents: HasSession {
     }
 
     /// The connection is gone; what is known and edited stays.
-    fn lose(&mut self, why: Text, services: &mut Services) {
+    fn connection_lost(&mut self, why: Text, services: &mut Services) {
         self.line_ends();
         // The last frames show best why it was the last.
         self.take_samples_and_frames();
         self.forget_requests();
         self.ended_early(EarlyEnd::Lost, std::slice::from_ref(&why), services);
-        self.session_mut().lose(why, services);
+        self.session_mut().connection_lost(why, services);
     }
 
     /// Lets its thread go; what runs ends as `end` says, and a plan is none any more.

@@ -102,10 +102,10 @@ impl SessionState {
     }
 
     /// Reports something about this device; only in the log if it is already shown where it was requested.
-    pub(crate) fn say(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
+    pub(crate) fn report(&self, severity: Severity, texts: Vec<Text>, stands_there: bool, services: &mut Services) {
         match stands_there {
             true => services.note(severity, texts, Some(&self.name())),
-            false => services.tell(severity, texts, Some(&self.name())),
+            false => services.notify(severity, texts, Some(&self.name())),
         }
     }
 
@@ -117,6 +117,6 @@ impl SessionState {
 
     /// Reports that a request is not possible.
     pub(crate) fn refuse(&self, why: Text, services: &mut Services) {
-        services.tell(Severity::Error, vec![why], Some(&self.name()));
+        services.notify(Severity::Error, vec![why], Some(&self.name()));
     }
 }

@@ -62,7 +62,7 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
     own[4].is_bad = true;
     own[5].is_warned = true;
     track.add(&own, &meaning);
-    track.lose(3);
+    track.note_dropped(3);
     track.add(&stream(9, 2), &meaning);
     track.gap();
     track.add(&stream(11, 1), &meaning);
@@ -169,7 +169,7 @@ fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
         Some((0, 4_000_000_000))
     );
     // They are drawn where they are, and no more.
-    let drawn = |track: &Track<Nothing>| track.recorder.shown().filter(|line| line.ended).count();
+    let drawn = |track: &Track<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
     track.recorder.act(recorder::RecorderAction::Look(
         Time::from(Moment::after_start(Duration::from_secs(3))),

@@ -40,12 +40,12 @@ impl OwnCommand for AnalyseCommand {
 
 fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let path = &arguments.file;
-    let wishes =
+    let hints =
         TableHints { columns: arguments.columns, volts_per_unit: arguments.volts_per_unit, ..TableHints::default() };
     let bar = Bar::default();
     let mut progress = |done, total| bar.show(done, total, &"bytes");
     // Ctrl-C ends a command that only reads.
-    let read = read_capture(path, &wishes, &AtomicBool::new(false), &mut progress);
+    let read = read_capture(path, &hints, &AtomicBool::new(false), &mut progress);
     drop(bar);
     let (layout, capture) = read.map_err(|error| failed(&explain::signal::read(path, &error)))?;
     remarks(output, &layout, &capture);
@@ -58,13 +58,13 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
     let findings: Vec<String> =
         diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal()).collect();
     let analysis = analysis.map_err(|error| {
-        let told = explain::signal::analysis(path, &error).terminal();
+        let why = explain::signal::analysis(path, &error).terminal();
         // Levels of the wires say more about what is wrong than that there is no ellipse.
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
-        Failure::Failed(std::iter::once(told).chain(more).collect())
+        Failure::Failed(std::iter::once(why).chain(more).collect())
     })?;
     let revolution = revolution(output, &capture, &analysis, arguments.periods);
-    let told = CaptureReport {
+    let report = CaptureReport {
         family,
         analysis: &analysis,
         diagnosis: &diagnosis,
@@ -73,7 +73,7 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
         periods: arguments.periods,
         rows_left_out: capture.left_out,
     };
-    output.show(&told.json(), &told.text())?;
+    output.show(&report.json(), &report.text())?;
     Ok(Done::Well)
 }
 
@@ -96,8 +96,9 @@ fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: 
         return None;
     };
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
-    let told = Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
-    told.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal())).ok()
+    let revolution =
+        Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
+    revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal())).ok()
 }
 
 /// All that is told of a capture.

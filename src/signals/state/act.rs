@@ -222,14 +222,18 @@ impl Signals {
         match action {
             SignalsAction::Open(path) => self.open_at(TableSource::File(path), services),
             SignalsAction::Example(example) => self.open_at(TableSource::Example(example), services),
-            SignalsAction::SetDelimiter(delimiter) => self.wish(services, |wishes| wishes.delimiter = Some(delimiter)),
-            SignalsAction::SetDecimalComma(comma) => self.wish(services, |wishes| wishes.decimal_comma = Some(comma)),
-            SignalsAction::SetTimeUnit(unit) => self.wish(services, |wishes| wishes.time_unit = Some(unit)),
+            SignalsAction::SetDelimiter(delimiter) => {
+                self.reread_table(services, |hints| hints.delimiter = Some(delimiter))
+            }
+            SignalsAction::SetDecimalComma(comma) => {
+                self.reread_table(services, |hints| hints.decimal_comma = Some(comma))
+            }
+            SignalsAction::SetTimeUnit(unit) => self.reread_table(services, |hints| hints.time_unit = Some(unit)),
             SignalsAction::SetVolts(volts) if volts.is_finite() && volts != 0.0 => {
-                self.wish(services, |wishes| wishes.volts_per_unit = Some(volts));
+                self.reread_table(services, |hints| hints.volts_per_unit = Some(volts));
             }
             SignalsAction::SetVolts(_) => {}
-            SignalsAction::Detect => self.wish(services, |wishes| *wishes = TableHints::default()),
+            SignalsAction::Detect => self.reread_table(services, |hints| *hints = TableHints::default()),
             SignalsAction::SetColumn(column, number) => {
                 let settled = self.settled();
                 if self.table.as_mut().is_some_and(|table| table.choose(column, number)) {
@@ -283,7 +287,7 @@ impl Signals {
             Failed::Judge => "signals.judging_failed",
             Failed::Read(_) | Failed::Measure(_) => return,
         };
-        services.tell(Severity::Error, vec![TEXTS.text(what)], None);
+        services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
     /// Other samples: a table of those before that is still being written cannot be ended.
@@ -343,17 +347,17 @@ impl Signals {
     }
 
     /// Reads the table again with another wish.
-    fn wish(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
+    fn reread_table(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
-            change(&mut table.wishes);
+            change(&mut table.hints);
             self.read_again(settled, services);
         }
     }
 
     fn read_again(&mut self, settled: Option<Table>, services: &mut Services) {
         if let Some(table) = &self.table {
-            self.read(table.place.clone(), table.wishes.clone(), settled, services);
+            self.read(table.place.clone(), table.hints.clone(), settled, services);
         }
     }
 
@@ -381,7 +385,7 @@ impl Signals {
     }
 
     /// Begins to read; what was being read is given up.
-    fn read(&mut self, place: TableSource, wishes: TableHints, settled: Option<Table>, services: &mut Services) {
+    fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;
         let (reading, progress) = Reading::new(number, place.clone(), settled);
@@ -389,7 +393,7 @@ impl Signals {
         let judge = self.judge();
         task_guard::run(&services.tasks, "capture", Done::Failed(Failed::Read(number)), move || Done::Read {
             number,
-            read: Box::new(reading::read(place, wishes, judge, &progress)),
+            read: Box::new(reading::read(place, hints, judge, &progress)),
         });
     }
 }

@@ -234,7 +234,7 @@ impl Source {
                 true
             }
             Err(why) => {
-                services.tell(Severity::Error, vec![why], None);
+                services.notify(Severity::Error, vec![why], None);
                 false
             }
         }
@@ -277,7 +277,7 @@ impl Source {
                 true
             }
             Err(why) => {
-                services.tell(Severity::Error, vec![why], None);
+                services.notify(Severity::Error, vec![why], None);
                 false
             }
         }
@@ -406,7 +406,7 @@ impl Signals {
         if self.source.kind == SourceKind::Adapter {
             self.source.adapter_problem = Some(why.clone());
         }
-        services.tell(Severity::Error, vec![why], None);
+        services.notify(Severity::Error, vec![why], None);
     }
 
     /// The newest samples were measured.

@@ -51,6 +51,6 @@ pub use measurement::{Judge, Measurement, Origin, Results, TableSource};
 pub use quantities::{Bound, Quantity, Unit, error_quantities, quantities};
 pub use reading::{Example, Reading};
 pub use reference_comparison::{AbsoluteOffset, NoOffset, Nonlinearities, nonlinearity_quantities};
-pub use scope::{NoTimes, Scope};
+pub use scope::{Scope, TimeAxisError};
 pub use spectra::{ChannelSpectrum, Spectra, dbv};
 pub use table::{Column, Table};

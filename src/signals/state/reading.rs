@@ -92,18 +92,18 @@ impl Drop for Reading {
 }
 
 /// Reads and measures; takes as long as the file is large.
-pub(super) fn read(place: TableSource, wishes: TableHints, judge: Judge, progress: &Progress) -> Read {
+pub(super) fn read(place: TableSource, hints: TableHints, judge: Judge, progress: &Progress) -> Read {
     let (head, result) = match &place {
         TableSource::Example(example) => {
             let bytes = example.bytes();
-            (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import(bytes, &wishes))
+            (bytes.get(..HEAD.min(bytes.len())).unwrap_or_default().to_vec(), import(bytes, &hints))
         }
         TableSource::File(path) => match capture_head(path) {
-            Ok(head) => (head, read_file(path, &wishes, progress)),
+            Ok(head) => (head, read_file(path, &hints, progress)),
             Err(error) => (Vec::new(), Err(error.into())),
         },
     };
-    let table = Table::of(place, &head, wishes);
+    let table = Table::of(place, &head, hints);
     let result = result.map(|capture| {
         let scope = Scope::of(&capture);
         (Measurement::of(Origin::Table(table.place.clone()), Arc::new(capture), judge), scope)
@@ -111,17 +111,17 @@ pub(super) fn read(place: TableSource, wishes: TableHints, judge: Judge, progres
     Read { table, result }
 }
 
-fn read_file(path: &Path, wishes: &TableHints, progress: &Progress) -> Result<Capture, ReadCaptureError> {
+fn read_file(path: &Path, hints: &TableHints, progress: &Progress) -> Result<Capture, ReadCaptureError> {
     let mut tell = |done, total| {
         progress.done.store(done, Ordering::Relaxed);
         progress.total.store(total, Ordering::Relaxed);
     };
-    read_capture(path, wishes, &progress.cancel, &mut tell).map(|(_, capture)| capture)
+    read_capture(path, hints, &progress.cancel, &mut tell).map(|(_, capture)| capture)
 }
 
-fn import(bytes: &[u8], wishes: &TableHints) -> Result<Capture, ReadCaptureError> {
+fn import(bytes: &[u8], hints: &TableHints) -> Result<Capture, ReadCaptureError> {
     let read = || -> Result<Capture, CaptureError> {
-        let mut import = Import::begin(bytes.get(..HEAD.min(bytes.len())).unwrap_or_default(), wishes)?;
+        let mut import = Import::begin(bytes.get(..HEAD.min(bytes.len())).unwrap_or_default(), hints)?;
         import.feed(bytes)?;
         Ok(import.finish()?.1)
     };

@@ -78,42 +78,43 @@ pub(super) fn nonlinearities(
 ) -> Option<Result<Nonlinearities, RevolutionError>> {
     let reference = capture.reference_deg.as_ref()?;
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
-    let told = Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
-    Some(told.map(|told| Nonlinearities {
-        revolutions: told.raw.revolutions,
-        raw: Part::of(&told.raw),
-        corrected: Part::of(&told.corrected),
+    let revolution =
+        Revolution::of(&capture.sine_v, &capture.cosine_v, reference, left_out, &analysis.ellipse, periods);
+    Some(revolution.map(|revolution| Nonlinearities {
+        revolutions: revolution.raw.revolutions,
+        raw: Part::of(&revolution.raw),
+        corrected: Part::of(&revolution.corrected),
     }))
 }
 
 impl Part {
-    fn of(told: &Nonlinearity) -> Self {
+    fn of(nonlinearity: &Nonlinearity) -> Self {
         let (mut deviation, mut mean) = (Vec::new(), Vec::new());
         let whole = |own: &Deviation| own.differential_deg + own.integral_deg;
-        for stretch in told.curve.chunks(told.curve.len().div_ceil(STRETCHES).max(1)) {
+        for stretch in nonlinearity.curve.chunks(nonlinearity.curve.len().div_ceil(STRETCHES).max(1)) {
             let least = stretch.iter().min_by(|a, b| whole(a).total_cmp(&whole(b)));
             let most = stretch.iter().max_by(|a, b| whole(a).total_cmp(&whole(b)));
             deviation.extend([least, most].into_iter().flatten().map(|own| (own.reference_deg, whole(own))));
             mean.extend(stretch.first().map(|own| (own.reference_deg, own.integral_deg)));
         }
-        let Nonlinearity { differential_deg, integral_deg, .. } = *told;
+        let Nonlinearity { differential_deg, integral_deg, .. } = *nonlinearity;
         Part { differential_deg, integral_deg, deviation, mean }
     }
 }
 
 /// DNL and INL as ± values.
-pub fn nonlinearity_quantities(told: &Nonlinearities) -> Vec<Quantity> {
+pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity> {
     /// Seconds of arc in a degree.
     const ARC_SECONDS: f64 = 3600.0;
     let plus_minus = |word, degrees: f64| {
         Quantity::new(word, degrees, 5, Unit::Degrees).also(degrees * ARC_SECONDS, 2, Unit::ArcSeconds)
     };
     vec![
-        plus_minus("nonlinearity.dnl_raw", told.raw.differential_deg),
-        plus_minus("nonlinearity.dnl_corrected", told.corrected.differential_deg),
-        plus_minus("nonlinearity.inl_raw", told.raw.integral_deg),
-        plus_minus("nonlinearity.inl_corrected", told.corrected.integral_deg),
-        Quantity::new("nonlinearity.revolutions", told.revolutions, 2, Unit::One),
+        plus_minus("nonlinearity.dnl_raw", nonlinearities.raw.differential_deg),
+        plus_minus("nonlinearity.dnl_corrected", nonlinearities.corrected.differential_deg),
+        plus_minus("nonlinearity.inl_raw", nonlinearities.raw.integral_deg),
+        plus_minus("nonlinearity.inl_corrected", nonlinearities.corrected.integral_deg),
+        Quantity::new("nonlinearity.revolutions", nonlinearities.revolutions, 2, Unit::One),
     ]
 }
 

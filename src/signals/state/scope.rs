@@ -15,13 +15,13 @@ use crate::worker::stream::Batch;
 pub struct Scope {
     pub recorder: Recorder,
     /// Why there is nothing to draw.
-    pub refused: Option<NoTimes>,
+    pub refused: Option<TimeAxisError>,
     group: GroupId,
 }
 
 /// Why the times of a capture cannot be an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum NoTimes {
+pub enum TimeAxisError {
     /// They go back.
     GoBack,
     /// They are further from zero than nanoseconds can be counted: 292 years. Milliseconds read as seconds are.
@@ -57,11 +57,11 @@ impl Scope {
         let mut scope = Scope::new(capture.wires.is_some(), count.max(1), recorder);
         let mut from = 0;
         if !counts && capture.time_s.iter().any(|seconds| seconds.abs() > FARTHEST_S) {
-            scope.refused = Some(NoTimes::TooFar);
+            scope.refused = Some(TimeAxisError::TooFar);
         }
         while from < count && scope.refused.is_none() {
             let to = (from + PORTION).min(count);
-            scope.refused = scope.add_capture(capture, from..to).err().map(|_| NoTimes::GoBack);
+            scope.refused = scope.add_capture(capture, from..to).err().map(|_| TimeAxisError::GoBack);
             from = to;
         }
         if scope.refused.is_some() {
@@ -142,7 +142,7 @@ mod tests {
     use crate::analysis::history::Flags;
 
     fn names(scope: &Scope) -> Vec<&'static str> {
-        scope.recorder.shown().map(|line| line.name.id()).collect()
+        scope.recorder.visible_series().map(|line| line.name.id()).collect()
     }
 
     fn value(scope: &Scope, line: usize, nanoseconds: i64) -> f64 {
@@ -216,11 +216,11 @@ mod tests {
         assert_eq!(scope.recorder.lines().len(), 3);
         capture.time_s = vec![0.0, 2.0, 1.0];
         let scope = Scope::of(&capture);
-        assert!(scope.refused == Some(NoTimes::GoBack) && scope.recorder.is_empty());
+        assert!(scope.refused == Some(TimeAxisError::GoBack) && scope.recorder.is_empty());
         // Milliseconds since 1970 read as seconds.
         capture.time_s = vec![1.7e12, 1.7e12 + 1.0, 1.7e12 + 2.0];
         let scope = Scope::of(&capture);
-        assert!(scope.refused == Some(NoTimes::TooFar) && scope.recorder.is_empty());
+        assert!(scope.refused == Some(TimeAxisError::TooFar) && scope.recorder.is_empty());
         capture.time_s = vec![1.7e9, 1.7e9 + 1.0, 1.7e9 + 2.0];
         assert_eq!(Scope::of(&capture).refused, None);
         assert!(Scope::of(&Capture::default()).recorder.is_empty());

@@ -27,7 +27,7 @@ pub struct Form {
     /// The absolute position in steps: decimal, or hexadecimal with `0x` or `h`.
     pub absolute: String,
     /// How the analogue position is entered.
-    pub told_as: ToldAs,
+    pub phase_input: PhaseInput,
     /// The phase, in periods or degrees.
     pub phase: String,
     /// Sine in volts.
@@ -50,7 +50,7 @@ pub struct Form {
 
 /// How the analogue position is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ToldAs {
+pub enum PhaseInput {
     /// A part of a period, 0 to 1.
     Periods,
     /// Electrical degrees, 0 to 360.
@@ -69,7 +69,7 @@ pub struct Synchronise {
     /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
     /// Whose they are.
-    whose: Option<SineCosineOrigin>,
+    origin: Option<SineCosineOrigin>,
 }
 
 /// The result of the entries.
@@ -102,7 +102,7 @@ impl Default for Form {
         let typed = |text: &str| text.to_owned();
         Form {
             absolute: typed("0x2A5F"),
-            told_as: ToldAs::Periods,
+            phase_input: PhaseInput::Periods,
             phase: typed("0.02"),
             sine_v: String::new(),
             cosine_v: String::new(),
@@ -175,12 +175,14 @@ impl Form {
 
     fn phase(&self) -> Result<Phase, Text> {
         let no_signal = || TEXTS.text("synchronise.no_signal");
-        match self.told_as {
-            ToldAs::Periods => Phase::of_periods(within(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?),
-            ToldAs::Degrees => {
+        match self.phase_input {
+            PhaseInput::Periods => {
+                Phase::of_periods(within(TEXTS.text("synchronise.in_periods"), &self.phase, 0.0, 1.0)?)
+            }
+            PhaseInput::Degrees => {
                 Phase::of_periods(within(TEXTS.text("synchronise.in_degrees"), &self.phase, 0.0, 360.0)? / 360.0)
             }
-            ToldAs::Volts => exact(
+            PhaseInput::Volts => exact(
                 within(TEXTS.text("synchronise.sine"), &self.sine_v, -10.0, 10.0)?,
                 within(TEXTS.text("synchronise.cosine"), &self.cosine_v, -10.0, 10.0)?,
             ),
@@ -239,13 +241,13 @@ impl Synchronise {
         }
     }
 
-    fn take(&mut self, reading: SineCosineReading, whose: SineCosineOrigin) {
+    fn take(&mut self, reading: SineCosineReading, origin: SineCosineOrigin) {
         self.problem = None;
-        let range = whose.range;
-        if self.whose.as_ref() != Some(&whose) {
+        let range = origin.range;
+        if self.origin.as_ref() != Some(&origin) {
             // Those were another encoder's.
             self.readings.clear();
-            self.whose = Some(whose);
+            self.origin = Some(origin);
         }
         let Some(SineCosineVolts { sine_v, cosine_v }) = reading.signals else {
             self.form.absolute = reading.position.to_string();
@@ -258,7 +260,7 @@ impl Synchronise {
         };
         let form = &mut self.form;
         form.absolute = format!("0x{:X}", reading.position);
-        form.told_as = ToldAs::Volts;
+        form.phase_input = PhaseInput::Volts;
         (form.sine_v, form.cosine_v) = (format!("{sine_v:.4}"), format!("{cosine_v:.4}"));
         (form.periods, form.turns) = (periods.max(1).to_string(), turns.max(1).to_string());
         let length = sine_v.hypot(cosine_v);
@@ -332,11 +334,11 @@ mod tests {
 
     #[test]
     fn the_phase_is_told_in_three_ways() {
-        let degrees = Form { told_as: ToldAs::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
+        let degrees = Form { phase_input: PhaseInput::Degrees, ..form("0x2A5F", "7.2", "1024", "1") };
         assert!((degrees.synchronisation().unwrap().phase.periods() - 0.02).abs() < 1e-12);
         let typed = |text: &str| text.to_owned();
         let (sine_v, cosine_v) = (typed("-0.5"), typed("0"));
-        let volts = Form { told_as: ToldAs::Volts, sine_v, cosine_v, ..Form::default() };
+        let volts = Form { phase_input: PhaseInput::Volts, sine_v, cosine_v, ..Form::default() };
         assert_eq!(volts.synchronisation().unwrap().phase.periods(), 0.75);
         let nothing = Form { sine_v: typed("0"), ..volts };
         assert_eq!(nothing.synchronisation().unwrap_err().id(), "synchronise.no_signal");

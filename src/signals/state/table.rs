@@ -10,7 +10,7 @@ pub struct Table {
     /// Its first lines as text; long ones are cut.
     pub head: Vec<String>,
     /// The settings made by the user.
-    pub wishes: TableHints,
+    pub hints: TableHints,
     /// Format of the table; `None` if it cannot be detected.
     pub layout: Option<Layout>,
     /// REFSIN and REFCOS while only one of them is chosen.
@@ -44,7 +44,7 @@ const MOST_COLUMNS: usize = 64;
 
 impl Table {
     /// The beginning of a table, from its first bytes.
-    pub(super) fn of(place: TableSource, head: &[u8], wishes: TableHints) -> Self {
+    pub(super) fn of(place: TableSource, head: &[u8], hints: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
             let text = String::from_utf8_lossy(line.trim_ascii_end()).replace('\t', "  →  ");
@@ -52,18 +52,18 @@ impl Table {
             if short.len() < text.len() { short + "…" } else { short }
         };
         let lines = text.split(|byte| *byte == b'\n').take(LINES).map(shown).collect();
-        let layout = Layout::detect(head, &wishes).ok();
-        Table { place, head: lines, wishes, layout, half_chosen: (None, None) }
+        let layout = Layout::detect(head, &hints).ok();
+        Table { place, head: lines, hints, layout, half_chosen: (None, None) }
     }
 
     /// Returns the delimiter between two columns.
     pub fn delimiter(&self) -> Option<Delimiter> {
-        self.wishes.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
+        self.hints.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
     }
 
     /// Columns that are taken.
     pub fn columns(&self) -> Option<Columns> {
-        self.wishes.columns.or(self.layout.as_ref().map(|layout| layout.columns))
+        self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
     /// The column that is taken for something, from 1.
@@ -119,7 +119,7 @@ impl Table {
                 }
             }
         }
-        self.wishes.columns = Some(columns);
+        self.hints.columns = Some(columns);
         true
     }
 }
@@ -150,14 +150,14 @@ mod tests {
     fn references_count_when_both_are_chosen() {
         let mut table = table("a,b,c,d,e\n0,1,2,3,4\n");
         assert!(!table.choose(Column::RefSine, Some(3)), "the other one is missing");
-        assert_eq!((table.column(Column::RefSine), table.wishes.columns), (Some(3), None));
+        assert_eq!((table.column(Column::RefSine), table.hints.columns), (Some(3), None));
         assert!(table.choose(Column::RefCosine, Some(5)));
         assert_eq!(table.columns().unwrap().references, Some((3, 5)));
         assert!(table.choose(Column::RefSine, None), "without one of them both are not taken off");
         assert_eq!(table.columns().unwrap().references, None);
         assert_eq!(table.column(Column::RefCosine), Some(5));
         assert!(table.choose(Column::Cosine, Some(4)) && table.choose(Column::Time, None));
-        let columns = table.wishes.columns.unwrap();
+        let columns = table.hints.columns.unwrap();
         assert_eq!((columns.time, columns.sine, columns.cosine), (None, 2, 4));
         assert!(!table.choose(Column::Sine, None));
     }

@@ -12,7 +12,7 @@ struct Promise {
 
 impl Promise {
     /// Marks the task as returned.
-    fn kept(mut self) {
+    fn task_returned(mut self) {
         self.failed = None;
     }
 }
@@ -34,7 +34,7 @@ pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -
     let promise = Promise { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
         let done = task();
-        promise.kept();
+        promise.task_returned();
         action(done)
     });
 }

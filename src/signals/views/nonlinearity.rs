@@ -13,14 +13,20 @@ use crate::ui::widgets::{Chart, Trace, chart};
 /// Draws the card; with a capture that it is compared with also its values.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compared: Option<&Results>) {
     card(ui, theme, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
-        Some(Ok(told)) => {
-            curve(ui, theme, told);
+        Some(Ok(nonlinearities)) => {
+            curve(ui, theme, nonlinearities);
             ui.add_space(theme.space.inside);
             let other = compared.and_then(|own| own.nonlinearities.as_ref()?.as_ref().ok());
             let other = other.map(nonlinearity_quantities);
-            numbers::rows_ui(ui, theme, "nonlinearity.title", &nonlinearity_quantities(told), other.as_deref());
-            if told.revolutions < 1.0 {
-                let text = TEXTS.text("nonlinearity.part").with_number("revolutions", told.revolutions, 2);
+            numbers::rows_ui(
+                ui,
+                theme,
+                "nonlinearity.title",
+                &nonlinearity_quantities(nonlinearities),
+                other.as_deref(),
+            );
+            if nonlinearities.revolutions < 1.0 {
+                let text = TEXTS.text("nonlinearity.part").with_number("revolutions", nonlinearities.revolutions, 2);
                 paragraph(ui, theme.caption(theme.words(&text)));
             }
         }
@@ -29,7 +35,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compare
     });
 }
 
-fn curve(ui: &mut Ui, theme: &Theme, told: &Nonlinearities) {
+fn curve(ui: &mut Ui, theme: &Theme, nonlinearities: &Nonlinearities) {
     let trace = |id: &'static str, points: &[(f64, f64)], colour: usize, dashed: bool| Trace {
         name: say(theme, id),
         points: points.to_vec(),
@@ -37,15 +43,14 @@ fn curve(ui: &mut Ui, theme: &Theme, told: &Nonlinearities) {
         dashed,
     };
     let traces = [
-        trace("quality.raw", &told.raw.deviation, 0, false),
-        trace("quality.corrected", &told.corrected.deviation, 2, false),
-        trace("nonlinearity.mean", &told.corrected.mean, 1, true),
+        trace("quality.raw", &nonlinearities.raw.deviation, 0, false),
+        trace("quality.corrected", &nonlinearities.corrected.deviation, 2, false),
+        trace("nonlinearity.mean", &nonlinearities.corrected.mean, 1, true),
     ];
-    let value = TEXTS.text("nonlinearity.curve_value").with_number("dnl", told.raw.differential_deg, 5).with_number(
-        "inl",
-        told.raw.integral_deg,
-        5,
-    );
+    let value = TEXTS
+        .text("nonlinearity.curve_value")
+        .with_number("dnl", nonlinearities.raw.differential_deg, 5)
+        .with_number("inl", nonlinearities.raw.integral_deg, 5);
     let own = Chart {
         traces: &traces,
         label: &say(theme, "nonlinearity.title"),
@@ -53,7 +58,7 @@ fn curve(ui: &mut Ui, theme: &Theme, told: &Nonlinearities) {
         height: 180.0,
         x_unit: "°",
         y_unit: "°",
-        x_step: (told.revolutions <= 2.0).then_some(90.0),
+        x_step: (nonlinearities.revolutions <= 2.0).then_some(90.0),
         ..Chart::default()
     };
     chart(ui, theme, &own);

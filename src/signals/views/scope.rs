@@ -5,7 +5,7 @@ use egui::{Ui, vec2};
 use super::numbers::with_unit;
 use super::{SignalsUiState, quality, source};
 use crate::app::{Action, RecorderOwner, explain};
-use crate::signals::state::{ChannelSpectrum, Measurement, NoTimes, Signals, Spectra, TAB, TEXTS, Unit, dbv};
+use crate::signals::state::{ChannelSpectrum, Measurement, Signals, Spectra, TAB, TEXTS, TimeAxisError, Unit, dbv};
 use crate::signals::views::say;
 use crate::ui::controls::{card, card_with, name, paragraph};
 use crate::ui::widgets::{Chart, Trace, chart};
@@ -50,8 +50,8 @@ fn trace(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut ScopeView, ac
             let empty = say(
                 theme,
                 match scope.refused {
-                    Some(NoTimes::GoBack) => "scope.refused",
-                    Some(NoTimes::TooFar) => "scope.too_far",
+                    Some(TimeAxisError::GoBack) => "scope.refused",
+                    Some(TimeAxisError::TooFar) => "scope.too_far",
                     None => "scope.nothing",
                 },
             );

@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use crate::app::{Action, SineCosineSource, Text};
-use crate::signals::state::synchronise::{Form, Synchronise, SynchroniseAction as Page, ToldAs};
+use crate::signals::state::synchronise::{Form, PhaseInput, Synchronise, SynchroniseAction as Page};
 use crate::signals::state::{Signals as State, SignalsAction as Signals, TEXTS, synchronise::Synchronisation};
 use crate::signals::views::say;
 use crate::ui::controls::{
@@ -30,17 +30,17 @@ pub(super) fn page_ui(
     let state = signals.synchronise();
     let mut form = state.form.clone();
     // The drawing beside the entries shows their present result.
-    let told = form.synchronisation();
+    let synchronisation = form.synchronisation();
     // Two rows, so that also in one column the result stands next to what it comes from.
     split(
         ui,
         theme,
         COLUMNS,
         (&mut form, &mut *actions),
-        |ui, (form, actions)| positions(ui, theme, form, state, told.as_ref().err(), device, actions),
+        |ui, (form, actions)| positions(ui, theme, form, state, synchronisation.as_ref().err(), device, actions),
         |ui, _| {
-            if let Ok(told) = &told {
-                result(ui, theme, told);
+            if let Ok(synchronisation) = &synchronisation {
+                result(ui, theme, synchronisation);
             }
         },
     );
@@ -85,16 +85,16 @@ fn positions(
         typed(ui, theme, "synchronise.absolute", &mut form.absolute, "0x2A5F");
         entry(ui, theme, &say(theme, "synchronise.analogue"), |ui| {
             let ways = [
-                (ToldAs::Periods, "synchronise.in_periods"),
-                (ToldAs::Degrees, "synchronise.in_degrees"),
-                (ToldAs::Volts, "synchronise.in_volts"),
+                (PhaseInput::Periods, "synchronise.in_periods"),
+                (PhaseInput::Degrees, "synchronise.in_degrees"),
+                (PhaseInput::Volts, "synchronise.in_volts"),
             ];
             let ways = ways.map(|(way, id)| (way, say(theme, id)));
-            choice(ui, &say(theme, "synchronise.analogue"), &mut form.told_as, ways);
+            choice(ui, &say(theme, "synchronise.analogue"), &mut form.phase_input, ways);
         });
-        match form.told_as {
-            ToldAs::Periods | ToldAs::Degrees => typed(ui, theme, "synchronise.phase", &mut form.phase, "0"),
-            ToldAs::Volts => {
+        match form.phase_input {
+            PhaseInput::Periods | PhaseInput::Degrees => typed(ui, theme, "synchronise.phase", &mut form.phase, "0"),
+            PhaseInput::Volts => {
                 typed(ui, theme, "synchronise.sine", &mut form.sine_v, "0");
                 typed(ui, theme, "synchronise.cosine", &mut form.cosine_v, "0");
             }
@@ -161,15 +161,15 @@ fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Actio
     });
 }
 
-fn result(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
-    let (verdict, words) = told.words();
+fn result(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
+    let (verdict, words) = synchronisation.words();
     let (_, colour) = controls::verdict(theme, verdict);
     card(ui, theme, TEXTS.text("synchronise.result"), |ui| {
-        let fine = told.result.ok();
+        let fine = synchronisation.result.ok();
         let (label, value) = (say(theme, "synchronise.ring"), theme.words(&words));
         let ring = StepRing {
-            step: told.step,
-            phase: told.phase.periods(),
+            step: synchronisation.step,
+            phase: synchronisation.phase.periods(),
             apart: fine.map(|fine| fine.residual_periods),
             colour: colour.into(),
             label: &label,
@@ -187,25 +187,35 @@ fn result(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
             |ui, ()| {
                 ui.vertical_centered(|ui| step_ring(ui, theme, &ring, RING.min(ui.available_width())));
             },
-            |ui, ()| numbers(ui, theme, told),
+            |ui, ()| numbers(ui, theme, synchronisation),
         );
     });
 }
 
-fn numbers(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
+fn numbers(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
-    row(ui, theme, &say(theme, "synchronise.period"), theme.mono(told.period.to_string()));
+    row(ui, theme, &say(theme, "synchronise.period"), theme.mono(synchronisation.period.to_string()));
     // In the colours that they have in the ring.
-    row(ui, theme, &say(theme, "synchronise.step"), theme.mono(format!("{}/32", told.step)).color(series(theme, 0)));
-    row(ui, theme, &say(theme, "synchronise.phase_now"), number(told.phase.periods(), 5, "").color(series(theme, 1)));
-    row(ui, theme, &say(theme, "synchronise.difference"), number(told.difference_steps, 2, "/32"));
-    if let Ok(fine) = told.result {
+    row(
+        ui,
+        theme,
+        &say(theme, "synchronise.step"),
+        theme.mono(format!("{}/32", synchronisation.step)).color(series(theme, 0)),
+    );
+    row(
+        ui,
+        theme,
+        &say(theme, "synchronise.phase_now"),
+        number(synchronisation.phase.periods(), 5, "").color(series(theme, 1)),
+    );
+    row(ui, theme, &say(theme, "synchronise.difference"), number(synchronisation.difference_steps, 2, "/32"));
+    if let Ok(fine) = synchronisation.result {
         let correction = if fine.correction == 0 { "0".to_owned() } else { format!("{:+}", fine.correction) };
         row(ui, theme, &say(theme, "synchronise.correction"), theme.mono(correction));
         row(ui, theme, &say(theme, "synchronise.residual"), number(fine.residual_periods * 32.0, 2, "/32"));
         row(ui, theme, &say(theme, "synchronise.steps"), theme.mono(format!("{:X}h", fine.steps(16))));
     }
-    if let Some(degrees) = told.degrees() {
+    if let Some(degrees) = synchronisation.degrees() {
         row(ui, theme, &say(theme, "synchronise.shaft"), number(degrees, 6, "°"));
     }
 }

@@ -37,7 +37,7 @@ const TIME_UNITS: [(TimeUnit, &str); 4] = [
 ];
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, actions: &mut Vec<Action>) {
-    let mut wish = |action: Signals| actions.push(Action::tool(action));
+    let mut act = |action: Signals| actions.push(Action::tool(action));
     let mut again = false;
     let aside = |ui: &mut Ui| {
         again = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "columns.detect")).clicked();
@@ -48,11 +48,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
         two_columns(
             ui,
             theme,
-            (&mut *view, &mut wish),
-            |ui, (_, wish)| columns(ui, theme, table, *wish),
-            |ui, (view, wish)| {
-                form(ui, theme, table, *wish);
-                volts(ui, theme, table, view, *wish);
+            (&mut *view, &mut act),
+            |ui, (_, act)| columns(ui, theme, table, *act),
+            |ui, (view, act)| {
+                form(ui, theme, table, *act);
+                volts(ui, theme, table, view, *act);
             },
         );
         if let Some((_, Some(why))) = &view.volts {
@@ -68,7 +68,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     });
     if again {
         view.volts = None;
-        wish(Signals::Detect);
+        act(Signals::Detect);
     }
 }
 
@@ -88,26 +88,26 @@ fn lines(ui: &mut Ui, theme: &Theme, table: &Table) {
     });
 }
 
-fn form(ui: &mut Ui, theme: &Theme, table: &Table, wish: &mut impl FnMut(Signals)) {
+fn form(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
     let word = say(theme, "columns.delimiter");
     let mut delimiter = table.delimiter();
     entry(ui, theme, &word, |ui| {
         let options = DELIMITERS.map(|(own, id)| (Some(own), say(theme, id)));
         if choice(ui, &word, &mut delimiter, options) {
-            delimiter.into_iter().for_each(|own| wish(Signals::SetDelimiter(own)));
+            delimiter.into_iter().for_each(|own| act(Signals::SetDelimiter(own)));
         }
     });
     let word = say(theme, "columns.decimal");
-    let mut comma = table.wishes.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
+    let mut comma = table.hints.decimal_comma.or(table.layout.as_ref().map(|layout| layout.decimal_comma));
     entry(ui, theme, &word, |ui| {
         let options = [(Some(false), say(theme, "columns.point")), (Some(true), say(theme, "columns.comma"))];
         if choice(ui, &word, &mut comma, options) {
-            comma.into_iter().for_each(|own| wish(Signals::SetDecimalComma(own)));
+            comma.into_iter().for_each(|own| act(Signals::SetDecimalComma(own)));
         }
     });
 }
 
-fn columns(ui: &mut Ui, theme: &Theme, table: &Table, wish: &mut impl FnMut(Signals)) {
+fn columns(ui: &mut Ui, theme: &Theme, table: &Table, act: &mut impl FnMut(Signals)) {
     for (column, id) in COLUMNS {
         let word = say(theme, id);
         let mut number = table.column(column);
@@ -120,29 +120,29 @@ fn columns(ui: &mut Ui, theme: &Theme, table: &Table, wish: &mut impl FnMut(Sign
                 None => (Some(own), own.to_string()),
             });
             if choice(ui, &word, &mut number, none.into_iter().chain(numbers)) {
-                wish(Signals::SetColumn(column, number));
+                act(Signals::SetColumn(column, number));
             }
         });
         if column == Column::Time && number.is_some() {
             let word = say(theme, "columns.time_unit");
-            let mut unit = table.wishes.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
+            let mut unit = table.hints.time_unit.or(table.layout.as_ref().map(|layout| layout.time_unit));
             entry(ui, theme, &word, |ui| {
                 let options = TIME_UNITS.map(|(own, word)| (Some(own), word.to_owned()));
                 if choice(ui, &word, &mut unit, options) {
-                    unit.into_iter().for_each(|own| wish(Signals::SetTimeUnit(own)));
+                    unit.into_iter().for_each(|own| act(Signals::SetTimeUnit(own)));
                 }
             });
         }
     }
 }
 
-fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, wish: &mut impl FnMut(Signals)) {
-    let volts = table.wishes.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
+fn volts(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut TableUiState, act: &mut impl FnMut(Signals)) {
+    let volts = table.hints.volts_per_unit.or(table.layout.as_ref().map(|layout| layout.volts_per_unit));
     let shown = volts.map(|volts| theme.plain(volts)).unwrap_or_default();
     let word = say(theme, "columns.volts");
     entry(ui, theme, &word, |ui| {
         settled_entry(ui, &mut view.volts, &shown, 64.0, &word, |text| {
-            wish(Signals::SetVolts(forms::volts_per_unit(text)?));
+            act(Signals::SetVolts(forms::volts_per_unit(text)?));
             Ok(())
         });
     });

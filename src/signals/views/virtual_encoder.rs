@@ -11,7 +11,7 @@ use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, p
 use crate::ui::{Theme, icons};
 
 /// A setting that is slid: where its slider ends (more can be typed), and its decimals.
-struct Slid {
+struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
     decimals: usize,
@@ -19,33 +19,33 @@ struct Slid {
     logarithmic: bool,
 }
 
-const fn slid(quantity: Quantity, least: f64, most: f64, decimals: usize) -> Slid {
-    Slid { quantity, ends: (least, most), decimals, logarithmic: false }
+const fn slider_spec(quantity: Quantity, least: f64, most: f64, decimals: usize) -> SliderSpec {
+    SliderSpec { quantity, ends: (least, most), decimals, logarithmic: false }
 }
 
-const fn wide(quantity: Quantity, least: f64, most: f64, decimals: usize) -> Slid {
-    Slid { quantity, ends: (least, most), decimals, logarithmic: true }
+const fn wide(quantity: Quantity, least: f64, most: f64, decimals: usize) -> SliderSpec {
+    SliderSpec { quantity, ends: (least, most), decimals, logarithmic: true }
 }
 
-const SIGNAL: [Slid; 9] = [
+const SIGNAL: [SliderSpec; 9] = [
     wide(Quantity::Speed, -6000.0, 6000.0, 1),
     wide(Quantity::Periods, 1.0, 65_536.0, 0),
     wide(Quantity::Rate, 1_000.0, 1_000_000.0, 0),
-    slid(Quantity::Amplitude, 0.0, 1.0, 3),
-    slid(Quantity::GainRatio, 0.5, 1.5, 3),
-    slid(Quantity::PhaseError, -20.0, 20.0, 2),
-    slid(Quantity::OffsetSine, -0.2, 0.2, 3),
-    slid(Quantity::OffsetCosine, -0.2, 0.2, 3),
-    slid(Quantity::Level, 0.0, 5.0, 2),
+    slider_spec(Quantity::Amplitude, 0.0, 1.0, 3),
+    slider_spec(Quantity::GainRatio, 0.5, 1.5, 3),
+    slider_spec(Quantity::PhaseError, -20.0, 20.0, 2),
+    slider_spec(Quantity::OffsetSine, -0.2, 0.2, 3),
+    slider_spec(Quantity::OffsetCosine, -0.2, 0.2, 3),
+    slider_spec(Quantity::Level, 0.0, 5.0, 2),
 ];
-const DISTURBANCES: [Slid; 8] = [
+const DISTURBANCES: [SliderSpec; 8] = [
     wide(Quantity::Noise, 0.0, 0.2, 4),
     wide(Quantity::Interference, 0.0, 0.2, 4),
     wide(Quantity::InterferenceFrequency, 10.0, 100_000.0, 0),
     wide(Quantity::Hum, 0.0, 0.2, 4),
-    slid(Quantity::HumFrequency, 16.0, 400.0, 1),
-    slid(Quantity::ThirdHarmonic, 0.0, 10.0, 2),
-    slid(Quantity::Modulation, 0.0, 20.0, 1),
+    slider_spec(Quantity::HumFrequency, 16.0, 400.0, 1),
+    slider_spec(Quantity::ThirdHarmonic, 0.0, 10.0, 2),
+    slider_spec(Quantity::Modulation, 0.0, 20.0, 1),
     wide(Quantity::Eccentricity, 0.0, 3600.0, 1),
 ];
 /// Windows to choose from, in milliseconds.
@@ -80,7 +80,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     }
 }
 
-fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[Slid], ask: &mut impl FnMut(SourceAction)) {
+fn sliders(ui: &mut Ui, theme: &Theme, settings: &Settings, list: &[SliderSpec], ask: &mut impl FnMut(SourceAction)) {
     /// Width of the number beside a slider.
     const NUMBER: f32 = 96.0;
     let label = LABELS.min(ui.available_width() * 0.4);

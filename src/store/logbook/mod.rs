@@ -76,7 +76,7 @@ pub struct Entry {
     /// When it was about to begin.
     pub at: Timestamp,
     /// The planned write, in words.
-    pub what: String,
+    pub description: String,
     /// Write cycles that were to be spent.
     pub planned_cycles: u64,
     /// The backup taken before; in its path, what is not Unicode is replaced.
@@ -257,7 +257,7 @@ fn read_entry(row: &Row<'_>) -> rusqlite::Result<Entry> {
     Ok(Entry {
         id: EntryId(row.get("id")?),
         at: row.get("at").and_then(|text: String| schema::parse_time(&text))?,
-        what: row.get("what")?,
+        description: row.get("what")?,
         planned_cycles: row.get("planned_cycles").and_then(schema::parse_cycles)?,
         backup: row.get::<_, Option<String>>("backup")?.map(PathBuf::from),
         conclusion: read_conclusion(row)?,

@@ -79,11 +79,18 @@ fn history_is_newest_first_and_complete() {
     let history = logbook.history(&own, 10).unwrap();
     let conclusion = Conclusion { at: at(1), outcome: Outcome::Failed(String::new()), cycles_spent: 1 };
     let expected = [
-        Entry { id: second, at: at(5), what: "second".into(), planned_cycles: 2, backup: None, conclusion: None },
+        Entry {
+            id: second,
+            at: at(5),
+            description: "second".into(),
+            planned_cycles: 2,
+            backup: None,
+            conclusion: None,
+        },
         Entry {
             id: first,
             at: at(0),
-            what: "first".into(),
+            description: "first".into(),
             planned_cycles: 1,
             backup: Some(backup),
             conclusion: Some(conclusion),

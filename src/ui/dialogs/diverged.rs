@@ -48,10 +48,10 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
             ui.label(RichText::new(theme.say("diverged.open")).color(theme.palette.warn));
         }
     });
-    let says = |side: Side| row.says(side).map_or_else(|| theme.say("diverged.nothing"), shortened);
+    let value = |side: Side| row.value(side).map_or_else(|| theme.say("diverged.nothing"), shortened);
     let sides = [(Side::Theirs, "diverged.theirs"), (Side::Mine, "diverged.mine")];
     let choices = sides.map(|(side, word)| {
-        let text = Text::new(word).with("value", says(side));
+        let text = Text::new(word).with("value", value(side));
         (Some(side), theme.words(&text))
     });
     let mut take = row.take;

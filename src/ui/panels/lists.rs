@@ -50,7 +50,7 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
                     ui.label(RichText::new(icon).color(colour));
                 });
                 row.col(|ui| {
-                    ui.label(theme.words(&job.what)).on_hover_text(&job.about);
+                    ui.label(theme.words(&job.title)).on_hover_text(&job.about);
                 });
                 row.col(|ui| {
                     ui.label(RichText::new(&words).color(colour)).on_hover_text(&words);
@@ -73,7 +73,7 @@ pub(in crate::ui) fn log_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
                 ui.label(theme.mono(notice.at.strftime(TIME).to_string()).color(palette.muted));
                 ui.label(RichText::new(icon).color(colour));
                 let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
-                let about = notice.whose(|text| theme.words(text));
+                let about = notice.prefix(|text| theme.words(text));
                 ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(true));
             });
         }

@@ -32,7 +32,7 @@ pub(in crate::ui) fn live_ui(
     views: &mut Views,
     actions: &mut Vec<Action>,
 ) {
-    let Some(device) = studio.shown() else {
+    let Some(device) = studio.selected_device() else {
         empty(ui, theme, &theme.say("live.nothing"), None);
         return;
     };
@@ -70,8 +70,8 @@ pub(in crate::ui) fn plot_ui(
     actions: &mut Vec<Action>,
 ) {
     let empty = theme.say(if device.is_connected() { "live.no_curve" } else { "live.nothing" });
-    let desk = RecorderOwner::Device(device.id());
-    plot::plot_ui(ui, theme, device.recorder(), desk, &mut views.plot, &empty, actions);
+    let owner = RecorderOwner::Device(device.id());
+    plot::plot_ui(ui, theme, device.recorder(), owner, &mut views.plot, &empty, actions);
     let dropped = device.dropped();
     if dropped > 0 {
         let text = Text::new("live.dropped").with("count", dropped);

@@ -14,7 +14,7 @@ const TIME: &str = "%H:%M:%S%.3f";
 
 /// Draws the panel.
 pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, _views: &mut Views) {
-    let lines = studio.shown().map(AnyDevice::trace);
+    let lines = studio.selected_device().map(AnyDevice::trace);
     let Some(trace) = lines.filter(|trace| !trace.lines().is_empty()) else {
         empty(ui, theme, &theme.say("trace.nothing"), None);
         return;

@@ -52,12 +52,12 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
     let ticks = if context.recorder.counts() { axes::sample_ticks } else { axes::time_ticks };
     let ticks = ticks(from, to, most, theme.language);
     let grid = Stroke::new(1.0, theme.palette.line);
-    let foot = chart.bottom() + 3.0;
+    let bottom = chart.bottom() + 3.0;
     let mut free = chart.left() - 30.0;
     if let Some(base) = &ticks.base {
         let words = painter.layout_no_wrap(base.clone(), font.clone(), theme.palette.text.into());
         free = chart.left() + words.size().x + 8.0;
-        painter.galley(pos2(chart.left(), foot), words, Color32::PLACEHOLDER);
+        painter.galley(pos2(chart.left(), bottom), words, Color32::PLACEHOLDER);
     }
     for (at, label) in ticks.ticks {
         let x = layout.time.x(at).round();
@@ -71,7 +71,7 @@ fn time_axis(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &F
         let left = (x - words.size().x / 2.0).min(painter.clip_rect().right() - words.size().x - 4.0);
         if left >= free {
             free = left + words.size().x + 8.0;
-            painter.galley(pos2(left, foot), words, Color32::PLACEHOLDER);
+            painter.galley(pos2(left, bottom), words, Color32::PLACEHOLDER);
         }
     }
 }

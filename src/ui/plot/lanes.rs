@@ -50,14 +50,14 @@ pub(super) struct Layout {
 pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
     /// The inputs of each picture.
-    made: Vec<(LineId, Made)>,
+    made: Vec<(LineId, PictureInputs)>,
     /// How much room the labels of the values took.
     gutter: f32,
 }
 
 /// The inputs of a picture: if they are unchanged, so is the picture.
 #[derive(Clone, PartialEq)]
-struct Made {
+struct PictureInputs {
     samples: Option<Stamp>,
     all: Range<u64>,
     grid: Grid,
@@ -70,13 +70,13 @@ impl Reduced {
 
     /// Makes the pictures of what is shown, as far as something has changed.
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
-        let shown = |id: &LineId| recorder.shown().any(|line| line.id == *id);
+        let shown = |id: &LineId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
         self.made.retain(|(id, _)| shown(id));
-        let mut cuts: Vec<(Made, GridCut)> = Vec::new();
-        for line in recorder.shown() {
+        let mut cuts: Vec<(PictureInputs, GridCut)> = Vec::new();
+        for line in recorder.visible_series() {
             let Some(history) = recorder.history(line) else { continue };
-            let wanted = Made { samples: recorder.stamp(line), all: history.all(), grid: *grid };
+            let wanted = PictureInputs { samples: recorder.stamp(line), all: history.all(), grid: *grid };
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }
@@ -150,7 +150,7 @@ fn letters(lanes: &[Lane]) -> usize {
 
 /// The lines of each lane.
 fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
-    let shown: Vec<&Series> = recorder.shown().collect();
+    let shown: Vec<&Series> = recorder.visible_series().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
 }
 

@@ -24,12 +24,12 @@ use crate::app::{Action, RecorderOwner};
 #[derive(Default)]
 pub struct PlotUiState {
     /// Whose plot it was.
-    desk: Option<RecorderOwner>,
+    owner: Option<RecorderOwner>,
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
     /// A picture of it that is wanted.
-    shot: snapshot::Shot,
+    shot: snapshot::Screenshot,
     /// It takes the place of the page; `None`: it cannot.
     large: Option<bool>,
 }
@@ -57,13 +57,13 @@ impl PlotUiState {
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
-    desk: RecorderOwner,
+    owner: RecorderOwner,
     actions: &'a mut Vec<Action>,
 }
 
 impl Context<'_> {
     fn act(&mut self, action: recorder::RecorderAction) {
-        self.actions.push(Action::Recorder(self.desk, action));
+        self.actions.push(Action::Recorder(self.owner, action));
     }
 }
 
@@ -72,16 +72,16 @@ pub fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,
     recorder: &Recorder,
-    desk: RecorderOwner,
+    owner: RecorderOwner,
     view: &mut PlotUiState,
     invitation: &str,
     actions: &mut Vec<Action>,
 ) {
-    if view.desk.replace(desk).is_some_and(|before| before != desk) {
+    if view.owner.replace(owner).is_some_and(|before| before != owner) {
         // Drags and typed text belonged to another one.
-        *view = PlotUiState { desk: view.desk, large: view.large, ..PlotUiState::default() };
+        *view = PlotUiState { owner: view.owner, large: view.large, ..PlotUiState::default() };
     }
-    let context = &mut Context { theme, recorder, desk, actions };
+    let context = &mut Context { theme, recorder, owner, actions };
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
     let below = ui.available_height();
@@ -121,7 +121,7 @@ fn chart_ui(
     if size.x < 80.0 {
         return None;
     }
-    if recorder.is_empty() || recorder.shown().next().is_none() {
+    if recorder.is_empty() || recorder.visible_series().next().is_none() {
         let words = if recorder.is_empty() { invitation.to_owned() } else { theme.say("recorder.no_line") };
         let mut inner = ui.new_child(egui::UiBuilder::new().max_rect(rect.shrink(8.0)));
         inner.add_space((rect.height() / 2.0 - 36.0).max(0.0));

@@ -28,12 +28,12 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
             }
         });
     }
-    let measured = recorder.shown().any(|line| recorder.measure(line).is_some());
+    let measured = recorder.visible_series().any(|line| recorder.measure(line).is_some());
     if measured && ui.available_width() > WIDE {
         table(ui, context, hovered);
         return;
     }
-    for line in recorder.shown() {
+    for line in recorder.visible_series() {
         ui.horizontal_wrapped(|ui| {
             name(ui, theme, line);
             ui.label(small(theme, now(context, line, hovered)));
@@ -57,7 +57,7 @@ fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     };
     egui::Grid::new("measured").num_columns(11).spacing(vec2(theme.space.groups, 2.0)).show(ui, |ui| {
         let rows: Vec<(&Series, Measured)> =
-            recorder.shown().filter_map(|line| recorder.measure(line).map(|own| (line, own))).collect();
+            recorder.visible_series().filter_map(|line| recorder.measure(line).map(|own| (line, own))).collect();
         let longest = rows.iter().map(|(line, own)| figures(theme, line, own)).max_by_key(Vec::len).unwrap_or_default();
         (0..3).for_each(|_| {
             ui.label("");

@@ -9,7 +9,7 @@ use crate::app::{Action, Picture};
 
 /// A picture that is wanted.
 #[derive(Default)]
-pub(super) enum Shot {
+pub(super) enum Screenshot {
     #[default]
     None,
     /// It is asked for as soon as the plot is in sight; so many frames were waited.
@@ -21,44 +21,44 @@ pub(super) enum Shot {
 /// Frames in which the plot has to come into sight.
 const FRAMES: usize = 60;
 
-impl Shot {
+impl Screenshot {
     /// Wishes a picture: not of this frame, in which the menu is open that it was wished in.
-    pub(super) fn wish(&mut self, ctx: &Context) {
-        *self = Shot::Wanted(0);
+    pub(super) fn request(&mut self, ctx: &Context) {
+        *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
 
     /// The next frame may be the one that is kept.
     pub(super) fn is_wanted(&self) -> bool {
-        !matches!(self, Shot::None)
+        !matches!(self, Screenshot::None)
     }
 
     /// The plot was drawn at `plot`: asks for the pixels when it can be seen as a whole, and takes its part of them when they
     /// have come.
     pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
-            Shot::None => {}
+            Screenshot::None => {}
             // The menu closes in the first frame.
-            Shot::Wanted(0) => {
-                *self = Shot::Wanted(1);
+            Screenshot::Wanted(0) => {
+                *self = Screenshot::Wanted(1);
                 ui.ctx().request_repaint();
             }
-            Shot::Wanted(frames) if !ui.clip_rect().expand(0.5).contains_rect(plot) => {
+            Screenshot::Wanted(frames) if !ui.clip_rect().expand(0.5).contains_rect(plot) => {
                 *frames += 1;
                 if *frames > FRAMES {
-                    *self = Shot::None;
+                    *self = Screenshot::None;
                     actions.push(Action::PictureCut);
                     return;
                 }
                 ui.scroll_to_rect(plot, None);
                 ui.ctx().request_repaint();
             }
-            Shot::Wanted(_) => *self = Shot::Asked(ask(ui.ctx()), plot),
-            Shot::Asked(place, before) => match place.get().cloned() {
+            Screenshot::Wanted(_) => *self = Screenshot::Asked(ask(ui.ctx()), plot),
+            Screenshot::Asked(place, before) => match place.get().cloned() {
                 // The pixels are those of the frame before.
                 Some(image) => {
                     let wanted = *before;
-                    *self = Shot::None;
+                    *self = Screenshot::None;
                     actions.extend(part(&image, wanted, ui.ctx().pixels_per_point()).map(Action::AskPicture));
                 }
                 None => *before = plot,
@@ -120,7 +120,7 @@ mod tests {
     }
 
     /// Draws a frame with a plot of this place in an area of this size; what was asked for in it.
-    fn frame(ctx: &Context, shot: &mut Shot, area: f32, plot: Rect) -> Vec<Action> {
+    fn frame(ctx: &Context, shot: &mut Screenshot, area: f32, plot: Rect) -> Vec<Action> {
         let mut actions = Vec::new();
         let screen = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(area, area));
         let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
@@ -137,16 +137,16 @@ mod tests {
     #[test]
     fn the_picture_is_of_the_plot_as_it_stood_in_its_frame() {
         let ctx = Context::default();
-        let mut shot = Shot::default();
+        let mut shot = Screenshot::default();
         let place = |left: f32| Rect::from_min_size(pos2(left, 2.0), egui::vec2(3.0, 2.0));
         assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty() && !shot.is_wanted());
-        shot.wish(&ctx);
+        shot.request(&ctx);
         assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty());
-        assert!(matches!(shot, Shot::Wanted(1)), "the menu is still open in this frame");
+        assert!(matches!(shot, Screenshot::Wanted(1)), "the menu is still open in this frame");
         frame(&ctx, &mut shot, 8.0, place(1.0));
         // It moves in the frame that is kept, and again before the pixels have come.
         frame(&ctx, &mut shot, 8.0, place(4.0));
-        let Shot::Asked(pixels, _) = &shot else { panic!() };
+        let Screenshot::Asked(pixels, _) = &shot else { panic!() };
         let mut image = ColorImage::filled([8, 8], Color32::BLACK);
         image.pixels[2 * 8 + 4] = Color32::RED;
         pixels.set(Arc::new(image)).unwrap();
@@ -162,8 +162,8 @@ mod tests {
     #[test]
     fn a_plot_that_is_not_wholly_in_sight_gives_no_picture() {
         let ctx = Context::default();
-        let mut shot = Shot::default();
-        shot.wish(&ctx);
+        let mut shot = Screenshot::default();
+        shot.request(&ctx);
         let plot = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(8.0, 20.0));
         let told = (0..100).flat_map(|_| frame(&ctx, &mut shot, 8.0, plot)).collect::<Vec<_>>();
         assert!(matches!(&told[..], [Action::PictureCut]) && !shot.is_wanted());

@@ -94,7 +94,7 @@ fn span(ui: &mut Ui, context: &mut Context<'_>) {
 
 fn trigger_menu(ui: &mut Ui, context: &mut Context<'_>, form: &mut trigger::Form) {
     let icon = icons::LIGHTNING;
-    let lines = context.recorder.shown().next().is_some();
+    let lines = context.recorder.visible_series().next().is_some();
     if !lines {
         icon_button(ui, false, icon, &context.theme.say("recorder.trigger"));
         return;
@@ -135,25 +135,25 @@ fn lines_menu(ui: &mut Ui, context: &mut Context<'_>) {
     actions.into_iter().for_each(|action| context.act(action));
 }
 
-fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Shot) {
+fn export_menu(ui: &mut Ui, context: &mut Context<'_>, shot: &mut snapshot::Screenshot) {
     let theme = context.theme;
-    let (some, desk) = (!context.recorder.is_empty(), context.desk);
+    let (some, owner) = (!context.recorder.is_empty(), context.owner);
     let mut chosen = None;
     icon_menu(ui, icons::DOWNLOAD_SIMPLE, &theme.say("recorder.export"), |ui| {
         ui.set_min_width(200.0);
         for (id, visible) in [("recorder.csv_visible", true), ("recorder.csv_all", false)] {
             if ui.add_enabled(some, egui::Button::new(theme.say(id))).clicked() {
-                chosen = Some(Studio::AskTable { desk, visible });
+                chosen = Some(Studio::AskTable { owner, visible });
                 ui.close();
             }
         }
         if ui.button(theme.say("recorder.png")).clicked() {
-            shot.wish(ui.ctx());
+            shot.request(ui.ctx());
             ui.close();
         }
         ui.separator();
         if enabled_button(ui, some, icons::TRASH, &theme.say("live.clear")).clicked() {
-            chosen = Some(Studio::AskForget(desk));
+            chosen = Some(Studio::AskForget(owner));
             ui.close();
         }
     });

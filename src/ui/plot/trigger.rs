@@ -49,7 +49,7 @@ pub(super) fn form_ui(
 ) {
     ui.set_width(300.0);
     if recorder.line(form.line).is_none_or(|line| !line.shown)
-        && let Some(first) = recorder.shown().next()
+        && let Some(first) = recorder.visible_series().next()
     {
         form.line = first.id;
     }
@@ -58,7 +58,8 @@ pub(super) fn form_ui(
         theme.say(id)
     };
     let word_of = label(ui, "trigger.line");
-    let lines: Vec<(LineId, String)> = recorder.shown().map(|line| (line.id, theme.words(&line.name))).collect();
+    let lines: Vec<(LineId, String)> =
+        recorder.visible_series().map(|line| (line.id, theme.words(&line.name))).collect();
     options(ui, &word_of, &mut form.line, lines);
     let word_of = label(ui, "trigger.when");
     options(ui, &word_of, &mut form.when, When::ALL.map(|when| (when, theme.say(word(when)))));

@@ -61,7 +61,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     legend(ui, theme, chart.traces);
     let own = *theme;
     let (x_unit, y_unit) = (chart.x_unit.to_owned(), chart.y_unit.to_owned());
-    let told = move |hover: &HoverPosition<'_>| match hover {
+    let tooltip = move |hover: &HoverPosition<'_>| match hover {
         HoverPosition::NearDataPoint { plot_name, position, .. } => {
             let (x, y) = (figures(&own, position.x), figures(&own, position.y));
             Some(format!("{plot_name}\n{x} {x_unit}\n{y} {y_unit}"))
@@ -83,7 +83,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
             .grid_spacing(egui::Rangef::new(8.0, 24.0))
             .grid_color(theme.palette.line.into())
             .set_margin_fraction(Vec2::new(0.0, if chart.marks.is_empty() { 0.08 } else { 0.16 }))
-            .label_formatter(told)
+            .label_formatter(tooltip)
             .custom_x_axes(vec![axis(AxisHints::new_x(), own, 16.0)])
             .custom_y_axes(vec![axis(AxisHints::new_y(), own, 12.0)])
             .auto_bounds(true);
@@ -106,7 +106,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
             for (x, y, words) in chart.marks {
                 let text = egui::RichText::new(words).size(theme.sizes.caption).color(theme.palette.text);
                 let place = PlotPoint::new(*x, *y);
-                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(beside(chart.traces, *x)));
+                plot.text(egui_plot::Text::new(words.clone(), place, text).anchor(label_side(chart.traces, *x)));
             }
         });
         response.response.widget_info(|| {
@@ -157,14 +157,14 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
             Bar::new(x + off, *y).width(width * 0.9).fill(fill).stroke(Stroke::new(1.0, colour)).name(&trace.name)
         };
         let (own, name) = (*theme, trace.name.clone());
-        let told = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
+        let tooltip = move |bar: &Bar, _: &BarChart| format!("{name}\n{}", figures(&own, bar.value));
         let chart = BarChart::new(trace.name.clone(), trace.points.iter().map(bar).collect());
-        plot.bar_chart(chart.color(colour).element_formatter(Box::new(told)));
+        plot.bar_chart(chart.color(colour).element_formatter(Box::new(tooltip)));
     }
 }
 
 /// On which side of a place its words have room.
-fn beside(traces: &[Trace], x: f64) -> Align2 {
+fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
     match (x - least) / (most - least).max(f64::MIN_POSITIVE) {

@@ -20,7 +20,7 @@ use super::series;
 use crate::analysis::quality::Verdict;
 use crate::ui::{Theme, controls};
 
-use place::{Placed, Want, place};
+use place::{Placed, SpaceNeeded, place};
 
 /// A field of a frame.
 #[derive(Clone, Debug, Default)]
@@ -58,16 +58,17 @@ const VALUE: f32 = 18.0;
 
 pub fn frame_strip(ui: &mut Ui, theme: &Theme, strip: &FrameStrip<'_>) {
     let words: Vec<Words> = strip.fields.iter().map(|field| Words::of(ui, theme, field)).collect();
-    let wants = strip.fields.iter().zip(&words).map(|(field, words)| Want { bits: field.bits, words: words.width() });
+    let wants =
+        strip.fields.iter().zip(&words).map(|(field, words)| SpaceNeeded { bits: field.bits, words: words.width() });
     let placing = place(&wants.collect::<Vec<_>>(), ui.available_width(), theme.space.between);
     let has_values = strip.fields.iter().any(|field| !field.value.is_empty());
     let line = CELL + BAR + NAME + if has_values { VALUE } else { 0.0 } + theme.space.inside;
     let height = placing.lines as f32 * line + placing.lines.saturating_sub(1) as f32 * theme.space.between;
     let (outer, response) = ui.allocate_exact_size(Vec2::new(placing.width, height), Sense::hover());
-    let told: Vec<String> = strip.fields.iter().map(StripField::words).collect();
+    let values: Vec<String> = strip.fields.iter().map(StripField::words).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, strip.label);
-        info.current_text_value = Some(told.join(", "));
+        info.current_text_value = Some(values.join(", "));
         info
     });
     for piece in &placing.pieces {

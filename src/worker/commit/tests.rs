@@ -159,7 +159,7 @@ fn agreed(seen: Option<u64>, ops: &[u64], force_wear: bool) -> ApprovedPlan<Prep
 
 fn write(spy: &mut Spy, agreed: &ApprovedPlan<Prepared>) -> Result<Committed<Written>, Unfinished<Prepared, Spy, ()>> {
     let (store, mut told) = (spy.store.clone(), Vec::new());
-    let ended = write_plan(&store, true, agreed, spy, &mut |at| told.push((at.done, at.total, at.what.0)));
+    let ended = write_plan(&store, true, agreed, spy, &mut |at| told.push((at.done, at.total, at.step.0)));
     let applied = spy.steps.iter().filter(|step| **step == "apply").count();
     let ops = (0..).zip(&agreed.prepared.plan.ops).map(|(at, op)| (at, agreed.prepared.plan.ops.len() as u64, op.0));
     assert_eq!(told, ops.take(applied).collect::<Vec<_>>(), "each is told before it begins");

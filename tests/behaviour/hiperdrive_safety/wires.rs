@@ -10,7 +10,7 @@ use std::time::Duration;
 
 /// A way of packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum Transport {
     ToTarget,
     ToHost,
 }
@@ -67,7 +67,7 @@ impl Wires {
             spawn(move || way.pass_stream(from, to, 0x8001, 1));
             spawn(move || passing.pass_stream(target, host, 0x8000, 0));
         });
-        for way in [Way::ToTarget, Way::ToHost] {
+        for way in [Transport::ToTarget, Transport::ToHost] {
             let passing = shared.clone();
             spawn(move || passing.pass_packets(way));
         }
@@ -85,11 +85,11 @@ impl Wires {
         }
     }
 
-    pub(super) fn cut(&self, way: Way) {
+    pub(super) fn cut(&self, way: Transport) {
         self.shared.cut[way as usize].store(true, Ordering::SeqCst);
     }
 
-    pub(super) fn mend(&self, way: Way) {
+    pub(super) fn mend(&self, way: Transport) {
         self.shared.cut[way as usize].store(false, Ordering::SeqCst);
     }
 
@@ -159,17 +159,17 @@ impl Shared {
         let _ = to.shutdown(Shutdown::Both);
     }
 
-    fn pass_packets(&self, way: Way) {
+    fn pass_packets(&self, way: Transport) {
         let (socket, other) = match way {
-            Way::ToTarget => (&self.sockets[0], &self.sockets[1]),
-            Way::ToHost => (&self.sockets[1], &self.sockets[0]),
+            Transport::ToTarget => (&self.sockets[0], &self.sockets[1]),
+            Transport::ToHost => (&self.sockets[1], &self.sockets[0]),
         };
         let mut buffer = [0; 1500];
         while !self.end.load(Ordering::SeqCst) {
             let Ok((count, _)) = socket.recv_from(&mut buffer) else { continue };
             let port = match way {
-                Way::ToTarget => self.target,
-                Way::ToHost => self.host.load(Ordering::SeqCst),
+                Transport::ToTarget => self.target,
+                Transport::ToHost => self.host.load(Ordering::SeqCst),
             };
             if !self.cut[way as usize].load(Ordering::SeqCst) {
                 // Nobody may be there any more.

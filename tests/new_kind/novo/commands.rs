@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use encoder_studio::app::Given;
 use encoder_studio::cli::{
     Command, Common, DeviceCommands, Done, Failure, Output, Position, Restore, Result, Runs, Save, Simulate, Simulated,
-    Unrestored, agreed, check_wear, keep, plan, readings, restore_options, settings, to_restore, write_restore,
+    Unrestored, agreed, check_wear, plan, readings, restore_options, save_profile, settings, to_restore, write_restore,
 };
 use encoder_studio::profile::{Body, Operation};
 use encoder_studio::result_of;
@@ -94,7 +94,7 @@ fn position(common: &Common, output: &Output, position: &Position) -> Result {
 }
 
 fn save(common: &Common, output: &Output, save: &Save) -> Result {
-    keep(&save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
+    save_profile(&save.file, Body::new(survey(&mut Runner::open(common)?)?))?;
     output.show(&json!({ "file": save.file }), &format!("{}\n", save.file.display()))?;
     Ok(Done::Well)
 }

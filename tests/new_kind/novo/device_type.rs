@@ -54,7 +54,7 @@ impl Kind for Novo {
             _ => explain::plain(error),
         }]
     }
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         let Some(Error::Link(error)) = error.device() else { return None };
         Some(explain::link(error))
     }

@@ -11,7 +11,7 @@ use encoder_studio::store::{DeviceKey, Store};
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::commit::{ApprovedPlan, cycles_seen, write_plan};
 use encoder_studio::worker::open::{check_parameters, inside, leads_elsewhere, open_bytes};
-use encoder_studio::worker::{self, Device, OpenError, Progress, Session, SessionContext, Tell, Watched};
+use encoder_studio::worker::{self, Device, JobReport, OpenError, Progress, Session, SessionContext, Watched};
 
 use super::profile::{NovoPlan, NovoProfile, Op, plan};
 use super::protocol::{KIND, POSITION, REPLY, Request, SERIAL, Values, address_of, parse_reply};
@@ -102,8 +102,8 @@ pub(crate) fn device_key(serial: u16, is_virtual: bool) -> DeviceKey {
 }
 
 impl Novo {
-    pub(super) fn ask(&mut self, desk: &mut SessionContext, request: Request) -> Result<u16, Error> {
-        let Ctx { wire, clock, cancel, trace } = desk.ctx(&mut *self.0);
+    pub(super) fn ask(&mut self, context: &mut SessionContext, request: Request) -> Result<u16, Error> {
+        let Ctx { wire, clock, cancel, trace } = context.ctx(&mut *self.0);
         for _ in 0..TRIES {
             if cancel.stops_transaction() {
                 return Err(Error::Cancelled);
@@ -121,25 +121,25 @@ impl Novo {
         }
         Err(Error::Silent)
     }
-    pub(super) fn survey(&mut self, desk: &mut SessionContext) -> Result<NovoProfile, Error> {
-        let serial = self.ask(desk, Request::Read(SERIAL))?;
+    pub(super) fn survey(&mut self, context: &mut SessionContext) -> Result<NovoProfile, Error> {
+        let serial = self.ask(context, Request::Read(SERIAL))?;
         let mut values = Values::default();
         for (item, value) in values.iter_mut().enumerate() {
-            *value = self.ask(desk, Request::Read(address_of(item)))?;
+            *value = self.ask(context, Request::Read(address_of(item)))?;
         }
         Ok(NovoProfile { serial, values })
     }
-    fn prepare(&mut self, desk: &mut SessionContext, change: &Change) -> Result<Prepared, Error> {
-        let now = self.survey(desk)?;
+    fn prepare(&mut self, context: &mut SessionContext, change: &Change) -> Result<Prepared, Error> {
+        let now = self.survey(context)?;
         if let Some(profile) = change.restored.filter(|own| *own != now.serial && !change.options.allow_other_device) {
             return Err(Error::OtherDevice { profile, device: now.serial });
         }
-        let seen = cycles_seen(&desk.store, &device_key(now.serial, desk.is_virtual));
+        let seen = cycles_seen(&context.store, &device_key(now.serial, context.is_virtual));
         Ok(Prepared { serial: now.serial, plan: plan(&now, &change.values), seen })
     }
 }
 
-pub(super) type Told<'t> = &'t mut dyn FnMut(Tell<Infallible, usize>);
+pub(super) type Told<'t> = &'t mut dyn FnMut(JobReport<Infallible, usize>);
 
 impl Device for Novo {
     type Job = Job;
@@ -151,22 +151,22 @@ impl Device for Novo {
     /// The item that is written.
     type JobStep = usize;
 
-    fn run(&mut self, desk: &mut SessionContext, job: Job, tell: Told<'_>) -> Result<Output, JobError> {
+    fn run(&mut self, context: &mut SessionContext, job: Job, tell: Told<'_>) -> Result<Output, JobError> {
         Ok(match job {
-            Job::Survey => Output::Surveyed(self.survey(desk)?),
-            Job::Position => Output::Position(self.sample(desk)?),
-            Job::Prepare(change) => Output::Prepared(Box::new(self.prepare(desk, &change)?)),
+            Job::Survey => Output::Surveyed(self.survey(context)?),
+            Job::Position => Output::Position(self.sample(context)?),
+            Job::Prepare(change) => Output::Prepared(Box::new(self.prepare(context, &change)?)),
             Job::Commit(own) => {
-                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-                let told = &mut |at: Progress<&Op>| tell(Tell::Progress(at.map(|op| op.item)));
-                let written = write_plan(&store, is_virtual, &own, &mut NovoWrite { novo: self, desk }, told)?;
+                let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+                let told = &mut |at: Progress<&Op>| tell(JobReport::Progress(at.map(|op| op.item)));
+                let written = write_plan(&store, is_virtual, &own, &mut NovoWrite { novo: self, context }, told)?;
                 Output::Committed(Box::new(written))
             }
         })
     }
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Sample, JobError> {
-        let position = self.ask(desk, Request::Read(POSITION))?;
-        Ok((desk.clock.now(), position))
+    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+        let position = self.ask(context, Request::Read(POSITION))?;
+        Ok((context.clock.now(), position))
     }
     fn watch(&mut self, _: &mut SessionContext, what: &Infallible) -> Result<Watched<Sample>, JobError> {
         match *what {}

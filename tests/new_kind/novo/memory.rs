@@ -1,7 +1,9 @@
 //! What a person wants a Novo encoder to keep: kept over a crash, reviewed, written, saved and restored.
 
 use encoder_studio::app::review::{OpWords, Permit, Reviewed};
-use encoder_studio::app::session::{ApprovedPlanOf, Drafted, Known, ProfileFile, Saved, WithMemory, without_edits};
+use encoder_studio::app::session::{
+    ApprovedPlanOf, Drafted, KnownProfile, ProfileFile, Saved, WithMemory, without_edits,
+};
 use encoder_studio::app::{PendingEdits, Services, Text, explain};
 use encoder_studio::profile::{Body, Document, ProfileError, Written};
 use encoder_studio::store::DeviceKey;
@@ -86,7 +88,7 @@ impl Saved for Encoder {
     fn wanted_body(&self) -> Option<Body> {
         Some(Body::new(NovoProfile { values: self.wanted()?, ..self.read()?.clone() }))
     }
-    fn known_body(&self) -> Option<Known> {
+    fn known_body(&self) -> Option<KnownProfile> {
         let remarks = without_edits(self.staged.count()).into_iter().collect();
         Some(Ok((Body::new(self.read()?.clone()), remarks)))
     }

@@ -78,7 +78,7 @@ impl Encoder {
             is_bad: false,
             is_warned: false,
         };
-        self.track.lose(dropped);
+        self.track.note_dropped(dropped);
         self.track.add(&samples.iter().map(sighting).collect::<Vec<_>>(), &Meaning::of_turns(Some(65536), TURN.into()));
         self.last = samples.last().copied().or(self.last);
     }

@@ -11,7 +11,7 @@ use super::protocol::{Request, Values, address_of};
 
 pub(super) struct NovoWrite<'w> {
     pub(super) novo: &'w mut Novo,
-    pub(super) desk: &'w mut SessionContext,
+    pub(super) context: &'w mut SessionContext,
 }
 
 impl Write for NovoWrite<'_> {
@@ -22,14 +22,14 @@ impl Write for NovoWrite<'_> {
     type Left = ();
 
     fn confirm(&mut self, plan: &NovoPlan) -> Result<(), Error> {
-        let now = self.novo.survey(self.desk)?;
+        let now = self.novo.survey(self.context)?;
         if plan.base == (now.serial, now.values) { Ok(()) } else { Err(Error::Changed) }
     }
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, (u16, Values), Op>, done: &mut Written) -> Result<(), Error> {
         let address = address_of(op.item);
         done.write_cycles += 1;
-        self.novo.ask(self.desk, Request::Write(address, op.to))?;
-        if self.novo.ask(self.desk, Request::Read(address))? != op.to {
+        self.novo.ask(self.context, Request::Write(address, op.to))?;
+        if self.novo.ask(self.context, Request::Read(address))? != op.to {
             return Err(Error::NotTaken(op.name()));
         }
         done.verified += 1;

@@ -11,9 +11,9 @@ use encoder_studio::devices::biss::protocol::{DeviceMode, Filter, PresetValue};
 use encoder_studio::link::{Cancel, Direction};
 
 use super::hands::{Hands, IN_OPERATION, assert_told, calibration, data, exchanges, filter, preset, wiegand_test};
-use super::support::{Bench, Way};
+use super::support::{Bench, Transport};
 
-const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// A procedure, and what it has done when it is done.
 struct Scene {
@@ -48,7 +48,7 @@ const SCENES: [Scene; 5] = [
 /// All of them in one.
 fn mounting() -> Change {
     let bytes = [7; 64];
-    let mut profile = Bench::new(Way::ConfigPin, "").save();
+    let mut profile = Bench::new(Transport::ConfigPin, "").save();
     profile.data[1].empty = None;
     profile.data[0].empty = None;
     profile.data[1].listed = vec![Bank { number: 0x24, bytes }.into()];
@@ -118,7 +118,7 @@ fn assert_cycles(told: &Interrupted, spent: u32, context: &str) {
     assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
 }
 
-fn cut_at_every_exchange(scene: &Scene, way: Way) {
+fn cut_at_every_exchange(scene: &Scene, way: Transport) {
     type Cut = fn(&mut Bench, usize);
     let cuts: [(&str, Cut); 3] = [
         ("lost", |bench, at| bench.tap().lost_from = Some(at)),
@@ -196,7 +196,7 @@ fn wiegand_test_cut_at_every_exchange() {
 #[test]
 fn power_lost_before_every_exchange() {
     for scene in &SCENES {
-        let mut original = Bench::new(Way::ConfigPin, "");
+        let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
         let before = original.flash_cycles();
         let mut steps = Vec::new();
@@ -239,7 +239,7 @@ fn power_lost_before_every_exchange() {
 #[test]
 fn power_lost_in_every_store() {
     for scene in &SCENES {
-        let mut original = Bench::new(Way::ConfigPin, "");
+        let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
         let stores = prepared.plan.write_cycles();
         for store in 1..=stores {
@@ -260,7 +260,7 @@ fn power_lost_in_every_store() {
 #[test]
 fn cancelled_at_every_exchange() {
     for scene in &SCENES {
-        let mut original = Bench::new(Way::ConfigPin, "");
+        let mut original = Bench::new(Transport::ConfigPin, "");
         let prepared = original.prepare((scene.change)()).unwrap();
         let before = original.flash_cycles();
         let mut done = false;
@@ -291,7 +291,7 @@ fn cancelled_at_every_exchange() {
 /// The whole mounting, cut at some exchanges of each of its operations: what was done before is told as done.
 #[test]
 fn a_mounting_that_is_cut_off_tells_what_was_done() {
-    let mut original = Bench::new(Way::ConfigPin, "");
+    let mut original = Bench::new(Transport::ConfigPin, "");
     let prepared = original.prepare(mounting()).unwrap();
     assert_eq!(prepared.plan.write_cycles(), 5);
     let before = original.flash_cycles();

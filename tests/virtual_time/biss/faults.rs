@@ -11,9 +11,9 @@ use encoder_studio::devices::biss::procedures::{Echo, Error, Survey};
 use encoder_studio::link::{Cancel, LinkUrl, TraceEntry, write_entry, write_header};
 use encoder_studio::store::Store;
 
-use super::support::{Bench, Way};
+use super::support::{Bench, Transport};
 
-const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 fn survey(bench: &mut Bench) -> Result<Survey, Error> {
     match bench.run(BissJob::Survey) {
@@ -41,8 +41,8 @@ fn a_survey_over_a_bad_line_is_right_or_an_error() {
         let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
         // The wire to an adapter is a cable of a metre: a packet that is lost twice is the end of a job.
         let noises = match way {
-            Way::ConfigPin => ["drop:0.005", "flip:0.005", "garbage:0.005", "drop:0.02,flip:0.02,garbage:0.02"],
-            Way::Adapter => ["drop:0.0005", "flip:0.0005", "garbage:0.0005", "drop:0.005"],
+            Transport::ConfigPin => ["drop:0.005", "flip:0.005", "garbage:0.005", "drop:0.02,flip:0.02,garbage:0.02"],
+            Transport::Adapter => ["drop:0.0005", "flip:0.0005", "garbage:0.0005", "drop:0.005"],
         };
         for noise in noises {
             for seed in 0..6 {
@@ -69,9 +69,9 @@ fn a_survey_over_a_bad_line_is_right_or_an_error() {
 
 #[test]
 fn echo_and_byte_order_change_nothing_of_what_is_read() {
-    let truth = timeless(survey(&mut Bench::new(Way::ConfigPin, "")).unwrap());
+    let truth = timeless(survey(&mut Bench::new(Transport::ConfigPin, "")).unwrap());
     for query in ["echo=on", "order=high-first", "echo=on&order=high-first"] {
-        let mut bench = Bench::new(Way::ConfigPin, query);
+        let mut bench = Bench::new(Transport::ConfigPin, query);
         let mut read = timeless(survey(&mut bench).unwrap());
         let order = if query.contains("order") { ByteOrder::HighFirst } else { ByteOrder::LowFirst };
         assert_eq!(read.identity.order.replace(order), Some(order), "{query}");
@@ -132,7 +132,7 @@ fn a_recording_of_either_way_can_be_played_again() {
         write_header(&mut text).unwrap();
         entries.lock().unwrap().iter().for_each(|entry| write_entry(&mut text, entry).unwrap());
         fs::write(&path, text).unwrap();
-        let bridge = if way == Way::Adapter { "?bridge=on" } else { "" };
+        let bridge = if way == Transport::Adapter { "?bridge=on" } else { "" };
         let url: LinkUrl = format!("replay:{}{bridge}", path.display()).parse().unwrap();
         let mut session = open(&url, Store::at(folder.path())).unwrap();
         let BissOutput::Surveyed(again) = session.run_inline(BissJob::Survey).unwrap() else { panic!() };

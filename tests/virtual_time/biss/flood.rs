@@ -10,7 +10,7 @@ use encoder_studio::store::Store;
 use encoder_studio::units::{CharacterFormat, Moment};
 use encoder_studio::worker::{Event, JobId, Session};
 
-use super::support::Way;
+use super::support::Transport;
 use crate::support::{MARGIN, folder};
 
 /// Behind each request 512,000 bytes a second come for so long.
@@ -49,7 +49,12 @@ impl ByteLink for Flood {
 /// Issue 22.11: of noise over either way the trace keeps what can be read, and a job ends also where it never does.
 #[test]
 fn a_flood_of_noise_costs_neither_memory_nor_time_without_end() {
-    for (way, noise) in [(Way::ConfigPin, 0x55), (Way::ConfigPin, 0x80), (Way::Adapter, 0x55), (Way::Adapter, 0)] {
+    for (way, noise) in [
+        (Transport::ConfigPin, 0x55),
+        (Transport::ConfigPin, 0x80),
+        (Transport::Adapter, 0x55),
+        (Transport::Adapter, 0),
+    ] {
         for lasts in [300, 900, 3_600_000] {
             let (clock, folder) = (Arc::<VirtualClock>::default(), folder());
             // Packets that are none, with an end each.

@@ -7,7 +7,7 @@ use encoder_studio::devices::biss::jobs::{
     BissJob, BissOutput, Change, Commit, Committed, JobError, OperatorPresence, Prepared,
 };
 use encoder_studio::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, News, OperatorChannel, ProcedureStep, Task, Unattended,
+    Answer, Demand, Detail, OperatorChannel, ProcedureProgress, ProcedureStep, Task, Unattended,
 };
 use encoder_studio::devices::biss::procedures::write::{EndState, Interrupted};
 use encoder_studio::devices::biss::profile::{BissProfile, MotorSource, MountingRun, PresetParts, RestoreOptions};
@@ -44,7 +44,7 @@ impl Hands {
         }
     }
 
-    pub(crate) fn hear(&mut self, news: &News) {
+    pub(crate) fn hear(&mut self, news: &ProcedureProgress) {
         match &news.detail {
             Detail::Begins => self.steps.push((news.op, news.step)),
             Detail::Demand(demand) => self.follow(demand),
@@ -189,7 +189,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let sent = bench.counter();
     let mut begun: Vec<(usize, ProcedureStep)> = Vec::new();
     let commit = hands.commit_of(prepared);
-    let told = &mut |news: &News| {
+    let told = &mut |news: &ProcedureProgress| {
         hands.hear(news);
         if news.detail == Detail::Begins {
             begun.push((sent(), news.step));

@@ -17,7 +17,7 @@ use encoder_studio::link::{Cancel, LinkUrl};
 use encoder_studio::store::Store;
 use encoder_studio::worker::{Event, JobId, OpenError, Session, Watched};
 
-use super::support::{Bench, Pin, Way, at};
+use super::support::{Bench, Pin, Transport, at};
 
 fn survey(bench: &mut Bench) -> Survey {
     match bench.run(BissJob::Survey) {
@@ -54,7 +54,7 @@ fn device_error(error: JobError) -> Error {
     }
 }
 
-const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// Manual, appendix 9.1; the serial number is the simulator's.
 #[test]
@@ -81,7 +81,7 @@ fn a_survey_shows_what_is_there_over_both_ways() {
         assert_eq!((sheet.encoder.bank, sheet.encoder.bytes[0x3F]), (3, 0x31));
         assert_eq!(
             identity.adapter.as_ref().map(|hello| hello.name.as_str()),
-            (way == Way::Adapter).then_some("virtual adapter")
+            (way == Transport::Adapter).then_some("virtual adapter")
         );
         let key = device_key(identity, true);
         assert_eq!((key.kind.as_str(), key.device_type.as_str()), ("biss", "4672-010168110001"));
@@ -94,7 +94,7 @@ fn a_survey_shows_what_is_there_over_both_ways() {
         assert_eq!((errors.raw, names), (0x12, expected));
         assert_eq!(survey.status.warnings.map(|bits| bits.raw), Some(0));
         // The frame has an error bit, the word over the configuration pin has none.
-        assert_eq!(survey.status.position.unwrap().error, (way == Way::Adapter).then_some(true));
+        assert_eq!(survey.status.position.unwrap().error, (way == Transport::Adapter).then_some(true));
 
         assert_eq!(survey.wiegand_last, Some(WiegandResult::parse([0; 4])));
         assert_eq!(survey.wiegand_production, Some(WiegandResult::parse([64, 60, 64, 59])));
@@ -108,7 +108,7 @@ fn a_survey_shows_what_is_there_over_both_ways() {
 /// Manual: errors and warnings since 1.6.0, filter since 1.1.0, preset since 1.2.0.
 #[test]
 fn what_an_older_firmware_does_not_have_is_not_there() {
-    let mut bench = Bench::new(Way::Adapter, "firmware=1.0.9&errors=0x10");
+    let mut bench = Bench::new(Transport::Adapter, "firmware=1.0.9&errors=0x10");
     let survey = survey(&mut bench);
     assert_eq!((&survey.status.errors, &survey.status.warnings, survey.status.filter), (&None, &None, None));
     assert_eq!(survey.preset, None);
@@ -131,7 +131,7 @@ fn status_and_position_know_the_encoder_without_being_asked_who_it_is() {
         let reading = position(&mut bench);
         assert_eq!((reading.turns, reading.steps), (1, 1));
         // Over the configuration pin with its registers of errors and warnings.
-        let asked = if way == Way::Adapter { 1 } else { 3 };
+        let asked = if way == Transport::Adapter { 1 } else { 3 };
         assert_eq!(bench.tap().sent.len(), sent + asked, "{way:?}: known by now");
         assert_eq!((reading.error, reading.warning), (Some(false), Some(true)), "{way:?}");
         let mut fresh = Bench::new(way, "position=0x20001");
@@ -226,11 +226,11 @@ fn what_was_never_saved_is_not_taken_for_the_encoders_content() {
 
 #[test]
 fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let mut told = Vec::new();
     let end = bench.session.run(JobId::default(), BissJob::Save, &mut |event| {
         if let Event::Progress(_, progress) = event {
-            told.push((progress.done, progress.total, progress.what));
+            told.push((progress.done, progress.total, progress.step));
         }
     });
     assert!(matches!(end, Event::Finished(..)));
@@ -238,7 +238,7 @@ fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
     assert!(told.iter().all(|(done, total, _)| done < total && *total == told[0].1));
     assert_eq!(told.last().unwrap().2, JobStep::Bank(0x43));
     assert_eq!(told.iter().filter(|(.., what)| matches!(what, JobStep::Bank(_))).count(), 64);
-    let mut stopped = Bench::new(Way::ConfigPin, "");
+    let mut stopped = Bench::new(Transport::ConfigPin, "");
     stopped.session.set_cancel(Cancel::after(1000));
     assert_eq!(device_error(save(&mut stopped).unwrap_err()), Error::Cancelled);
     assert_eq!(stopped.tap().sent.len(), 1000);
@@ -248,10 +248,10 @@ fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
 #[test]
 fn a_save_over_a_noisy_line_is_right_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
-    let truth = save(&mut Bench::new(Way::ConfigPin, "")).unwrap();
+    let truth = save(&mut Bench::new(Transport::ConfigPin, "")).unwrap();
     for noise in ["drop:0.002", "flip:0.002", "garbage:0.002", "flip:0.0003"] {
         for seed in 0..3 {
-            let mut bench = Bench::new(Way::ConfigPin, &format!("seed={seed}&fault={noise}"));
+            let mut bench = Bench::new(Transport::ConfigPin, &format!("seed={seed}&fault={noise}"));
             match save(&mut bench) {
                 Ok(profile) => {
                     saved += 1;
@@ -299,7 +299,7 @@ fn samples_and_watched_registers_come_one_by_one() {
         assert!(first.at < second.at && first.position() < second.position(), "{way:?}");
         let watched = bench.session.watch_value(&"0x66".parse().unwrap()).unwrap();
         let Watched::Sample(Sample::Watched(reading)) = watched else { panic!("{watched:?}") };
-        assert_eq!((reading.what.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
+        assert_eq!((reading.range.to_string().as_str(), reading.value), ("0x66", Ok(vec![75])));
         let refused = bench.session.watch_value(&"0x44:0x00".parse().unwrap()).unwrap();
         assert!(matches!(refused, Watched::Refused(Sample::Watched(_))), "{refused:?}");
         // Manual 6.5: data are not accessed while the shaft turns.
@@ -332,7 +332,7 @@ fn an_error_that_comes_while_positions_are_polled_marks_them() {
             samples += 1;
         }
         sent = bench.tap().sent.len() - sent;
-        let expected = if way == Way::Adapter { 0 } else { 20 };
+        let expected = if way == Transport::Adapter { 0 } else { 20 };
         assert!((sent - samples).abs_diff(expected) <= 1, "{way:?}: {sent} requests, {samples} positions");
         bench.encoder(|encoder, _| encoder.set_errors(ErrorRegister::new(0x10)));
         let until = bench.now() + Duration::from_millis(1_100);
@@ -351,7 +351,7 @@ fn an_error_that_comes_while_positions_are_polled_marks_them() {
 /// A frame that comes through now and then: the wrong ones are counted with the next right one, or are a sample.
 #[test]
 fn polling_survives_damaged_frames() {
-    let mut bench = Bench::new(Way::Adapter, "noise=0.6&seed=2");
+    let mut bench = Bench::new(Transport::Adapter, "noise=0.6&seed=2");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..100 {
         match bench.session.sample() {
@@ -406,7 +406,7 @@ fn broken_descriptions_are_told_once_with_the_first_job() {
     let store = Store::at(root.path());
     fs::create_dir_all(store.device_folder("biss")).unwrap();
     fs::write(store.device_folder("biss").join("mine.ron"), "(name: 7)").unwrap();
-    let mut bench = Bench::in_store(Way::ConfigPin, "", store);
+    let mut bench = Bench::in_store(Transport::ConfigPin, "", store);
     for expected in [1, 0] {
         let mut remarks = Vec::new();
         bench.session.run(JobId::default(), BissJob::Identify, &mut |event| {

@@ -16,9 +16,9 @@ use encoder_studio::devices::biss::protocol::{
 use encoder_studio::devices::biss::state::explain::job;
 
 use super::hands::{Hands, IN_OPERATION, calibration, data, filter, interrupted, preset, wiegand_test};
-use super::support::{Bench, Way, at};
+use super::support::{Bench, Transport, at};
 
-const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// The steps that were told are those that were listed beforehand, in their order; the way back is told where there is
 /// something to lead back.
@@ -64,7 +64,7 @@ fn a_calibration_runs_both_ways_and_is_one_flash_cycle() {
             assert_eq!(bench.mode_and_password(), IN_OPERATION, "{way:?} {silent}");
         }
     }
-    assert_steps(&mut Bench::new(Way::ConfigPin, ""), calibration());
+    assert_steps(&mut Bench::new(Transport::ConfigPin, ""), calibration());
 }
 
 /// Manual 6.3: 515 revolutions at 1000 rpm are 30.9 s.
@@ -93,9 +93,9 @@ fn a_wiegand_test_gives_its_results_and_saves_them_where_that_is_wished() {
             assert_eq!(bench.encoder_reads(at("0x00:0x12")), Some(if save { 58 } else { 0 }));
         }
     }
-    assert_steps(&mut Bench::new(Way::ConfigPin, ""), wiegand_test(true));
-    assert_steps(&mut Bench::new(Way::ConfigPin, ""), wiegand_test(false));
-    let weak = Bench::new(Way::ConfigPin, "pulses=6.3,5.3").change(wiegand_test(false)).unwrap().written;
+    assert_steps(&mut Bench::new(Transport::ConfigPin, ""), wiegand_test(true));
+    assert_steps(&mut Bench::new(Transport::ConfigPin, ""), wiegand_test(false));
+    let weak = Bench::new(Transport::ConfigPin, "pulses=6.3,5.3").change(wiegand_test(false)).unwrap().written;
     let [Outcome::Tested(report)] = weak.outcomes.as_slice() else { panic!() };
     assert!(!report.result.passes(), "5.3 V is not above 5.3 V");
 }
@@ -116,7 +116,7 @@ fn data_are_written_register_by_register_and_saved_once() {
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
         assert!(bench.prepare(data()).unwrap().plan.is_empty(), "{way:?}");
     }
-    assert_steps(&mut Bench::new(Way::ConfigPin, ""), data());
+    assert_steps(&mut Bench::new(Transport::ConfigPin, ""), data());
 }
 
 /// Manual 6.6: the encoder restarts with it.
@@ -132,7 +132,7 @@ fn a_filter_is_selected_with_a_restart() {
         assert!(bench.now() - from >= Duration::from_millis(500));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
-    assert_steps(&mut Bench::new(Way::ConfigPin, ""), filter());
+    assert_steps(&mut Bench::new(Transport::ConfigPin, ""), filter());
 }
 
 /// Manual 6.7: 270° are 18000h, its registers 00 80 01.
@@ -160,13 +160,13 @@ fn a_preset_is_stored_and_carried_out_with_two_restarts() {
             assert_eq!(((to.turns, to.steps), written.write_cycles), (place, 1), "{parts:?}");
         }
     }
-    assert_steps(&mut Bench::new(Way::ConfigPin, ""), preset(1, 1));
+    assert_steps(&mut Bench::new(Transport::ConfigPin, ""), preset(1, 1));
 }
 
 /// Temperature, calibration, Wiegand test, preset and OEM data, with the motor turned and stopped in between.
 #[test]
 fn a_mounting_is_one_run_with_a_report() {
-    let mut bench = Bench::new(Way::ConfigPin, "temperature=33");
+    let mut bench = Bench::new(Transport::ConfigPin, "temperature=33");
     let mut wanted = bench.save();
     let listed = encoder_studio::devices::biss::profile::Bank { number: 0x24, bytes: [7; 64] };
     wanted.data[1].listed.push(listed.into());
@@ -213,7 +213,7 @@ fn a_part_of_a_run_can_be_left_out() {
     let first = Run::CalibrationCounterclockwise;
     for (task, after) in [(first, None), (Run::CalibrationClockwise, Some(first))] {
         let task = Task::Turn(task);
-        let mut bench = Bench::new(Way::ConfigPin, "");
+        let mut bench = Bench::new(Transport::ConfigPin, "");
         let run = MountingRun { calibrate: true, wiegand: Some(false), ..MountingRun::default() };
         let prepared = bench.prepare(Change::Guided { run, motor: MotorSource::Other }).unwrap();
         let before = bench.flash_cycles();
@@ -238,7 +238,7 @@ fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
         (preset(1, 1), Task::StandAtPlace),
         (data(), Task::Stand),
     ] {
-        let mut bench = Bench::new(Way::ConfigPin, "");
+        let mut bench = Bench::new(Transport::ConfigPin, "");
         let prepared = bench.prepare(change).unwrap();
         let mut hands = Hands::on(&bench);
         hands.instead.push((task, Answer::Cancel));
@@ -263,7 +263,7 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
         ("rpm=-500&temperature=41", calibration(), Blocker::Temperature { celsius: 41 }),
     ];
     for (query, change, blocker) in cases {
-        let mut bench = Bench::new(Way::ConfigPin, query);
+        let mut bench = Bench::new(Transport::ConfigPin, query);
         let prepared = bench.prepare(change).unwrap();
         let (before, from) = (bench.flash_cycles(), bench.now());
         let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
@@ -273,19 +273,19 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
         assert!(bench.now() - from < Duration::from_secs(7), "{query}");
     }
     // A motor that turns round where the encoder waits for it.
-    let mut bench = Bench::new(Way::ConfigPin, "rpm=-500&motor=reverse");
+    let mut bench = Bench::new(Transport::ConfigPin, "rpm=-500&motor=reverse");
     let prepared = bench.prepare(calibration()).unwrap();
     let written = bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap().written;
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
     // One that does not: the second direction never comes.
-    let mut bench = Bench::new(Way::ConfigPin, "rpm=1000");
+    let mut bench = Bench::new(Transport::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
     assert_eq!(told.left.at, ProcedureStep::Await(Task::Turn(Run::WiegandCounterclockwise)));
     assert_eq!((told.left.standing, bench.mode_and_password()), (None, IN_OPERATION));
     // Outside of the speeds: too slow for the test, too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
-        let mut bench = Bench::new(Way::ConfigPin, query);
+        let mut bench = Bench::new(Transport::ConfigPin, query);
         let prepared = bench.prepare(change).unwrap();
         let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(3)).unwrap_err());
         assert!(
@@ -306,7 +306,7 @@ fn a_calibration_that_fails_says_why() {
         (Run::CalibrationClockwise, "", Some(600.0), CalibrationStatus::Failed),
     ];
     for (run, query, disturbed, status) in cases {
-        let mut bench = Bench::new(Way::ConfigPin, &format!("{query}&calibration-silent=off"));
+        let mut bench = Bench::new(Transport::ConfigPin, &format!("{query}&calibration-silent=off"));
         let prepared = bench.prepare(calibration()).unwrap();
         let before = bench.flash_cycles();
         let (mut hands, motor) = (Hands::on(&bench), bench.motor());
@@ -348,7 +348,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
         (|encoder, _| encoder.set_temperature(60), CalibrationStatus::Temperature),
     ];
     for (spoil, status) in cases {
-        let mut bench = Bench::new(Way::ConfigPin, "calibration-silent=off");
+        let mut bench = Bench::new(Transport::ConfigPin, "calibration-silent=off");
         let prepared = bench.prepare(calibration()).unwrap();
         let mut hands = Hands::on(&bench);
         let commit = hands.commit_of(&prepared);
@@ -368,12 +368,12 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
     // A Wiegand sensor that gives no pulses, and a motor that turns on as it did.
-    let mut dead = Bench::new(Way::ConfigPin, "pulses=0,0");
+    let mut dead = Bench::new(Transport::ConfigPin, "pulses=0,0");
     let told = interrupted(dead.change(wiegand_test(true)).unwrap_err());
     let (run, status) = (Run::WiegandClockwise, WiegandStatus::Failed);
     assert_eq!(told.cause, Failure::Wiegand { run, status, code: 1 });
     assert_eq!(dead.mode_and_password(), IN_OPERATION);
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let mut hands = Hands::on(&bench);
     let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
@@ -393,7 +393,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
 #[test]
 fn a_run_that_never_ends_is_given_up() {
     // The motor stops, and the revolutions never come together.
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
     let mut hands = Hands::on(&bench);
     let (commit, motor) = (hands.commit_of(&prepared), bench.motor());
@@ -416,22 +416,22 @@ fn what_cannot_be_done_is_refused_beforehand() {
     let run = |calibrate, wiegand| MountingRun { calibrate, wiegand, ..MountingRun::default() };
     for run in [run(true, None), run(false, Some(true))] {
         let change = Change::Guided { run, motor: MotorSource::ThisEncoder };
-        let error = Bench::new(Way::ConfigPin, "").prepare(change).unwrap_err();
+        let error = Bench::new(Transport::ConfigPin, "").prepare(change).unwrap_err();
         assert!(matches!(error, JobError::Plan(PlanError::DrivenByThisEncoder)), "{error}");
     }
-    let error = Bench::new(Way::ConfigPin, "filter=dynamic").prepare(calibration()).unwrap_err();
+    let error = Bench::new(Transport::ConfigPin, "filter=dynamic").prepare(calibration()).unwrap_err();
     assert!(matches!(error, JobError::Plan(PlanError::NotBalanced { code: 4 })), "{error}");
-    let error = Bench::new(Way::ConfigPin, "firmware=1.0.0").prepare(filter()).unwrap_err();
+    let error = Bench::new(Transport::ConfigPin, "firmware=1.0.0").prepare(filter()).unwrap_err();
     let kind = ProcedureKind::FilterSelection;
     assert!(matches!(error, JobError::Plan(PlanError::FirmwareTooOld { kind: own, .. }) if own == kind), "{error}");
-    let error = Bench::new(Way::ConfigPin, "firmware=1.1.0").prepare(preset(0, 0)).unwrap_err();
+    let error = Bench::new(Transport::ConfigPin, "firmware=1.1.0").prepare(preset(0, 0)).unwrap_err();
     assert!(matches!(error, JobError::Plan(PlanError::FirmwareTooOld { .. })), "{error}");
     for query in ["rpm=30", "rpm=-500"] {
-        let error = Bench::new(Way::ConfigPin, query).prepare(data()).unwrap_err();
+        let error = Bench::new(Transport::ConfigPin, query).prepare(data()).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error}");
     }
     // The shaft begins to turn between the plan and its execution.
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(data()).unwrap();
     bench.motor().set_rpm(100.0);
     let error = bench.commit_alone(&prepared, Duration::ZERO).unwrap_err();
@@ -442,7 +442,7 @@ fn what_cannot_be_done_is_refused_beforehand() {
 /// An old firmware has one filter, and its register says nothing.
 #[test]
 fn an_encoder_without_a_choice_of_filter_is_calibrated() {
-    let mut bench = Bench::new(Way::ConfigPin, "firmware=1.0.0");
+    let mut bench = Bench::new(Transport::ConfigPin, "firmware=1.0.0");
     let written = bench.change(calibration()).unwrap().written;
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
 }
@@ -466,7 +466,7 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
         }
     }
     // Only the password: whoever writes next clears it.
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     bench.encoder(|encoder, now| assert!(encoder.write(now, at("0x6B"), 0x2A)));
     bench.change(data()).unwrap();
     assert_eq!(bench.mode_and_password(), IN_OPERATION);
@@ -477,7 +477,7 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
 #[test]
 fn leading_back_waits_for_a_calibration() {
     for silent in ["on", "off"] {
-        let mut bench = Bench::new(Way::ConfigPin, &format!("rpm=-500&calibration-silent={silent}"));
+        let mut bench = Bench::new(Transport::ConfigPin, &format!("rpm=-500&calibration-silent={silent}"));
         let start =
             |bench: &Bench, place: &str, value| bench.encoder(|own, now| assert!(own.write(now, at(place), value)));
         start(&bench, "0x6B", 0x2A);
@@ -497,7 +497,7 @@ fn leading_back_waits_for_a_calibration() {
 /// Start was pressed twice for the motor data: the second time is no answer for the OEM data, of which the same is asked.
 #[test]
 fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let edit = |place: &str| (place.parse().unwrap(), vec![0x5A]);
     let prepared = bench.prepare(Change::Write(vec![edit("0x04:0x10"), edit("0x24:0x10")])).unwrap();
     assert_eq!(prepared.plan.ops.len(), 2);
@@ -526,7 +526,8 @@ fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
 #[test]
 fn the_status_of_an_earlier_run_is_not_taken_for_this_one() {
     for silent in ["on", "off"] {
-        let mut bench = Bench::new(Way::ConfigPin, &format!("calibration-silent={silent}&calibration-status=kept"));
+        let mut bench =
+            Bench::new(Transport::ConfigPin, &format!("calibration-silent={silent}&calibration-status=kept"));
         let before = bench.flash_cycles();
         // It leaves "clockwise done".
         bench.change(calibration()).unwrap();

@@ -16,7 +16,7 @@ use encoder_studio::store::Store;
 use encoder_studio::units::Moment;
 use encoder_studio::worker::{Session, Watched};
 
-use super::support::{Way, at, pairs};
+use super::support::{Transport, at, pairs};
 use crate::support::{MARGIN, Tap, TestLink};
 
 const FAST: Duration = Duration::from_micros(50);
@@ -45,7 +45,7 @@ fn stand_at(query: &str, supply: Option<Supply>, clock_hz: u32) -> Stand {
     let tap = Arc::<Mutex<Tap>>::default();
     let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
     let link = TestLink::new(adapter.clone(), clock.clone(), tap.clone());
-    let mut station = Station::new(Way::Adapter, MARGIN);
+    let mut station = Station::new(Transport::Adapter, MARGIN);
     (station.clock_hz, station.supply) = (clock_hz, supply);
     let session = Session::over(Box::new(link), clock.clone(), station, Store::at(folder.path()), None);
     Stand { clock, adapter, tap, session, _folder: folder }
@@ -113,7 +113,7 @@ fn what_is_wished_closer_than_one_can_ask_is_streamed() {
     stand.session.pace(Some(FAST));
     let runs = stand.runs(Duration::from_secs(3));
     check(&runs);
-    assert!(runs[0].begins() && runs[1..].iter().all(|run| !run.begins()));
+    assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start()));
     // What was sampled last may still be on its way.
     let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
@@ -132,7 +132,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         let runs = stand.runs(Duration::from_millis(200));
         check(&runs);
         let begin = runs[0].at;
-        assert!(runs[0].begins() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
+        assert!(runs[0].is_stream_start() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
         last = runs.last().and_then(|run| run.timed().last()).map(|(at, _)| at);
         stand.session.run_inline(BissJob::Status).unwrap();
         let watched = stand.session.watch_value(&RegisterRange::one(at("0x66"))).unwrap();
@@ -173,7 +173,7 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert!(stand.tap.lock().unwrap().sent.len() > sent, "it was told to stop");
     stand.tap.lock().unwrap().mute_from = None;
     // The stream is told to end with HELLO.
-    assert!(stand.run().begins());
+    assert!(stand.run().is_stream_start());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Link(error))) if error.is_lost()));
@@ -207,7 +207,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
             let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
             assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
         }
-        assert!(stand.run().begins());
+        assert!(stand.run().is_stream_start());
         let counts = [Operation::Hello, Operation::Supply, Operation::BissConfig].map(|own| stand.count(own));
         assert_eq!(counts, [1, 2, 2], "{by_job}");
         assert!(stand.runs(Duration::from_secs(1)).iter().all(|run| run.crc_errors() == 0));
@@ -225,7 +225,7 @@ fn an_encoder_that_the_adapter_supplies_gets_its_supply_again() {
     stand.tap.lock().unwrap().mute_from = Some(0);
     assert!(matches!(stand.session.sample(), Err(JobError::Device(Error::Adapter(AdapterError::Mute)))));
     stand.tap.lock().unwrap().mute_from = None;
-    assert!(stand.run().begins());
+    assert!(stand.run().is_stream_start());
     assert_eq!((stand.count(Operation::Hello), stand.count(Operation::Supply)), (2, 2));
     let measured = Some(Supply { measured: Some((5_000, 60)), ..supply });
     assert_eq!(stand.session.station().supply, measured);

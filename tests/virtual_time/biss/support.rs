@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
 
-use encoder_studio::buses::bridge::procedures::{SupplyAfter, Tap as Stream, Wanted};
+use encoder_studio::buses::bridge::procedures::{StreamRequest, SupplyAfter, Tap as Stream};
 use encoder_studio::buses::bridge::protocol::{Operation, Receiver};
 use encoder_studio::buses::bridge::sim::Adapter;
 use encoder_studio::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, JobStep};
-pub(crate) use encoder_studio::devices::biss::procedures::Way;
-use encoder_studio::devices::biss::procedures::procedure::News;
+pub(crate) use encoder_studio::devices::biss::procedures::Transport;
+use encoder_studio::devices::biss::procedures::procedure::ProcedureProgress;
 use encoder_studio::devices::biss::procedures::{Master, Station, Supply};
 use encoder_studio::devices::biss::protocol::{Descriptions, RegisterAddress};
 use encoder_studio::devices::biss::sim::{Config, Encoder, Port};
@@ -51,14 +51,14 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
 impl Pin {
     /// An encoder as `sim:?…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
-        Self::with(Port::new(&Config::from_pairs(&pairs(query)).unwrap()), Way::ConfigPin)
+        Self::with(Port::new(&Config::from_pairs(&pairs(query)).unwrap()), Transport::ConfigPin)
     }
 }
 
 impl Bus {
     /// An encoder as `sim:?bridge=on&…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
-        Self::with(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap(), Way::Adapter)
+        Self::with(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap(), Transport::Adapter)
     }
 
     /// How many requests of an operation were sent.
@@ -71,7 +71,7 @@ impl Bus {
 }
 
 impl<D: ByteDevice + 'static> Rig<D> {
-    pub(crate) fn with(device: D, way: Way) -> Self {
+    pub(crate) fn with(device: D, way: Transport) -> Self {
         let device = Arc::new(Mutex::new(device));
         let clock = Arc::new(VirtualClock::default());
         let tap = Arc::<Mutex<Tap>>::default();
@@ -147,26 +147,36 @@ enum End {
 }
 
 impl Bench {
-    pub(crate) fn new(way: Way, query: &str) -> Self {
+    pub(crate) fn new(way: Transport, query: &str) -> Self {
         let folder = folder();
         let store = Store::at(folder.path());
         Self::made(way, query, store, folder)
     }
 
     /// With these folders.
-    pub(crate) fn in_store(way: Way, query: &str, store: Store) -> Self {
+    pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
 
-    fn made(way: Way, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
+    fn made(way: Transport, query: &str, store: Store, folder: tempfile::TempDir) -> Self {
         let end = match way {
-            Way::ConfigPin => End::Pin(Arc::new(Mutex::new(Port::new(&Config::from_pairs(&pairs(query)).unwrap())))),
-            Way::Adapter => End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()))),
+            Transport::ConfigPin => {
+                End::Pin(Arc::new(Mutex::new(Port::new(&Config::from_pairs(&pairs(query)).unwrap()))))
+            }
+            Transport::Adapter => {
+                End::Bus(Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap())))
+            }
         };
         Self::plugged(end, way, Arc::new(VirtualClock::default()), store, Arc::new(folder))
     }
 
-    fn plugged(end: End, way: Way, clock: Arc<VirtualClock>, store: Store, folder: Arc<tempfile::TempDir>) -> Self {
+    fn plugged(
+        end: End,
+        way: Transport,
+        clock: Arc<VirtualClock>,
+        store: Store,
+        folder: Arc<tempfile::TempDir>,
+    ) -> Self {
         Self::with_station(end, Station::new(way, MARGIN), clock, store, folder)
     }
 
@@ -195,7 +205,7 @@ impl Bench {
     /// The same device at the same time in a new session: a cable that was plugged in again.
     pub(crate) fn reconnected(&self) -> Bench {
         let (store, folder) = (Store::at(self.folder.path()), self.folder.clone());
-        Self::plugged(self.end.clone(), self.session.station().way, self.clock.clone(), store, folder)
+        Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
     /// Behind an adapter that switches the encoder's supply, at first off.
@@ -218,7 +228,7 @@ impl Bench {
         let (cancel, mut trace, mut tap) = (Cancel::default(), Trace::default(), Stream::new(MARGIN));
         let clock = &*self.clock;
         let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
-        tap.begin(ctx, Wanted::Analog { sample_hz: 10_000 }, supply).unwrap();
+        tap.begin(ctx, StreamRequest::Analog { sample_hz: 10_000 }, supply).unwrap();
         let has_power = self.encoder(|encoder, _| encoder.has_power());
         let ctx = Ctx { wire: &mut link as _, clock, cancel: &cancel, trace: &mut trace };
         tap.end(ctx).unwrap();
@@ -231,7 +241,7 @@ impl Bench {
     }
 
     fn with_supply(end: End, after: SupplyAfter, clock: Arc<VirtualClock>, folder: Arc<tempfile::TempDir>) -> Self {
-        let mut station = Station::new(Way::Adapter, MARGIN);
+        let mut station = Station::new(Transport::Adapter, MARGIN);
         station.supply = Some(Supply { millivolt: 5_000, measured: None });
         station.adapter.leave_supply(after);
         let store = Store::at(folder.path());
@@ -241,7 +251,7 @@ impl Bench {
     /// As [`reconnected`](Self::reconnected), knowing already who is there.
     pub(crate) fn reconnected_knowing(&self) -> Bench {
         let known = self.session.station();
-        let mut station = Station::new(known.way, MARGIN);
+        let mut station = Station::new(known.transport, MARGIN);
         station.description.clone_from(&known.description);
         station.firmware = known.firmware;
         station.layout.clone_from(&known.layout);
@@ -257,7 +267,7 @@ impl Bench {
             End::Pin(port) => End::Pin(Arc::new(Mutex::new(port.lock().unwrap().clone()))),
             End::Bus(adapter) => End::Bus(Arc::new(Mutex::new(adapter.lock().unwrap().clone()))),
         };
-        Self::plugged(end, self.session.station().way, clock, Store::at(folder.path()), folder)
+        Self::plugged(end, self.session.station().transport, clock, Store::at(folder.path()), folder)
     }
 
     /// Looks into the encoder, or does something to it.
@@ -290,11 +300,11 @@ impl Bench {
     pub(crate) fn run_watched(
         &mut self,
         job: BissJob,
-        told: &mut dyn FnMut(&News),
+        told: &mut dyn FnMut(&ProcedureProgress),
     ) -> Result<BissOutput, Box<JobError>> {
         let event = self.session.run(JobId::default(), job, &mut |event| {
-            if let Event::Progress(_, Progress { what: JobStep::Operation { news, .. }, .. }) = event {
-                told(&news);
+            if let Event::Progress(_, Progress { step: JobStep::Operation { progress, .. }, .. }) = event {
+                told(&progress);
             }
         });
         match event {

@@ -10,7 +10,7 @@ use encoder_studio::devices::biss::protocol::{Crc, Descriptions, Layout, Positio
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::{CharacterFormat, Moment};
 
-use super::support::{Bus, Rig, Way};
+use super::support::{Bus, Rig, Transport};
 use crate::support::MARGIN;
 
 /// A single-turn encoder of 14 bits, and the adapter in front of it; it answers at once.
@@ -97,7 +97,7 @@ impl ByteDevice for Stranger {
 
 #[test]
 fn the_frame_of_a_turning_shaft_is_found() {
-    let mut rig = Rig::with(Stranger::new(5), Way::Adapter);
+    let mut rig = Rig::with(Stranger::new(5), Transport::Adapter);
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
     assert_eq!(identity.description.name(), "BiSS C encoder");
     assert_eq!((identity.source, identity.layout.data_bits(), identity.layout.bits()), (FrameSource::Checksum, 16, 22));
@@ -115,7 +115,7 @@ fn the_frame_of_a_turning_shaft_is_found() {
 
 #[test]
 fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
-    let mut rig = Rig::with(Stranger::new(0), Way::Adapter);
+    let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
     let survey = device::survey(&mut rig.master(), &Descriptions::built_in(), &mut |_, _, _| {}).unwrap();
     assert_eq!((survey.identity.source, survey.status.position), (FrameSource::Assumed, None));
     assert_eq!(survey.identity.kind.manufacturer, *b"Xy");
@@ -126,8 +126,8 @@ fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
 /// Issue 22.20: turns and steps are the user's word, also at rest; 14 bits of steps are 16384 a turn.
 #[test]
 fn the_frame_that_is_given_makes_an_angle_of_the_position() {
-    let mut rig = Rig::with(Stranger::new(0), Way::Adapter);
-    rig.station = Station::from_query(&"mt=0&st=14".parse().unwrap(), Way::Adapter, MARGIN).unwrap();
+    let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
+    rig.station = Station::from_query(&"mt=0&st=14".parse().unwrap(), Transport::Adapter, MARGIN).unwrap();
     let identity = device::identify(&mut rig.master(), &Descriptions::built_in()).unwrap();
     assert_eq!((identity.source, identity.layout.bits()), (FrameSource::Given, 22));
     assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(0), Some(14)));

@@ -20,9 +20,9 @@ use jiff::Timestamp;
 use super::hands::{
     Hands, IN_OPERATION, calibration, data, exchanges, filter, interrupted, preset, restore_of, wiegand_test,
 };
-use super::support::{Bench, Way, at};
+use super::support::{Bench, Transport, at};
 
-const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
+const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
 /// The profile with other bytes in a bank.
 fn with_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
@@ -53,7 +53,7 @@ fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8
 /// The issue: three bytes of one bank are three registers and one save; the plan says so, and so does the logbook.
 #[test]
 fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let saved = bench.save();
     let wanted = with_bytes(&saved, 0x24, &[(0x10, 1), (0x11, 2), (0x30, 3)]);
     let prepared = bench.prepare(restore_of(&wanted)).unwrap();
@@ -74,7 +74,7 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
     assert_eq!(written.outcomes, [Outcome::Stored { registers: 3 }]);
     let entry = &history(&mut bench)[0];
     assert_eq!(
-        (entry.what.as_str(), entry.planned_cycles),
+        (entry.description.as_str(), entry.planned_cycles),
         ("0x24:0x10+2 OEM data: 0000 → 0102, 0x24:0x30 OEM data: 00 → 03", 1)
     );
     let conclusion = entry.conclusion.as_ref().unwrap();
@@ -119,10 +119,10 @@ fn everything_that_differs_is_restored_and_nothing_else() {
 
 #[test]
 fn another_encoder_is_refused_and_keeps_its_mounting() {
-    let mut from = Bench::new(Way::ConfigPin, "serial=1");
+    let mut from = Bench::new(Transport::ConfigPin, "serial=1");
     from.change(preset(0x8000, 1)).unwrap();
     let profile = with_bytes(&from.save(), 0x24, &[(0, 1)]);
-    let mut bench = Bench::new(Way::ConfigPin, "serial=2");
+    let mut bench = Bench::new(Transport::ConfigPin, "serial=2");
     let error = bench.prepare(restore_of(&profile)).unwrap_err();
     assert!(matches!(error, JobError::Plan(PlanError::OtherDevice { .. })), "{error}");
     let restore = |with_mounting| {
@@ -146,7 +146,7 @@ fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
         (calibration, |bench| drop(bench.change(filter())), "0x6E"),
     ];
     for (change, meddle, item) in cases {
-        let mut bench = Bench::new(Way::ConfigPin, "");
+        let mut bench = Bench::new(Transport::ConfigPin, "");
         let prepared = bench.prepare(change()).unwrap();
         meddle(&mut bench);
         let before = bench.flash_cycles();
@@ -155,8 +155,8 @@ fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
         assert_eq!(bench.flash_cycles(), before);
     }
     // Another encoder with the same memory on the same cable.
-    let prepared = Bench::new(Way::ConfigPin, "serial=1").prepare(data()).unwrap();
-    let mut other = Bench::new(Way::ConfigPin, "serial=2");
+    let prepared = Bench::new(Transport::ConfigPin, "serial=1").prepare(data()).unwrap();
+    let mut other = Bench::new(Transport::ConfigPin, "serial=2");
     let error = other.commit_alone(&prepared, Duration::ZERO).unwrap_err();
     assert!(matches!(&error, JobError::Device(Error::Changed { item }) if item == "the encoder itself"), "{error}");
     assert_eq!(other.flash_bank(0x24), [0; 64]);
@@ -164,7 +164,7 @@ fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
 
 #[test]
 fn a_consent_covers_one_plan() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let shown = bench.prepare(filter()).unwrap();
     let prepared = bench.prepare(data()).unwrap();
     let consent = Consent::to(shown.plan.id());
@@ -178,7 +178,7 @@ fn a_consent_covers_one_plan() {
 /// Issue 22.4: write cycles that are not known are not 0.
 #[test]
 fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     std::fs::create_dir_all(bench.store().logbook_path()).unwrap();
     let prepared = bench.prepare(filter()).unwrap();
     let (seen, before) = (prepared.cycles_seen, bench.flash_cycles());
@@ -201,7 +201,7 @@ fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
 /// Manual 6.1: 1000 write cycles. The logbook counts; what a plan would exceed is refused, and done where that is wished.
 #[test]
 fn a_worn_encoder_is_written_only_where_that_is_wished() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(preset(1, 1)).unwrap();
     assert_eq!((prepared.cycles_seen, prepared.plan.write_cycles(), WEAR_LIMIT), (Some(0), 2, 1000));
     let mut logbook = Logbook::open(&bench.store().logbook_path()).unwrap();
@@ -238,7 +238,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
     let scenes: [Scene; 3] = [("data", data, 1), ("filter", filter, 1), ("preset", || preset(7, 7), 2)];
     for (name, change, cost) in scenes {
         for lost in ["answer", "request"] {
-            let mut original = Bench::new(Way::ConfigPin, "");
+            let mut original = Bench::new(Transport::ConfigPin, "");
             let prepared = original.prepare(change()).unwrap();
             let before = original.flash_cycles();
             let mut failures = 0;
@@ -277,7 +277,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
 /// A Wiegand result that may not have been saved: nothing tells, so it is told so.
 #[test]
 fn what_cannot_be_read_back_is_unclear() {
-    let mut original = Bench::new(Way::ConfigPin, "");
+    let mut original = Bench::new(Transport::ConfigPin, "");
     let prepared = original.prepare(wiegand_test(true)).unwrap();
     for lost in ["answer", "request"] {
         let mut bench = original.copied();
@@ -308,9 +308,9 @@ fn a_noisy_line_writes_right_or_tells() {
     let (mut right, mut told) = (0, 0);
     for noise in ["drop:0.005", "flip:0.005", "garbage:0.005"] {
         for seed in 0..6 {
-            let mut quiet = Bench::new(Way::ConfigPin, &format!("seed={seed}"));
+            let mut quiet = Bench::new(Transport::ConfigPin, &format!("seed={seed}"));
             let prepared = quiet.prepare(data()).unwrap();
-            let mut bench = Bench::new(Way::ConfigPin, &format!("seed={seed}&fault={noise}"));
+            let mut bench = Bench::new(Transport::ConfigPin, &format!("seed={seed}&fault={noise}"));
             match bench.commit_alone(&prepared, Duration::ZERO) {
                 Ok(_) => {
                     right += 1;
@@ -331,7 +331,7 @@ fn a_noisy_line_writes_right_or_tells() {
 /// Registers that no procedure guards are written one by one; what they cost is what the description says.
 #[test]
 fn a_single_register_is_written_and_read_back() {
-    let mut bench = Bench::new(Way::ConfigPin, "");
+    let mut bench = Bench::new(Transport::ConfigPin, "");
     let write = |place: &str, byte| Change::Write(vec![(place.parse().unwrap(), vec![byte])]);
     let prepared = bench.prepare(write("0x40", 5)).unwrap();
     assert_eq!(prepared.plan.write_cycles(), 0);

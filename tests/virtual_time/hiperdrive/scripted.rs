@@ -192,7 +192,7 @@ fn a_forgotten_session_is_opened_anew() {
 fn other_refusals_of_a_frame_are_told() {
     let mut desk = Desk::with([Act::Status(0x02)]);
     let refused =
-        Error::Encapsulation { asked: RequestedItem::Parameter(number(107)), status: EncapsulationStatus::new(2) };
+        Error::Encapsulation { requested: RequestedItem::Parameter(number(107)), status: EncapsulationStatus::new(2) };
     assert_eq!(desk.read(107), Err(refused));
 }
 
@@ -295,7 +295,7 @@ fn broken_frames_are_asked_again_and_silence_ends_in_time() {
     assert_eq!(desk.read(107).unwrap(), Value::Number(163_840), "a reply to another service");
     let mut desk = Desk::with([]);
     let error = desk.read(107).unwrap_err();
-    assert_eq!(error, Error::NoReply { asked: RequestedItem::Parameter(number(107)), tries: 5, late: None });
+    assert_eq!(error, Error::NoReply { requested: RequestedItem::Parameter(number(107)), tries: 5, late: None });
     assert!(error.is_lost() && desk.clock.now() < Moment::after_start(Duration::from_secs(10)));
 }
 
@@ -398,7 +398,7 @@ fn another_master_is_told_and_nothing_is_tried_twice() {
     // A reply that is lost may be one to a connection that is open: it is not opened twice.
     let mut desk = Desk::with([]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
-    assert_eq!(error, Error::NoReply { asked: RequestedItem::Open, tries: 1, late: None });
+    assert_eq!(error, Error::NoReply { requested: RequestedItem::Open, tries: 1, late: None });
     let services: Vec<u8> = desk.sent().iter().skip(1).map(|frame| frame[40]).collect();
     assert!(services.len() >= 2 && services[0] == 0x54 && services[1..].iter().all(|service| *service == 0x4E));
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use encoder_studio::buses::ethernet_ip::protocol::{Body, Command, Frame, Request};
 use encoder_studio::devices::hiperdrive::jobs::{
-    Change, Commit, Committed, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Prepared, Way,
+    Change, Commit, Committed, DeviceConnection, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, Prepared,
 };
 use encoder_studio::devices::hiperdrive::procedures::{Station, Survey};
 use encoder_studio::devices::hiperdrive::profile::Image;
@@ -58,7 +58,7 @@ impl Stand {
         let folder = folder();
         let store = Store::at(folder.path());
         let station = Station::new(MARGIN);
-        let way = Way { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
+        let way = DeviceConnection { wire, port: Some(Box::new(port)), station, target: Some(target.clone()) };
         let session = Session::to_target(way, clock.clone(), store);
         Stand { target, clock, tap, folder, session }
     }

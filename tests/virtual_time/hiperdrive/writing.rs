@@ -206,7 +206,7 @@ fn a_presence_test_that_is_not_answered_ends_in_time() {
         let Err(JobError::Interrupted { interrupted, .. }) = ended else { panic!("{query}: {ended:?}") };
         assert_eq!(
             interrupted.cause,
-            Error::NoReply { asked: RequestedItem::Set(number(47)), tries: 1, late: None },
+            Error::NoReply { requested: RequestedItem::Set(number(47)), tries: 1, late: None },
             "{query}"
         );
         assert_eq!((interrupted.unclear().as_deref(), interrupted.done.ops), (Some("47"), 0), "{query}");

@@ -7,7 +7,7 @@
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Permit;
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Goal, Lock, MotionRequest};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ErrorCode, RunEnd, State};
-use encoder_studio::devices::hiperdrive::sim::{Defect, Load};
+use encoder_studio::devices::hiperdrive::sim::{Defect, SpindleLoad};
 
 use super::bench::Bench;
 use super::model::Model;
@@ -39,10 +39,10 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         0 | 1 => bench.fail([ErrorCode::OVER_CURRENT, ErrorCode::RS485][dice.usize(..2)]),
         2 => {
             let wall_above = Some(bench.position().into());
-            bench.load(Load { wall_above, ..Load::default() });
+            bench.load(SpindleLoad { wall_above, ..SpindleLoad::default() });
         }
-        3 => bench.load(Load { percent: 60, ..Load::default() }),
-        4 | 5 => bench.load(Load::default()),
+        3 => bench.load(SpindleLoad { percent: 60, ..SpindleLoad::default() }),
+        4 | 5 => bench.load(SpindleLoad::default()),
         6 => bench.station.turn_s3(now, dice.u8(..3)),
         7 => bench.station.turn_s3(now, 0),
         8 => bench.reset(),
@@ -56,10 +56,10 @@ fn mishap(bench: &mut Bench, model: &mut Model, dice: &mut fastrand::Rng) {
         }
         11 | 12 => bench.permit.locks.clear(),
         13 => bench.late = dice.usize(..4),
-        14 => bench.load(Load { defect: Some(Defect::RunsOn), ..Load::default() }),
+        14 => bench.load(SpindleLoad { defect: Some(Defect::RunsOn), ..SpindleLoad::default() }),
         15 => {
             let defect = Some([Defect::Reversed, Defect::SaysOutside][dice.usize(..2)]);
-            bench.load(Load { defect, ..Load::default() });
+            bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
         }
         16 => {
             let steps = f64::from(dice.i32(-TURN..TURN));

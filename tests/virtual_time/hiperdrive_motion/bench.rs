@@ -7,7 +7,7 @@ use encoder_studio::devices::hiperdrive::procedures::dead_man::{DeadMan, Ended, 
 use encoder_studio::devices::hiperdrive::protocol::{
     Actual, ControlBit, ControlWord, DriveNumber, ErrorCode, OutImage, ParameterNumber, Setpoint, State, Value,
 };
-use encoder_studio::devices::hiperdrive::sim::{Load, Setup, Station};
+use encoder_studio::devices::hiperdrive::sim::{Setup, SpindleLoad, Station};
 use encoder_studio::units::Moment;
 
 pub(super) const INTERVAL: Duration = Duration::from_millis(10);
@@ -144,7 +144,7 @@ impl Bench {
         self.station.drive(DriveNumber::FIRST).unwrap().fail(now, code);
     }
 
-    pub(super) fn load(&mut self, load: Load) {
+    pub(super) fn load(&mut self, load: SpindleLoad) {
         let now = self.now;
         self.station.drive(DriveNumber::FIRST).unwrap().set_load(now, load);
     }

@@ -4,7 +4,7 @@
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest, Permit, Phase, Refusal};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
-use encoder_studio::devices::hiperdrive::sim::{Defect, Load};
+use encoder_studio::devices::hiperdrive::sim::{Defect, SpindleLoad};
 
 use super::bench::Bench;
 use super::{FULL, TURN, to};
@@ -28,7 +28,7 @@ fn bench(defect: Option<Defect>) -> Bench {
     bench.write(158, LIMITS.0.into());
     bench.write(160, LIMITS.1.into());
     bench.permit = Permit::within(LIMITS.0, LIMITS.1);
-    bench.load(Load { defect, ..Load::default() });
+    bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
     bench
 }
 
@@ -41,7 +41,7 @@ fn bench_outside(beyond: i32, defect: Option<Defect>) -> Bench {
     // The numbers of the places change, as with a limit that another master writes.
     let (low, high) = if beyond > 0 { (-TURN, TURN - beyond) } else { (-TURN - beyond, TURN) };
     bench.permit = Permit::within(low, high);
-    bench.load(Load { defect, ..Load::default() });
+    bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
     bench
 }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 use encoder_studio::devices::interbus::procedures::Master;
 use encoder_studio::devices::interbus::procedures::write::{EndState, Written};
 use encoder_studio::devices::interbus::procedures::{
-    Awaited, Error, Exception, RequestedItem, Says, Station, identify, read_programs, select,
+    Awaited, Error, Exception, RequestedItem, Station, WordReply, identify, read_programs, select,
 };
 use encoder_studio::devices::interbus::profile::Op;
 use encoder_studio::devices::interbus::protocol::{Parameter, StartupMode, WindowShift};
@@ -63,7 +63,7 @@ fn nothing_but_the_exact_echo_that_stands_counts() {
         let script = reading_back(Script::new().on(STEPS, words));
         let (ended, steps, _) = carry_out(script, parameters(&[(Parameter::Steps, 255)]));
         assert_eq!(ended.unwrap().verified, 1, "{label}");
-        let echoed = steps.iter().filter(|step| step.out == STEPS && step.says == Says::Echoed).count();
+        let echoed = steps.iter().filter(|step| step.out == STEPS && step.reply == WordReply::Echoed).count();
         assert!(echoed >= 1, "{label}");
         let run = steps.iter().position(|step| step.out == RUN).unwrap();
         assert_eq!(steps[run - 1].input & !0x2000_0000, 0xC200_00FF, "{label}: the echo stood before run");
@@ -235,7 +235,7 @@ fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
         let (ended, _, sent) = carry_out(script, worked_example());
         let interrupted = ended.unwrap_err();
         let asked = RequestedItem::Write { register: 0, word: STEPS };
-        assert_eq!(interrupted.cause, Error::Exception { asked, exception: Exception::new(code) });
+        assert_eq!(interrupted.cause, Error::Exception { requested: asked, exception: Exception::new(code) });
         assert_eq!(interrupted.left, EndState::AsFound, "{code:02X}");
         assert_eq!(sent.contains(&STEPS), wrote, "{sent:08X?}");
         assert!(sent.ends_with(&[RUN, 0]), "{code:02X}: {sent:08X?}");

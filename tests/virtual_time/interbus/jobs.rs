@@ -2,7 +2,7 @@
 
 use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
 use encoder_studio::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult, Verdict};
-use encoder_studio::devices::interbus::procedures::{Error, Says};
+use encoder_studio::devices::interbus::procedures::{Error, WordReply};
 use encoder_studio::devices::interbus::profile::{Direction, Item, ItemValue};
 use encoder_studio::devices::interbus::protocol::{Mode, ReadOut, StartupMode};
 use encoder_studio::link::{write_entry, write_header};
@@ -155,9 +155,9 @@ fn each_step_of_the_handshake_is_told_with_its_words() {
     assert!(ended.is_ok());
     let told: Vec<(u32, u32)> = steps.iter().map(|step| (step.out, step.input)).collect();
     assert!(told.contains(&(0x2021_0000, 0xA000_0007)), "{told:08X?}");
-    assert!(matches!(steps.last().map(|step| (step.out, step.says)), Some((0, Says::Runs))));
+    assert!(matches!(steps.last().map(|step| (step.out, step.reply)), Some((0, WordReply::Runs))));
     // No word twice in a row.
-    assert!(steps.windows(2).all(|pair| (pair[0].out, pair[0].says) != (pair[1].out, pair[1].says)));
+    assert!(steps.windows(2).all(|pair| (pair[0].out, pair[0].reply) != (pair[1].out, pair[1].reply)));
 }
 
 #[test]

@@ -109,7 +109,7 @@ impl ProcessData for Script {
         self.now += self.pace;
         if let Some((word, code, _)) = refused {
             let asked = RequestedItem::Write { register: 0, word };
-            return Err(Error::Exception { asked, exception: Exception::new(code) });
+            return Err(Error::Exception { requested: asked, exception: Exception::new(code) });
         }
         self.input()
     }

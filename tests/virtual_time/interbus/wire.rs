@@ -174,7 +174,7 @@ fn a_refusal_is_told_with_its_cause() {
         let (ended, requests, took) = read("input=7", move |_, request| vec![(2, reply(request, &[1, 0x84, code]))]);
         let error = ended.unwrap_err();
         let asked = RequestedItem::Input { register: 7 };
-        assert_eq!(error, Error::Exception { asked, exception: Exception::new(code) });
+        assert_eq!(error, Error::Exception { requested: asked, exception: Exception::new(code) });
         let text = error.to_string();
         assert!(text.contains(name) && text.contains(cause), "{text}");
         assert_eq!(requests.len(), tries, "{text}");
@@ -192,8 +192,8 @@ fn a_refusal_is_told_with_its_cause() {
 fn what_is_no_reply_is_asked_for_again() {
     let wrong: [(&str, Vec<u8>, Damage); 6] = [
         ("text", b"HTTP/1.1 400 Bad Request\r\n\r\n".to_vec(), Damage::NoFrame { bytes: 28 }),
-        ("another unit", vec![2, 4, 4, 0, 0, 0, 1], Damage::Unit { asked: 1, got: 2 }),
-        ("another function", vec![1, 3, 4, 0, 0, 0, 1], Damage::Function { asked: 4, got: 3 }),
+        ("another unit", vec![2, 4, 4, 0, 0, 0, 1], Damage::Unit { requested: 1, got: 2 }),
+        ("another function", vec![1, 3, 4, 0, 0, 0, 1], Damage::Function { requested: 4, got: 3 }),
         ("one register", vec![1, 4, 2, 0, 1], Damage::Registers),
         ("three registers", vec![1, 4, 6, 0, 1, 0, 2, 0, 3], Damage::Registers),
         ("a wrong count", vec![1, 4, 6, 0, 1, 0, 2], Damage::Registers),
@@ -208,7 +208,7 @@ fn what_is_no_reply_is_asked_for_again() {
         });
         assert_eq!((ended.unwrap().word, requests.len()), (9, 2), "{label}");
         let (ended, requests, took) = read("", move |_, request| vec![(2, says(request))]);
-        let expected = Error::Damaged { asked: RequestedItem::Input { register: 0 }, tries: 5, cause: damage };
+        let expected = Error::Damaged { requested: RequestedItem::Input { register: 0 }, tries: 5, cause: damage };
         assert_eq!((ended.unwrap_err(), requests.len()), (expected, 5), "{label}");
         assert!(took < Duration::from_secs(12), "{label}");
     }
@@ -217,7 +217,7 @@ fn what_is_no_reply_is_asked_for_again() {
 #[test]
 fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
     let (ended, requests, took) = read("", |_, _| vec![]);
-    assert_eq!(ended.unwrap_err(), Error::NoReply { asked: RequestedItem::Input { register: 0 }, tries: 3 });
+    assert_eq!(ended.unwrap_err(), Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
     assert!(took < Duration::from_secs(12), "{took:?}");
     // It hangs after a while: also leading back ends soon.

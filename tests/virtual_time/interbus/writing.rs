@@ -64,7 +64,7 @@ fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
         // 20 000 = 4E20h, and 4 turns have room for them only once they are set.
         assert_eq!(setting(&stand), [0x0400_0004, 0x0200_4E20, 0x0800_4E1F, 0x8000_0000]);
         assert_eq!(stand.left(), (0, StartupMode::K3));
-        let kept = stand.gateway.with_encoder(|encoder| encoder.kept().clone());
+        let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
         assert_eq!((kept.gear().steps(), kept.gear().turns(), kept.preset()), (20_000, 4, 19_999));
         // The session knows the gear from then on.
         assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(20_000));
@@ -99,7 +99,7 @@ fn only_edges_that_differ_are_sent_and_a_program_is_one_store() {
         let edges = setting(&stand).into_iter().filter(|word| matches!(word >> 29, 0b010 | 0b011)).count();
         assert_eq!(edges, 8, "{faults}");
         assert_eq!(stand.left(), (0, found), "{faults}");
-        let kept = stand.gateway.with_encoder(|encoder| encoder.kept().clone());
+        let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
         assert_eq!(kept.program(program(7)).cams[0], Some(cam(3000, 7)), "{faults}");
         assert_eq!((kept.program(program(7)).mask, kept.program(program(2)).cams[6]), (0x3C, Some(cam(3006, 7))));
         assert_eq!(kept.gear().steps(), 3600, "{faults}");
@@ -121,7 +121,7 @@ fn the_shift_of_the_window_rides_along_or_is_set_alone() {
         stand.commit(prepared).unwrap();
         assert_eq!(stand.stores(), before + stores);
         assert!(setting(&stand).contains(&0x2010_0008));
-        assert_eq!(stand.gateway.with_encoder(|encoder| encoder.kept().shift().get()), 8);
+        assert_eq!(stand.gateway.with_encoder(|encoder| encoder.stored().shift().get()), 8);
     }
 }
 
@@ -179,7 +179,7 @@ fn a_restore_writes_what_differs_and_leaves_the_mounting_of_another() {
     let prepared = other.prepare(Change::Restore { profile: profile.clone(), options });
     assert_eq!(prepared.mounting_left, [Item::Preset]);
     other.commit(prepared).unwrap();
-    let kept = other.gateway.with_encoder(|encoder| encoder.kept().clone());
+    let kept = other.gateway.with_encoder(|encoder| encoder.stored().clone());
     assert_eq!((kept.gear().steps(), kept.preset()), (3600, 5));
     for number in ProgramNumber::all() {
         let wanted = profile.image.program(number).unwrap();
@@ -319,7 +319,7 @@ fn steps_less_one_are_read_and_written_as_they_are() {
     let change = edited(&mut stand, &[], |wanted| wanted.parameters.steps = 719);
     let prepared = stand.prepare(change);
     stand.commit(prepared).unwrap();
-    assert_eq!(stand.gateway.with_encoder(|encoder| encoder.kept().gear().steps()), 720);
+    assert_eq!(stand.gateway.with_encoder(|encoder| encoder.stored().gear().steps()), 720);
     assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(720));
 }
 
@@ -372,7 +372,7 @@ fn an_operation_tells_what_it_changes() {
     let (mut told, consent) = (Vec::new(), Consent::to(prepared.plan.id()));
     let commit = InterbusJob::Commit(Box::new(Commit { prepared, consent, force_wear: false }));
     let ended = stand.session.run(JobId::default(), commit, &mut |event| {
-        if let Event::Progress(_, Progress { done, total, what: JobStep::Operation(item) }) = event {
+        if let Event::Progress(_, Progress { done, total, step: JobStep::Operation(item) }) = event {
             told.push((done, total, item));
         }
     });
@@ -416,7 +416,7 @@ fn an_encoder_with_lost_parameters_is_led_back_and_restored() {
     let prepared = stand.prepare(Change::Restore { profile, options: RestoreOptions::default() });
     let done = stand.commit(prepared).unwrap();
     assert_eq!(done.written.verified, done.written.written);
-    let kept = stand.gateway.with_encoder(|encoder| encoder.kept().clone());
+    let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
     assert_eq!((kept.gear().steps(), kept.gear().turns()), (360, 1));
     assert!(stand.session.sample().unwrap().is_valid());
     assert_eq!(stand.left(), (0, StartupMode::K3));

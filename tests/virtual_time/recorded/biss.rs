@@ -8,13 +8,13 @@ use encoder_studio::devices::biss::protocol::PresetValue;
 
 use super::{Ready, compare, listen};
 use crate::biss::hands::{Hands, calibration, data, exchanges, filter, preset, restore_of, wiegand_test};
-use crate::biss::support::{Bench, Way};
+use crate::biss::support::{Bench, Transport};
 
 /// The shortest runs: the fewest exchanges.
 const RPM: (f64, f64) = (500.0, 2000.0);
 
 fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {
-    for (label, way) in [("pin", Way::ConfigPin), ("adapter", Way::Adapter)] {
+    for (label, way) in [("pin", Transport::ConfigPin), ("adapter", Transport::Adapter)] {
         let mut original = Bench::new(way, "");
         let change = change(&mut original);
         let prepared = original.prepare(change).unwrap();

@@ -57,7 +57,7 @@ fn a_word_is_taken_as_it_is_asked_for() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
     let words = stand.read();
     assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
-    assert!(words.begins() && !words.is_streamed() && !words.is_limited && words.period_ns == 0);
+    assert!(words.is_stream_start() && !words.is_streamed() && !words.is_limited && words.period_ns == 0);
     // More clocks than bits: zeros behind; fewer: the first ones.
     assert_eq!(set(&mut stand, Asking { clocks: 27, ..QUICK }).unwrap().clock_hz, 1_500_000);
     let longer = stand.read();

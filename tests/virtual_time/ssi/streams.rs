@@ -38,7 +38,7 @@ fn slow_polling_asks_word_by_word() {
     let mut stand = Stand::quick(TURNING);
     stand.session.pace(Some(Duration::from_millis(5)));
     let mut samples: Vec<Words> = (0..4).map(|_| stand.sample()).collect();
-    assert!(stand.read().begins(), "a word by itself is none of them");
+    assert!(stand.read().is_stream_start(), "a word by itself is none of them");
     samples.push(stand.sample());
     let firsts: Vec<u64> = samples.iter().map(|words| words.first).collect();
     assert_eq!(firsts, [0, 1, 2, 3, 4]);
@@ -47,7 +47,7 @@ fn slow_polling_asks_word_by_word() {
     assert_eq!((stand.count(Operation::SsiRead), stand.count(Operation::SsiStream)), (6, 0));
     stand.session.pace(None);
     stand.session.pace(Some(Duration::from_millis(5)));
-    assert!(stand.sample().begins());
+    assert!(stand.sample().is_stream_start());
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn what_is_wished_closer_than_one_can_ask_is_streamed() {
     stand.session.pace(Some(FAST));
     let runs = stand.samples(Duration::from_secs(3));
     check(&runs);
-    assert!(runs[0].begins() && runs[1..].iter().all(|run| !run.begins() && run.is_streamed()));
+    assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start() && run.is_streamed()));
     // What was taken last may still be on its way.
     let words: usize = runs.iter().map(|run| run.words.len()).sum();
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
@@ -75,10 +75,10 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
         let runs = stand.samples(Duration::from_millis(200));
         check(&runs);
         let begin = runs[0].at;
-        assert!(runs[0].begins() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
+        assert!(runs[0].is_stream_start() && last.is_none_or(|last| begin > last), "{round}: {begin:?}, {last:?}");
         let read = stand.read();
         last = Some(read.at);
-        assert!(read.begins());
+        assert!(read.is_stream_start());
     }
     stand.session.pace(Some(Duration::from_millis(5)));
     assert!(!stand.sample().is_streamed(), "slow enough to be asked");
@@ -99,7 +99,7 @@ fn words_are_taken_otherwise_while_a_stream_is_wished() {
         let asking = Asking { clocks, ..QUICK };
         stand.session.run_inline(SsiJob::Set(asking)).unwrap();
         let runs = stand.samples(Duration::from_millis(100));
-        assert!(runs[0].begins() && runs.iter().all(|run| run.clocks == clocks && run.lost == 0));
+        assert!(runs[0].is_stream_start() && runs.iter().all(|run| run.clocks == clocks && run.lost == 0));
         let widest = runs.iter().flat_map(|run| &run.words).max().unwrap();
         assert!(*widest > 0 && widest >> clocks == 0, "{widest:X}");
     }
@@ -128,7 +128,7 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert_eq!(error, Error::Adapter(AdapterError::Mute));
     stand.tap.lock().unwrap().mute_from = None;
     // The stream is told to end with HELLO.
-    assert!(stand.sample().begins());
+    assert!(stand.sample().is_stream_start());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
     assert!(matches!(stand.session.sample(), Err(Error::Link(error)) if error.is_lost()));
@@ -150,7 +150,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
             let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
             assert_eq!(error, Error::Adapter(AdapterError::Mute));
         }
-        assert!(stand.sample().begins());
+        assert!(stand.sample().is_stream_start());
         assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2), "{by_job}");
     }
 }

@@ -5,9 +5,9 @@ use encoder_studio::app::DeviceCommand;
 use encoder_studio::app::review::Stage;
 use encoder_studio::app::{Action, ReviewAction};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber, ParameterNumber, Value};
-use encoder_studio::devices::hiperdrive::sim::Hindrance;
+use encoder_studio::devices::hiperdrive::sim::WriteFault;
 use encoder_studio::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisStep, Button, Entries, Seen, TestTarget,
+    Axis, AxisAction as Run, AxisStep, Button, DriveFacts, Entries, TestTarget,
 };
 use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, Unit};
 
@@ -39,7 +39,7 @@ pub(super) fn run(desk: &mut Desk, action: Run) {
     act(desk, Hiperdrive::Axis(action));
 }
 
-pub(super) fn seen(desk: &Desk) -> Seen {
+pub(super) fn seen(desk: &Desk) -> DriveFacts {
     unit(desk).seen(unit(desk).drive())
 }
 
@@ -80,10 +80,10 @@ pub(super) fn begun(link: &str) -> Desk {
 #[track_caller]
 pub(super) fn consent(desk: &mut Desk) {
     desk.until("the plan is there", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     until_ready(desk);
-    let Stage::Ready(plan) = desk.studio.shown().unwrap().sheet().unwrap().stage else { panic!("no plan") };
+    let Stage::Ready(plan) = desk.studio.selected_device().unwrap().sheet().unwrap().stage else { panic!("no plan") };
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Write(plan)));
 }
@@ -93,7 +93,7 @@ pub(super) fn consent(desk: &mut Desk) {
 pub(super) fn write(desk: &mut Desk) {
     consent(desk);
     desk.until("it is written", |studio| {
-        studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
+        studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Done { .. }))
     });
     let id = unit(desk).session.id;
     desk.act(Action::Review(id, ReviewAction::Close));
@@ -157,20 +157,20 @@ pub(super) fn stands(desk: &mut Desk) {
 /// A write of this step, by the number of drive 1; where the way is `rough`, it is refused first, then cut off in the middle.
 #[track_caller]
 pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
-    for hindrance in [Hindrance::Refused, Hindrance::CutOff].into_iter().filter(|_| rough) {
+    for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
         let own = match number {
             47 => ParameterNumber::SAVE,
             number => ParameterNumber::of_drive(number, unit(desk).drive()).unwrap(),
         };
         let target = unit(desk).target.clone().unwrap();
-        target.with(|station| station.hinder(Some((own, hindrance))));
+        target.with(|station| station.set_write_fault(Some((own, hindrance))));
         let step = axis(desk).step();
         run(desk, Run::Press(Button::Do));
         consent(desk);
         desk.until("it has failed", |studio| {
-            studio.shown().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
+            studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Failed { .. }))
         });
-        target.with(|station| station.hinder(None));
+        target.with(|station| station.set_write_fault(None));
         let id = unit(desk).session.id;
         desk.act(Action::Review(id, ReviewAction::Close));
         desk.until("it can be asked", |studio| studio.hiperdrive().is_some_and(|own| !own.session.is_busy()));
@@ -185,7 +185,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
         // The last step writes nothing that is saved.
         assert_eq!(own.is_saved(), step == AxisStep::PowerCycle, "{hindrance:?} of {number}");
         assert_eq!(own.fallen(), None, "{hindrance:?} of {number}");
-        if hindrance == Hindrance::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
+        if hindrance == WriteFault::CutOff && matches!(step, AxisStep::Reference | AxisStep::Upper) {
             control(desk);
         }
     }

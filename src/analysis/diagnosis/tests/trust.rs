@@ -2,8 +2,8 @@
 
 use super::*;
 
-fn found(made: &Made) -> Vec<What> {
-    made.diagnosed().findings.iter().map(|finding| finding.what).collect()
+fn found(made: &Made) -> Vec<FindingKind> {
+    made.diagnosed().findings.iter().map(|finding| finding.kind).collect()
 }
 
 fn plain(_: f64, _: f64, signal: (f64, f64)) -> (f64, f64) {
@@ -22,7 +22,7 @@ fn missing_samples_are_told_and_leave_the_frequency_right() {
         column.drain(10_000..10_212);
     }
     let finding = capture.finding();
-    let What::Missing { gaps: 1, longest_s } = finding.what else { panic!("{finding:?}") };
+    let FindingKind::Missing { gaps: 1, longest_s } = finding.kind else { panic!("{finding:?}") };
     near(longest_s, 213e-5, 1e-9);
     assert_eq!(finding.severity, Severity::Warning);
     near(analysed(&capture).frequency_hz().unwrap(), 2_000.0, 0.01);
@@ -33,7 +33,7 @@ fn a_time_that_goes_back_is_told() {
     let mut capture = made(|time| 2_000.0 * time, plain);
     let shift = capture.time[20_000];
     capture.time.iter_mut().skip(20_000).for_each(|time| *time -= shift);
-    assert_eq!(found(&capture), [What::TimeBack { sample: 20_000 }]);
+    assert_eq!(found(&capture), [FindingKind::TimeBack { sample: 20_000 }]);
     near(analysed(&capture).frequency_hz().unwrap(), 2_000.0, 0.01);
 }
 
@@ -41,7 +41,7 @@ fn a_time_that_goes_back_is_told() {
 fn a_shaft_that_turns_back_has_the_mean_of_both_directions() {
     // 12 periods to either side, eight times a second: 0.4 s are 3.2 of these, 153.6 periods and what the rest comes to.
     let capture = made(|time| 12.0 * (TAU * 8.0 * time).sin(), plain);
-    assert_eq!(found(&capture), [What::Reversed { times: 6 }]);
+    assert_eq!(found(&capture), [FindingKind::Reversed { times: 6 }]);
     // 6 turning points: 12 + 5·24 to the last one at −12, and back to 12·sin(6.4π) = 11.413.
     near(analysed(&capture).frequency_hz().unwrap(), (12.0 + 5.0 * 24.0 + 23.413) / 0.399_99, 0.05);
 }
@@ -54,7 +54,7 @@ fn few_samples_a_period_are_told() {
         assert_eq!(analysed(&capture).is_followed(), followed, "{hertz}");
         match found.as_slice() {
             [] => assert!(followed, "{hertz}"),
-            [What::Coarse { step_deg }] => near(*step_deg, hertz / RATE * 360.0, 0.1),
+            [FindingKind::Coarse { step_deg }] => near(*step_deg, hertz / RATE * 360.0, 0.1),
             _ => panic!("{hertz}: {found:?}"),
         }
     }
@@ -62,8 +62,8 @@ fn few_samples_a_period_are_told() {
 
 #[test]
 fn beside_a_disturbance_the_parameters_are_uncertain() {
-    let uncertain = |what: &What| match what {
-        What::Uncertain { share } => Some(*share),
+    let uncertain = |what: &FindingKind| match what {
+        FindingKind::Uncertain { share } => Some(*share),
         _ => None,
     };
     let hum = found(&made(steady, added(0.05, 0.05, 50.0)));
@@ -83,13 +83,13 @@ fn a_correction_that_harms_is_told() {
         |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine + 0.01 * (3.0 * angle).cos());
     for capture in [made(steady, third), made(steady, other)] {
         let found = found(&capture);
-        let [What::CorrectionHarms { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
+        let [FindingKind::CorrectionHarms { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
         // 0.02·sin 2θ, and with the gain as much again: Python gives 2.29° and 4.59°.
         near(*raw_deg, 2.29, 0.02);
         near(*corrected_deg, 4.59, 0.1);
     }
     let helps = made(steady, |_, _, (sine, cosine)| (sine + 0.02, cosine));
-    assert!(!found(&helps).iter().any(|what| matches!(what, What::CorrectionHarms { .. })));
+    assert!(!found(&helps).iter().any(|what| matches!(what, FindingKind::CorrectionHarms { .. })));
 }
 
 #[test]
@@ -97,7 +97,7 @@ fn columns_against_ground_are_told_instead_of_an_offset() {
     for amplitude in [0.5, 1.0] {
         let capture = made(steady, |_, _, (sine, cosine)| (2.5 + amplitude * sine, 2.6 + amplitude * cosine));
         let finding = capture.finding();
-        let What::SingleEnded { sine_v, cosine_v } = finding.what else { panic!("{finding:?}") };
+        let FindingKind::SingleEnded { sine_v, cosine_v } = finding.kind else { panic!("{finding:?}") };
         near(sine_v, 2.5, 1e-3);
         near(cosine_v, 2.6, 1e-3);
         let analysis = analysed(&capture);
@@ -105,7 +105,7 @@ fn columns_against_ground_are_told_instead_of_an_offset() {
         assert_eq!(again.findings.len(), 1, "{again:?}");
     }
     let offset = made(steady, |_, _, (sine, cosine)| (sine + 0.3, cosine));
-    assert!(matches!(offset.finding().what, What::Limit(OutOfLimits::OffsetSine(_))));
+    assert!(matches!(offset.finding().kind, FindingKind::Limit(OutOfLimits::OffsetSine(_))));
 }
 
 #[test]
@@ -113,7 +113,7 @@ fn a_shaft_that_stands_is_told_so() {
     for periods in [0.0, 0.13, 0.5, 0.88] {
         let capture = made(|_| periods, plain);
         assert_eq!(Analysis::of(capture.record().samples).unwrap_err(), AnalysisError::AtRest, "{periods}");
-        assert_eq!(found(&capture), [What::AtRest]);
+        assert_eq!(found(&capture), [FindingKind::AtRest]);
     }
     // Noise around zero may be an open cable.
     let capture = made(|_| 0.0, |_, _, _| (0.0, 0.0));

@@ -7,12 +7,12 @@ use std::convert::Infallible;
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-use crate::buses::bridge::procedures::{Portion, Streaming, Tap, TapError, Wanted};
+use crate::buses::bridge::procedures::{Portion, StreamRequest, Streaming, Tap, TapError};
 use crate::buses::bridge::protocol::Data;
 use crate::link::{ByteLink, Cancel, Clock, Ctx, Trace};
 use crate::units::SupplyVoltage;
 use crate::worker::OpenError;
-use crate::worker::stream::{Batch, Counted, Producer};
+use crate::worker::stream::{Batch, Producer, SampleCount};
 
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
@@ -20,10 +20,10 @@ pub use open::open_adapter;
 /// The configuration of a stream, and its samples.
 pub trait Stretch: Send + 'static {
     /// The samples of a batch.
-    type Samples: Counted;
+    type Samples: SampleCount;
 
     /// Returns the requested setting of the adapter.
-    fn wanted(&self) -> Wanted;
+    fn wanted(&self) -> StreamRequest;
 
     /// Returns the samples of a packet; `None` if it does not belong to this stream.
     fn read(&self, data: Data, streaming: &Streaming) -> Option<Self::Samples>;
@@ -124,8 +124,8 @@ impl<S: Stretch> Producer for Bridge<S> {
 impl Stretch for SineCosine {
     type Samples = Pair;
 
-    fn wanted(&self) -> Wanted {
-        Wanted::Analog { sample_hz: self.sample_hz }
+    fn wanted(&self) -> StreamRequest {
+        StreamRequest::Analog { sample_hz: self.sample_hz }
     }
 
     fn read(&self, data: Data, streaming: &Streaming) -> Option<Pair> {
@@ -137,7 +137,7 @@ impl Stretch for SineCosine {
     }
 }
 
-impl Counted for Pair {
+impl SampleCount for Pair {
     fn count(&self) -> usize {
         self.sine_v.len()
     }

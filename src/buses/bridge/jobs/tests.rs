@@ -45,8 +45,8 @@ impl Stretch for RawFrames {
     type Samples = Vec<u64>;
 
     /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.
-    fn wanted(&self) -> Wanted {
-        Wanted::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
+    fn wanted(&self) -> StreamRequest {
+        StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }
 
     fn read(&self, data: Data, _: &Streaming) -> Option<Vec<u64>> {
@@ -278,22 +278,22 @@ fn a_supply_that_is_wished_is_switched_on_and_never_too_high() {
         let heard = device.heard.clone();
         let mut bench = bench(SINE_COSINE, device);
         bench.bridge.supply = Some(Family::AfsAfm60.supply());
-        let mut asked = vec![Request::Hello, Request::Supply { on: true, millivolt: 5_000 }];
+        let mut requested = vec![Request::Hello, Request::Supply { on: true, millivolt: 5_000 }];
         match expected {
             Ok(supplied) => {
                 let begun = bench.clock.now();
                 assert_eq!(bench.take(Duration::from_millis(1_100)).len(), 1);
                 assert!(bench.clock.now().since(begun) >= Duration::from_secs(1), "it has to start");
                 assert_eq!(bench.bridge.streaming().get().unwrap().supplied, Some(supplied));
-                asked.extend([Request::AnalogConfig { sample_hz: 50_000 }, Request::AnalogStream { on: true }]);
+                requested.extend([Request::AnalogConfig { sample_hz: 50_000 }, Request::AnalogStream { on: true }]);
             }
             Err((given, measured, greatest)) => {
                 let error = adapter_error(bench.error());
                 assert_eq!(error, AdapterError::Overvoltage { given, measured, greatest });
-                asked.push(Request::Supply { on: false, millivolt: 0 });
+                requested.push(Request::Supply { on: false, millivolt: 0 });
             }
         }
-        assert_eq!(*heard.lock().unwrap(), asked);
+        assert_eq!(*heard.lock().unwrap(), requested);
     }
     let mut bench = bench(SINE_COSINE, puppet(Vec::new()));
     bench.bridge.supply = Some(Family::Hiperface.supply());

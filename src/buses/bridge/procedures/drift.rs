@@ -31,16 +31,16 @@ impl Drift {
     /// Our time for `own_ns` of the adapter's, which cannot be later than `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
         let most = i128::from(latest.nanoseconds()) - own_ns;
-        let told = self.least_lead(own_ns, most);
+        let lead = self.least_lead(own_ns, most);
         let elapsed = (own_ns - self.before_ns).max(0);
         self.before_ns = own_ns;
         let ahead = match self.ahead_ns {
-            Some(ahead) if (told - ahead).abs() <= JUMP_NS => {
-                let wrong = told - ahead;
+            Some(ahead) if (lead - ahead).abs() <= JUMP_NS => {
+                let wrong = lead - ahead;
                 let beyond = wrong - wrong.clamp(-SLACK_NS, SLACK_NS);
                 ahead + beyond.clamp(-elapsed / SLOWNESS, elapsed / SLOWNESS)
             }
-            _ => told,
+            _ => lead,
         };
         self.ahead_ns = Some(ahead);
         Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))

@@ -221,9 +221,9 @@ impl Flow {
         let own = i128::from(t0_us) * 1000;
         let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
         let latest = Time::from(now).plus(lasts.saturating_neg()).max(self.not_before);
-        let told = self.drift.time(own, latest);
+        let estimate = self.drift.time(own, latest);
         // An adapter may count its samples well and its time badly.
-        let time = self.last.map_or(told, |last| told.max(last.plus(1)));
+        let time = self.last.map_or(estimate, |last| estimate.max(last.plus(1)));
         self.last = Some(time.plus(lasts));
         time
     }

@@ -22,7 +22,7 @@ use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
 pub use power::SupplyAfter;
-pub use tap::{Streaming, Tap, TapError, Wanted};
+pub use tap::{StreamRequest, Streaming, Tap, TapError};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
@@ -118,9 +118,9 @@ pub enum AdapterError {
         cause: BodyError,
     },
     /// It answers another question.
-    #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", asked.byte(), got.byte())]
+    #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", requested.byte(), got.byte())]
     Other {
-        asked: Operation,
+        requested: Operation,
         /// The operation of the reply.
         got: Operation,
     },
@@ -135,8 +135,8 @@ pub(crate) enum Failure {
 
 impl AdapterError {
     /// Returns the error for a reply to another operation than the one requested.
-    pub fn other(asked: Operation, reply: &Reply) -> Self {
-        AdapterError::Other { asked, got: reply.operation() }
+    pub fn other(requested: Operation, reply: &Reply) -> Self {
+        AdapterError::Other { requested, got: reply.operation() }
     }
 }
 
@@ -153,7 +153,7 @@ impl From<LineError> for Failure {
 }
 
 /// A reply, and between which moments it was made.
-pub(crate) struct Answered {
+pub(crate) struct TimedReply {
     pub(crate) reply: Reply,
     sent_at: Moment,
     received_at: Moment,
@@ -197,7 +197,7 @@ impl AdapterState {
     }
 
     /// The moment of our clock in which the adapter's stood at `t_us`, with the reply that told so.
-    pub(crate) fn moment_of(&mut self, t_us: u64, answered: &Answered) -> Moment {
+    pub(crate) fn moment_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
         self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
     }
 }
@@ -271,11 +271,11 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(crate) fn ask(&mut self, request: &Request) -> Result<Answered, Failure> {
+    pub(crate) fn ask(&mut self, request: &Request) -> Result<TimedReply, Failure> {
         self.repeat(request, &[])
     }
 
-    fn repeat(&mut self, request: &Request, before: &[u8]) -> Result<Answered, Failure> {
+    fn repeat(&mut self, request: &Request, before: &[u8]) -> Result<TimedReply, Failure> {
         for _ in 0..2 {
             if let Some(answered) = self.exchange(request, before)? {
                 return Ok(answered);
@@ -288,11 +288,11 @@ impl Adapter<'_, '_> {
     ///
     /// # Errors
     /// See [`AdapterError`].
-    pub(crate) fn ask_once(&mut self, request: &Request) -> Result<Option<Answered>, Failure> {
+    pub(crate) fn ask_once(&mut self, request: &Request) -> Result<Option<TimedReply>, Failure> {
         self.exchange(request, &[])
     }
 
-    fn exchange(&mut self, request: &Request, before: &[u8]) -> Result<Option<Answered>, Failure> {
+    fn exchange(&mut self, request: &Request, before: &[u8]) -> Result<Option<TimedReply>, Failure> {
         self.line.start()?;
         let seq = self.adapter.next_seq;
         self.adapter.next_seq = seq.wrapping_add(1);
@@ -308,7 +308,7 @@ impl Adapter<'_, '_> {
                 if let Some(reply) = self.judge(request, seq, &packet)? {
                     self.state.answered();
                     self.state.answer_began(self.line.now());
-                    return Ok(Some(Answered { reply, sent_at, received_at: self.line.now() }));
+                    return Ok(Some(TimedReply { reply, sent_at, received_at: self.line.now() }));
                 }
             }
             let broken = self.adapter.receiver.dropped() - broken;

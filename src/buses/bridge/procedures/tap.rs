@@ -11,7 +11,7 @@ use crate::units::{Moment, SupplyVoltage};
 
 /// A stream and how its signals are taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Wanted {
+pub enum StreamRequest {
     /// Frames of BiSS.
     Biss {
         /// Clock in hertz.
@@ -92,7 +92,7 @@ impl Tap {
     pub fn begin(
         &mut self,
         ctx: Ctx<'_>,
-        wanted: Wanted,
+        wanted: StreamRequest,
         supply: Option<SupplyVoltage>,
     ) -> Result<Streaming, TapError> {
         let mut line = SerialLine::new(ctx);
@@ -101,8 +101,8 @@ impl Tap {
         let Some(hello) = adapter.adapter.hello().cloned() else { return Err(AdapterError::Silent.into()) };
         let name = || hello.name.clone();
         let (capability, lacks): (_, fn(String) -> AdapterError) = match wanted {
-            Wanted::Biss { .. } => (Capabilities::BISS, |name| AdapterError::NoBiss { name }),
-            Wanted::Analog { .. } => (Capabilities::ANALOG, |name| AdapterError::NoAnalog { name }),
+            StreamRequest::Biss { .. } => (Capabilities::BISS, |name| AdapterError::NoBiss { name }),
+            StreamRequest::Analog { .. } => (Capabilities::ANALOG, |name| AdapterError::NoAnalog { name }),
         };
         if !hello.capabilities.has(capability) {
             return Err(lacks(name()).into());
@@ -118,8 +118,8 @@ impl Tap {
         let request = wanted.configure(&hello);
         let answered = adapter.ask(&request)?;
         let (streamed, full_scale_microvolt) = match (wanted, &answered.reply) {
-            (Wanted::Biss { period_us, .. }, Reply::BissConfig { .. }) => (Streamed::Biss { period_us }, 0),
-            (Wanted::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
+            (StreamRequest::Biss { period_us, .. }, Reply::BissConfig { .. }) => (Streamed::Biss { period_us }, 0),
+            (StreamRequest::Analog { .. }, Reply::AnalogConfig { sample_hz, full_scale_microvolt, .. }) => {
                 (Streamed::Analog { period_ns: period_ns(*sample_hz) }, *full_scale_microvolt)
             }
             _ => return Err(TapError::from(Failure::from(AdapterError::other(request.operation(), &answered.reply)))),
@@ -155,17 +155,19 @@ impl Tap {
     }
 }
 
-impl Wanted {
+impl StreamRequest {
     /// Never faster than the adapter can.
     fn configure(self, hello: &Hello) -> Request {
         match self {
-            Wanted::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {
+            StreamRequest::Biss { clock_hz, data_bits, crc_bits, .. } => Request::BissConfig {
                 clock_hz: clock_hz.min(hello.max_clock_hz),
                 data_bits,
                 crc_bits,
                 timeout_us: BISS_TIME_OUT_US,
             },
-            Wanted::Analog { sample_hz } => Request::AnalogConfig { sample_hz: sample_hz.min(hello.max_sample_hz) },
+            StreamRequest::Analog { sample_hz } => {
+                Request::AnalogConfig { sample_hz: sample_hz.min(hello.max_sample_hz) }
+            }
         }
     }
 }

@@ -32,8 +32,8 @@ pub fn adapter(error: &AdapterError) -> Text {
         AdapterError::Reply { operation, cause } => {
             TEXTS.text("adapter.reply").with("operation", number(*operation)).with_text("why", body(cause))
         }
-        AdapterError::Other { asked, got } => {
-            TEXTS.text("adapter.other").with("asked", number(*asked)).with("got", number(*got))
+        AdapterError::Other { requested, got } => {
+            TEXTS.text("adapter.other").with("asked", number(*requested)).with("got", number(*got))
         }
     }
 }
@@ -111,7 +111,7 @@ mod tests {
             (AdapterError::Restarted, "."),
             (AdapterError::Data { cause }, "0x94"),
             (AdapterError::Reply { operation: Operation::Hello, cause }, "0x94"),
-            (AdapterError::Other { asked: Operation::Hello, got: Operation::Supply }, "0x02"),
+            (AdapterError::Other { requested: Operation::Hello, got: Operation::Supply }, "0x02"),
         ];
         for (error, fact) in cases {
             let (english, german) = (adapter(&error).words(English), adapter(&error).words(German));

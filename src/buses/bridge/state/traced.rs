@@ -24,7 +24,7 @@ pub fn received(bytes: &[u8]) -> Option<Explained> {
     }
 }
 
-pub fn asked(request: &Request) -> Text {
+pub fn request_text(request: &Request) -> Text {
     match request {
         Request::BissRead | Request::SsiRead => Text::new("trace.position"),
         Request::Hello => TEXTS.text("trace.hello"),

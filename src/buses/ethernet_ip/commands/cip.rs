@@ -48,7 +48,7 @@ fn request_lines(request: &Request, device: Device) -> Vec<String> {
 fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
     let data = &request.data;
     let place = request.class().zip(request.path.number(LogicalKind::Attribute));
-    let said = match (place, device) {
+    let explained = match (place, device) {
         (Some((ConfigurationControl::CLASS, ConfigurationControl::ATTRIBUTE)), _) => {
             let source = ConfigurationControl::parse(data).map(|control| source_words(control.source()));
             Some(("where the address comes from".to_owned(), source.map_err(|why| why.to_string())))
@@ -56,7 +56,7 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
         (Some((class, attribute)), Device::Known(words)) => words(class, attribute, data),
         _ => None,
     };
-    match said {
+    match explained {
         Some((name, _)) if data.is_empty() => vec![name],
         Some((name, Ok(value))) => vec![format!("{name} = {value}")],
         Some((name, Err(why))) => vec![format!("{name}; no value, {why}: {}", hex(data))],
@@ -68,15 +68,15 @@ fn attribute_lines(request: &Request, device: Device) -> Vec<String> {
 fn reply_lines(reply: &Reply) -> Vec<String> {
     let mut lines = vec![format!("CIP reply: {}, status {}", service(reply.service, None), reply.status)];
     for code in &reply.extended {
-        let said = extended_row(reply.service, reply.status, *code)
+        let meaning = extended_row(reply.service, reply.status, *code)
             .map_or_else(|| "unknown".to_owned(), |row| format!("{}; {}", row.meaning, row.remedy));
-        lines.push(format!("extended status 0x{code:04X} {said}"));
+        lines.push(format!("extended status 0x{code:04X} {meaning}"));
     }
     if reply.status != GeneralStatus::OK && reply.extended.is_empty() {
         lines.extend(reply.status.row().map(|row| row.remedy.to_owned()));
     }
     let done = reply.status == GeneralStatus::OK;
-    let said = match (reply.service, done) {
+    let summary = match (reply.service, done) {
         (Service::FORWARD_OPEN, true) => ForwardOpened::parse(&reply.data).ok().map(|opened| {
             format!(
                 "to the target as 0x{:08X} every {}, to the originator as 0x{:08X} every {}; {}",
@@ -99,7 +99,7 @@ fn reply_lines(reply: &Reply) -> Vec<String> {
         }
         _ => None,
     };
-    lines.extend(said.or_else(|| (!reply.data.is_empty()).then(|| data_words(&reply.data))));
+    lines.extend(summary.or_else(|| (!reply.data.is_empty()).then(|| data_words(&reply.data))));
     lines
 }
 

@@ -59,8 +59,8 @@ impl ProtocolDecoder for EthernetIpDecoder {
 
 fn decode(output: &Output, words: &[String]) -> Result {
     let explain = |bytes: &Vec<u8>| {
-        let said = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
-        let (meaning, more) = match said {
+        let explained = explain(bytes, Device::Any).unwrap_or_else(|| Err(NEITHER.to_owned()));
+        let (meaning, more) = match explained {
             Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
             Err(why) => (Err(why), Map::new()),
         };
@@ -72,11 +72,11 @@ fn decode(output: &Output, words: &[String]) -> Result {
 
 /// Decodes a packet; `None` for bytes that do not begin like one.
 pub(crate) fn explain(bytes: &[u8], device: Device) -> Option<std::result::Result<DecodedBytes, String>> {
-    if let Some(said) = cyclic(bytes) {
-        return Some(Ok(said));
+    if let Some(explained) = cyclic(bytes) {
+        return Some(Ok(explained));
     }
-    if let Some(said) = stream(bytes, device) {
-        return Some(said);
+    if let Some(explained) = stream(bytes, device) {
+        return Some(explained);
     }
     let (kind, lines) = cip::message(bytes, device)?;
     Some(Ok(DecodedBytes { lines, more: packet(kind), data: None }))

@@ -26,12 +26,12 @@ enum Captured {
 
 pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     let mut explained = Vec::new();
-    let mut asked = None;
+    let mut requested = None;
     for captured in captured(words)? {
         match captured {
             Captured::Bits(written, raw) => explained.push(position::explain(raw, written)),
             Captured::Word(written, raw) => explained.push(position::explain_word(raw, written)),
-            Captured::Bytes(bytes) => explained.extend(explain(&bytes, &mut asked)),
+            Captured::Bytes(bytes) => explained.extend(explain(&bytes, &mut requested)),
         }
     }
     show(output, &explained)
@@ -93,8 +93,8 @@ fn digits(word: &str) -> (bool, &str) {
 }
 
 /// Bytes are what fits; where nothing does, what they look like.
-fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
-    let ubicom = ubicom::explain(bytes, asked);
+fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
+    let ubicom = ubicom::explain(bytes, requested);
     let bridge = bridge::explain(bytes);
     let position: Vec<Explained> = position::of_bytes(bytes).into_iter().collect();
     let fits = |found: &Vec<Explained>| !found.is_empty() && found.iter().all(|one| one.meaning.is_ok());

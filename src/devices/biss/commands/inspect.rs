@@ -13,7 +13,9 @@ use crate::cli::positions::try_readings;
 use crate::cli::runner::{JobFailure, unexpected};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, JobError, ReadRegisters};
-use crate::devices::biss::procedures::{Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Way};
+use crate::devices::biss::procedures::{
+    Bits, Damage, Error, FrameSource, Identity, PositionReading, Status, Transport,
+};
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
@@ -152,7 +154,7 @@ fn status_text(status: &Status) -> String {
 
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    let over_biss = runner.kept == Way::Adapter;
+    let over_biss = runner.kept == Transport::Adapter;
     if position.csv {
         output.print("t_s,raw,turns,steps,degrees,valid,warning\n")?;
     }
@@ -249,16 +251,16 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
     if let Some(mode) = unsaved {
         output.remark(&explained::unsaved(mode).terminal());
     }
-    let said = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
+    let meaning = identity.description.at(range.start()).and_then(|register| words::of_run(register, range, &bytes));
     let (value, shown) = match bytes.as_slice() {
         [byte] if !item.contains('+') => (json!(byte), format!("0x{byte:02X}")),
         bytes => (json!(hex_compact(bytes)), hex(bytes)),
     };
     let mut json = json!({"item": range.to_string(), "value": value});
-    if let (Some(said), Some(keys)) = (&said, json.as_object_mut()) {
-        keys.insert("text".to_owned(), json!(said));
+    if let (Some(meaning), Some(keys)) = (&meaning, json.as_object_mut()) {
+        keys.insert("text".to_owned(), json!(meaning));
     }
-    let text = said.map_or_else(|| format!("{shown}\n"), |said| format!("{shown}  {said}\n"));
+    let text = meaning.map_or_else(|| format!("{shown}\n"), |meaning| format!("{shown}  {meaning}\n"));
     output.show(&json, &text)?;
     Ok(Done::Well)
 }

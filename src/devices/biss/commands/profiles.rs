@@ -7,7 +7,7 @@ use super::run::Runner;
 use crate::app::Text;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Unrestored, keep, restore_options, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, restore_options, save_profile, say_mounting_left, to_restore, write_restore};
 use crate::cli::{Done, Result};
 use crate::devices::biss::jobs::{BissJob, BissOutput, Change};
 use crate::devices::biss::profile::{BissProfile, ProfileIdentity};
@@ -20,7 +20,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, BissJob::Save)?;
     let banks = profile.banks().count();
     let (mode, unsaved) = (profile.recorded.device_mode, words::saved_unsaved(&profile));
-    keep(&save.file, Body::new(profile))?;
+    save_profile(&save.file, Body::new(profile))?;
     if let Some(words) = unsaved {
         output.remark(&words.terminal());
     }

@@ -7,8 +7,8 @@ use crate::cli::output::say;
 use crate::cli::runner::{self, Runs, unexpected};
 use crate::cli::{Failure, Result};
 use crate::devices::biss::jobs::{Biss, BissJob, BissOutput, DeviceMessage, JobStep, ReadRegisters};
-use crate::devices::biss::procedures::procedure::{Detail, News};
-use crate::devices::biss::procedures::{Identity, Way};
+use crate::devices::biss::procedures::procedure::{Detail, ProcedureProgress};
+use crate::devices::biss::procedures::{Identity, Transport};
 use crate::devices::biss::profile::RegisterRange;
 use crate::devices::biss::state::explain as words;
 use crate::result_of;
@@ -19,11 +19,11 @@ pub(super) type Runner = runner::Runner<Biss>;
 
 impl Runs for Biss {
     /// The way to the encoder.
-    type Context = Way;
+    type Context = Transport;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
-    fn begin(session: &mut Session<Self>, _given: &Given) -> Way {
-        session.station().way
+    fn begin(session: &mut Session<Self>, _given: &Given) -> Transport {
+        session.station().transport
     }
 
     fn print_message(remark: &DeviceMessage) {
@@ -36,7 +36,7 @@ impl Runs for Biss {
 
     fn step(doing: &JobStep) -> String {
         match doing {
-            JobStep::Operation { news, .. } => detail(news),
+            JobStep::Operation { progress: news, .. } => detail(news),
             other => other.to_string(),
         }
     }
@@ -44,14 +44,16 @@ impl Runs for Biss {
     /// Returns the text of each step of an operation, and of each task of the user.
     fn announce(doing: &JobStep) -> Option<String> {
         match doing {
-            JobStep::Operation { item, news } => Some(format!("{item}: {}", words::step(news.step).terminal())),
+            JobStep::Operation { item, progress: news } => {
+                Some(format!("{item}: {}", words::step(news.step).terminal()))
+            }
             JobStep::Register(_) | JobStep::Bank(_) => None,
         }
     }
 }
 
 /// Returns the detail of a step: what prevents the start, how long it takes.
-fn detail(news: &News) -> String {
+fn detail(news: &ProcedureProgress) -> String {
     match &news.detail {
         Detail::Begins => String::new(),
         Detail::Count { done, total } => format!("{done} of {total}"),

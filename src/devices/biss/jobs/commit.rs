@@ -1,7 +1,7 @@
 //! Carries a plan out.
 
 use super::{Biss, ChangeKind, Commit, Committed, JobError, JobStep, Prepared, WEAR_LIMIT, device_key};
-use crate::devices::biss::procedures::procedure::News;
+use crate::devices::biss::procedures::procedure::ProcedureProgress;
 use crate::devices::biss::procedures::write::EncoderWrite;
 use crate::devices::biss::profile::{Base, BissPlan, BissProfile, DataImage, Op, PresetSetting, Recorded};
 use crate::profile::{Body, Unknown};
@@ -11,22 +11,22 @@ use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
     encoder: &mut Biss,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     commit: Commit,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
     // Each step of an operation is told, and so where it begins.
-    let told = &mut |news: News| {
+    let report = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
-        tell(Progress { done, total, what: JobStep::Operation { item, news: Box::new(news) } });
+        tell(Progress { done, total, step: JobStep::Operation { item, progress: Box::new(news) } });
     };
-    encoder.know(desk)?;
-    let mut master = encoder.master(desk);
-    let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, told)?;
+    encoder.ensure_identified(context)?;
+    let mut master = encoder.master(context);
+    let mut write = EncoderWrite::new(&mut master, identity, &mut attendance, report)?;
     let ended = write_plan(&store, is_virtual, &agreed, &mut write, &mut |_| {});
     match &ended {
         Ok(_) => encoder.station.unfinished = false,

@@ -1,7 +1,7 @@
 //! Position frames that an adapter streams.
 
 use crate::buses::bridge::jobs::Stretch;
-use crate::buses::bridge::procedures::{Streaming, Wanted};
+use crate::buses::bridge::procedures::{StreamRequest, Streaming};
 use crate::buses::bridge::protocol::Data;
 use crate::devices::biss::procedures::{Frame, frames};
 use crate::devices::biss::protocol::Layout;
@@ -20,8 +20,8 @@ pub struct BissFrames {
 impl Stretch for BissFrames {
     type Samples = Vec<Frame>;
 
-    fn wanted(&self) -> Wanted {
-        Wanted::Biss {
+    fn wanted(&self) -> StreamRequest {
+        StreamRequest::Biss {
             clock_hz: self.clock_hz,
             data_bits: self.layout.data_bits(),
             crc_bits: self.layout.crc_bits(),

@@ -5,7 +5,9 @@ use std::fmt;
 use super::Identity;
 use crate::bits::hex_compact;
 use crate::devices::biss::procedures::check::BissStepResult;
-use crate::devices::biss::procedures::procedure::{Answer, Demand, News, Operator, OperatorChannel, Unattended};
+use crate::devices::biss::procedures::procedure::{
+    Answer, Demand, Operator, OperatorChannel, ProcedureProgress, Unattended,
+};
 use crate::devices::biss::procedures::write::{Interrupted, Written};
 use crate::devices::biss::procedures::{Error, PositionReading, Status, Survey};
 use crate::devices::biss::profile::{
@@ -160,10 +162,10 @@ pub enum OperatorPresence {
 }
 
 impl Operator for OperatorPresence {
-    fn begins(&mut self) {
+    fn on_task_start(&mut self) {
         match self {
-            OperatorPresence::Attended(seat) => seat.begins(),
-            OperatorPresence::Unattended(nobody) => nobody.begins(),
+            OperatorPresence::Attended(seat) => seat.on_task_start(),
+            OperatorPresence::Unattended(nobody) => nobody.on_task_start(),
         }
     }
 
@@ -208,7 +210,7 @@ pub enum JobStep {
         /// The changed item.
         item: String,
         /// The present step.
-        news: Box<News>,
+        progress: Box<ProcedureProgress>,
     },
 }
 

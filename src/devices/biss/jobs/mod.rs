@@ -30,7 +30,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
 /// A BiSS encoder at the end of its wire.
 pub struct Biss {
@@ -56,15 +56,15 @@ impl fmt::Debug for Biss {
 
 impl Biss {
     /// The host's side of the line.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+        Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
     /// Identifies the encoder if it is not known in this session yet: frame and registers depend on it.
-    fn know(&mut self, desk: &mut SessionContext) -> Result<(), Error> {
+    fn ensure_identified(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         if self.station.description.is_none() {
             let types = self.types.clone();
-            identify(&mut self.master(desk), &types)?;
+            identify(&mut self.master(context), &types)?;
         }
         Ok(())
     }
@@ -112,93 +112,95 @@ impl Device for Biss {
 
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: BissJob,
-        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
+        tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<BissOutput, JobError> {
         let types = self.types.clone();
-        let steps = &mut |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        let steps = &mut |done, total, what| tell(JobReport::Progress(Progress { done, total, step: what }));
         Ok(match job {
             BissJob::Survey => {
                 let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
-                BissOutput::Surveyed(Box::new(procedures::survey(&mut self.master(desk), &types, progress)?))
+                BissOutput::Surveyed(Box::new(procedures::survey(&mut self.master(context), &types, progress)?))
             }
-            BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.master(desk), &types)?)),
+            BissJob::Identify => BissOutput::Identity(Box::new(identify(&mut self.master(context), &types)?)),
             BissJob::Status => {
-                self.know(desk)?;
-                BissOutput::Status(Box::new(read_status(&mut self.master(desk))?))
+                self.ensure_identified(context)?;
+                BissOutput::Status(Box::new(read_status(&mut self.master(context))?))
             }
             BissJob::Check => {
-                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+                let (store, is_virtual) = (context.store.clone(), context.is_virtual);
                 let wear = |identity: &Identity| Wear {
                     seen: cycles_seen(&store, &device_key(identity, is_virtual)),
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,
                 };
                 let progress = &mut |done, total, at| steps(done, total, JobStep::Register(at));
-                BissOutput::Check(procedures::check::check(&mut self.master(desk), &types, wear, progress)?)
+                BissOutput::Check(procedures::check::check(&mut self.master(context), &types, wear, progress)?)
             }
             BissJob::Position => {
-                self.know(desk)?;
-                BissOutput::Position(read_position(&mut self.master(desk))?)
+                self.ensure_identified(context)?;
+                BissOutput::Position(read_position(&mut self.master(context))?)
             }
-            BissJob::Read(range) => self.read(desk, range.start(), range.count())?,
-            BissJob::ReadDirect => self.read(desk, RegisterAddress::BANK_SELECT, RegisterAddress::BANK_SIZE)?,
-            BissJob::ReadBank(bank) => self.read(desk, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE)?,
+            BissJob::Read(range) => self.read(context, range.start(), range.count())?,
+            BissJob::ReadDirect => self.read(context, RegisterAddress::BANK_SELECT, RegisterAddress::BANK_SIZE)?,
+            BissJob::ReadBank(bank) => {
+                self.read(context, RegisterAddress::start_of(bank), RegisterAddress::BANK_SIZE)?
+            }
             BissJob::ReadArea(area) => {
-                self.know(desk)?;
+                self.ensure_identified(context)?;
                 let first = area.first;
                 let total = area.banks().count() as u64;
-                let told = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
-                let banks = procedures::read_area_surely(&mut self.master(desk), &area, told)?;
-                BissOutput::Area { banks, unsaved: self.unsaved(desk)? }
+                let report = &mut |bank: u8| steps(u64::from(bank.saturating_sub(first)), total, JobStep::Bank(bank));
+                let banks = procedures::read_area_surely(&mut self.master(context), &area, report)?;
+                BissOutput::Area { banks, unsaved: self.unsaved(context)? }
             }
             BissJob::Save | BissJob::SaveToCompare => {
                 let unsaved = if matches!(job, BissJob::Save) { Unsaved::Marked } else { Unsaved::Refused };
                 let progress = &mut |done, total, place| steps(done, total, read_step(place));
-                BissOutput::Saved(Box::new(procedures::save(&mut self.master(desk), &types, unsaved, progress)?))
+                BissOutput::Saved(Box::new(procedures::save(&mut self.master(context), &types, unsaved, progress)?))
             }
             BissJob::Prepare(change) => {
-                let steps = &mut |progress| tell(Tell::Progress(progress));
-                BissOutput::Prepared(Box::new(prepare::prepare(self, desk, &change, steps)?))
+                let steps = &mut |progress| tell(JobReport::Progress(progress));
+                BissOutput::Prepared(Box::new(prepare::prepare(self, context, &change, steps)?))
             }
             BissJob::Commit(commit) => {
-                let steps = &mut |progress| tell(Tell::Progress(progress));
-                BissOutput::Committed(Box::new(commit::commit(self, desk, *commit, steps)?))
+                let steps = &mut |progress| tell(JobReport::Progress(progress));
+                BissOutput::Committed(Box::new(commit::commit(self, context, *commit, steps)?))
             }
             BissJob::LeadBack => {
-                let mode = procedure::lead_back(&mut self.master(desk), &types)?;
+                let mode = procedure::lead_back(&mut self.master(context), &types)?;
                 self.station.unfinished = false;
                 BissOutput::LedBack(mode)
             }
         })
     }
 
-    fn pace(&mut self, desk: &mut SessionContext, interval: Option<Duration>) {
+    fn pace(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
         if self.streamed_us.is_none()
-            && let Err(error) = self.master(desk).end_frames()
+            && let Err(error) = self.master(context).end_frames()
         {
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Sample, JobError> {
-        self.know(desk)?;
+    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
+        self.ensure_identified(context)?;
         if let Some(period_us) = self.streamed_us
-            && let Some(run) = self.master(desk).frames(period_us)?
+            && let Some(run) = self.master(context).frames(period_us)?
         {
             return Ok(Sample::Frames(run));
         }
-        Ok(read_sample(&mut self.master(desk))?)
+        Ok(read_sample(&mut self.master(context))?)
     }
 
-    fn watch(&mut self, desk: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
+    fn watch(&mut self, context: &mut SessionContext, what: &RegisterRange) -> Result<Watched<Sample>, JobError> {
         // Determines the data areas, which must not be read while the shaft turns.
-        self.know(desk)?;
-        let reading = read_watched(&mut self.master(desk), *what)?;
+        self.ensure_identified(context)?;
+        let reading = read_watched(&mut self.master(context), *what)?;
         let refused = reading.value.is_err();
         let sample = Sample::Watched(reading);
         Ok(if refused { Watched::Refused(sample) } else { Watched::Sample(sample) })
@@ -215,25 +217,30 @@ impl Device for Biss {
         self.wire.check()
     }
 
-    fn leave(&mut self, desk: &mut SessionContext) {
-        if let Err(error) = self.master(desk).leave_supply() {
+    fn leave(&mut self, context: &mut SessionContext) {
+        if let Err(error) = self.master(context).leave_supply() {
             tracing::warn!("the encoder's supply could not be switched off: {error}");
         }
     }
 }
 
 impl Biss {
-    fn read(&mut self, desk: &mut SessionContext, start: RegisterAddress, count: u8) -> Result<BissOutput, JobError> {
-        self.know(desk)?;
-        let bytes = read_registers(&mut self.master(desk), start, count)?;
+    fn read(
+        &mut self,
+        context: &mut SessionContext,
+        start: RegisterAddress,
+        count: u8,
+    ) -> Result<BissOutput, JobError> {
+        self.ensure_identified(context)?;
+        let bytes = read_registers(&mut self.master(context), start, count)?;
         // Direct registers hold nothing that is entered first and saved later.
-        let unsaved = if start.bank().is_some() { self.unsaved(desk)? } else { None };
+        let unsaved = if start.bank().is_some() { self.unsaved(context)? } else { None };
         Ok(BissOutput::Registers(ReadRegisters { start, bytes, unsaved }))
     }
 
     /// The device mode in which registers may show what was never saved.
-    fn unsaved(&mut self, desk: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
-        let mut master = self.master(desk);
+    fn unsaved(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
+        let mut master = self.master(context);
         let description = master.description()?;
         procedures::write::unsaved_mode(&mut master, &description)
     }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Biss;
 use crate::buses::bridge::sim::{self as bridge, Adapter};
-use crate::devices::biss::procedures::{Echo, Station, Way};
+use crate::devices::biss::procedures::{Echo, Station, Transport};
 use crate::devices::biss::sim::{Config, Port};
 use crate::kinds::at_adapter;
 use crate::link::{ByteLink, Clock, LinkUrl, Query, RealClock, Scheme, UrlError};
@@ -44,7 +44,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
 
 /// The line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
-    let way = way(url)?;
+    let way = transport(url)?;
     let is_virtual = url.scheme == Scheme::Sim;
     if is_virtual {
         check_virtual(&url.query, way)?;
@@ -59,33 +59,33 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     }
     // Echo and order are the virtual encoder's: they are learned as with a real one.
     (station.line.echo, station.order) = (Echo::Unknown, None);
-    let line = [Way::ConfigPin, Way::Adapter].map(Way::parameters).concat();
+    let line = [Transport::ConfigPin, Transport::Adapter].map(Transport::parameters).concat();
     let of_the_encoder = |name: &str| name != BRIDGE && (Config::KEYS.contains(&name) || !line.contains(&name));
     let settings: Vec<_> = url.query.pairs().iter().filter(|(name, _)| of_the_encoder(name)).cloned().collect();
     Ok((station, Simulated::new(way, &settings)?))
 }
 
-fn way(url: &LinkUrl) -> Result<Way, OpenError> {
-    const WAYS: Words<Way> = Words(&[("on", Way::Adapter), ("off", Way::ConfigPin)]);
+fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
+    const WAYS: Words<Transport> = Words(&[("on", Transport::Adapter), ("off", Transport::ConfigPin)]);
     match url.scheme {
-        Scheme::Bridge => Ok(Way::Adapter),
-        Scheme::Serial | Scheme::Tcp => Ok(Way::ConfigPin),
+        Scheme::Bridge => Ok(Transport::Adapter),
+        Scheme::Serial | Scheme::Tcp => Ok(Transport::ConfigPin),
         Scheme::Modbus | Scheme::Enip => Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, bridge:, replay:")),
-        Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Way::ConfigPin)),
+        Scheme::Sim | Scheme::Replay => Ok(url.query.read(BRIDGE, &WAYS)?.unwrap_or(Transport::ConfigPin)),
     }
 }
 
 /// Refuses what neither the line nor the virtual device has, and tells what needs an adapter in between.
-fn check_virtual(query: &Query, way: Way) -> Result<(), UrlError> {
-    let own = |way: Way| {
+fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
+    let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
-        let device = if way == Way::Adapter { bridge::keys(at_adapter()) } else { Config::KEYS.to_vec() };
+        let device = if way == Transport::Adapter { bridge::keys(at_adapter()) } else { Config::KEYS.to_vec() };
         [BRIDGE].into_iter().chain(line).chain(device).collect::<Vec<_>>()
     };
     let known = own(way);
     let Some((name, _)) = query.without(&known).into_iter().next() else { return Ok(()) };
-    let other = if way == Way::Adapter { Way::ConfigPin } else { Way::Adapter };
-    let switch = if way == Way::Adapter { "off" } else { "on" };
+    let other = if way == Transport::Adapter { Transport::ConfigPin } else { Transport::Adapter };
+    let switch = if way == Transport::Adapter { "off" } else { "on" };
     let elsewhere = own(other).into_iter().filter(|name| !known.contains(name));
     let elsewhere = elsewhere.map(|name| format!("{name} ({BRIDGE}={switch})"));
     let known: Vec<String> = known.iter().map(ToString::to_string).chain(elsewhere).collect();
@@ -99,10 +99,10 @@ enum Simulated {
 }
 
 impl Simulated {
-    fn new(way: Way, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
+    fn new(way: Transport, pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         Ok(match way {
-            Way::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
-            Way::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, at_adapter())?)),
+            Transport::ConfigPin => Simulated::Pin(Box::new(Config::from_pairs(pairs)?)),
+            Transport::Adapter => Simulated::Bus(Box::new(Adapter::from_pairs(pairs, at_adapter())?)),
         })
     }
 

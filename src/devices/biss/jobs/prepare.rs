@@ -15,12 +15,12 @@ use crate::worker::{Progress, SessionContext};
 
 pub(super) fn prepare(
     encoder: &mut Biss,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     change: &Change,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
-    let mut master = encoder.master(desk);
+    let mut master = encoder.master(context);
     let identity = identify(&mut master, &types)?;
     let description = identity.description.clone();
     let plan = match change {
@@ -45,7 +45,7 @@ pub(super) fn prepare(
             only(plan_mounting(&description, &state, run, *motor)?)
         }
     };
-    let cycles_seen = cycles_seen(&desk.store, &device_key(&identity, desk.is_virtual));
+    let cycles_seen = cycles_seen(&context.store, &device_key(&identity, context.is_virtual));
     let Restore { plan, unchanged, missing, mounting_left, mounting_written } = plan;
     let (unsaved, other_type) = match change {
         Change::Restore { profile, .. } => {
@@ -78,8 +78,8 @@ fn state(
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<crate::devices::biss::profile::DeviceState, Error> {
     let total = banks.len() as u64;
-    let told = &mut |done, bank| tell(Progress { done, total, what: JobStep::Bank(bank) });
-    read_state(master, identity, banks, told)
+    let report = &mut |done, bank| tell(Progress { done, total, step: JobStep::Bank(bank) });
+    read_state(master, identity, banks, report)
 }
 
 /// Reads what the edits touch.

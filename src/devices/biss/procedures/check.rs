@@ -2,7 +2,7 @@
 //! verdict a line. It writes nothing but the bank that is selected.
 
 use super::survey::{Bits, Status, survey};
-use super::{Error, Identity, Master, PositionReading, Survey, Way};
+use super::{Error, Identity, Master, PositionReading, Survey, Transport};
 use crate::analysis::check;
 use crate::devices::biss::protocol::{
     Descriptions, DeviceMode, Eds, EdsError, EdsValue, Firmware, Mismatch, Name, RegisterAddress, WiegandResult,
@@ -101,7 +101,7 @@ pub enum CheckFinding {
     /// Readings of the position that were asked for, and frames or replies that came damaged.
     Readings {
         /// Number requested.
-        asked: u32,
+        requested: u32,
         /// Number damaged.
         damaged: u64,
     },
@@ -195,12 +195,13 @@ fn data_sheet(identity: &Identity) -> BissStepResult {
         findings.push((Verdict::Good, CheckFinding::SumsFit));
         match &sheet.layout {
             Err(error) => findings.push((Verdict::Bad, CheckFinding::Sheet(*error))),
-            Ok(told) => {
+            Ok(sheet_layout) => {
                 let widths = |layout: &crate::devices::biss::protocol::Layout| {
                     (layout.multiturn_bits(), layout.singleturn_bits())
                 };
-                let described = identity.description.layout().map(widths).filter(|own| *own != widths(told));
-                let other = described.map(|description| CheckFinding::OtherFrame { sheet: widths(told), description });
+                let described = identity.description.layout().map(widths).filter(|own| *own != widths(sheet_layout));
+                let other =
+                    described.map(|description| CheckFinding::OtherFrame { sheet: widths(sheet_layout), description });
                 findings.extend(other.map(|finding| (Verdict::Attention, finding)));
             }
         }
@@ -262,7 +263,7 @@ fn wiegand(survey: &Survey) -> Option<BissStepResult> {
 /// Reads the position again and again. A reading that does not come at all is damage as well.
 fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
-    let told_by_line = master.station().way == Way::ConfigPin;
+    let told_by_line = master.station().transport == Transport::ConfigPin;
     let mut damaged = 0;
     for _ in 0..READINGS {
         match master.position() {
@@ -277,7 +278,10 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
         damaged += master.station().line.damaged - before;
     }
     let verdict = if damaged == 0 { Verdict::Good } else { Verdict::Attention };
-    Ok(BissStepResult::of(CheckStep::Readings, vec![(verdict, CheckFinding::Readings { asked: READINGS, damaged })]))
+    Ok(BissStepResult::of(
+        CheckStep::Readings,
+        vec![(verdict, CheckFinding::Readings { requested: READINGS, damaged })],
+    ))
 }
 
 fn worn(wear: Wear) -> Option<BissStepResult> {

@@ -35,18 +35,18 @@ pub enum Error {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// Nothing came back.
-    #[error("no reply while {asked} ({tries} tries)")]
+    #[error("no reply while {requested} ({tries} tries)")]
     NoReply {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Our own bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
     /// Something came back and was broken every time.
-    #[error("damaged reply while {asked} ({tries} tries): {cause}")]
+    #[error("damaged reply while {requested} ({tries} tries): {cause}")]
     Damaged {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
@@ -165,8 +165,8 @@ pub enum Error {
         item: String,
     },
     /// The reply belongs to another kind of request.
-    #[error("{asked}: the reply is of another kind: {reply}")]
-    OtherReply { asked: RequestedItem, reply: String },
+    #[error("{requested}: the reply is of another kind: {reply}")]
+    OtherReply { requested: RequestedItem, reply: String },
     /// The adapter reports a status of the frame that the bridge protocol does not have.
     #[error("the adapter reports the unknown status 0x{status:02X} of a frame")]
     FrameStatus {
@@ -196,8 +196,8 @@ pub enum Error {
 
 impl Error {
     /// Returns the error for a reply that belongs to another kind of request.
-    pub(super) fn other_reply(asked: RequestedItem, reply: &Reply) -> Self {
-        Error::OtherReply { asked, reply: format!("{reply:?}") }
+    pub(super) fn other_reply(requested: RequestedItem, reply: &Reply) -> Self {
+        Error::OtherReply { requested, reply: format!("{reply:?}") }
     }
 }
 

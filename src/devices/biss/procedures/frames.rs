@@ -65,7 +65,7 @@ impl FrameRun {
     }
 
     /// A stream begins.
-    pub const fn begins(&self) -> bool {
+    pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }
 

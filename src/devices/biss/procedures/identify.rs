@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::error::exactly;
 use super::registers::Registers;
 use super::widths::find_widths;
-use super::{Error, Master, Station, Way};
+use super::{Error, Master, Station, Transport};
 use crate::bits::ByteOrder;
 use crate::buses::bridge::protocol::Hello;
 use crate::devices::biss::profile::ProfileIdentity;
@@ -59,7 +59,7 @@ pub enum FrameSource {
 
 impl FrameSource {
     /// Returns whether it states how many bits of a position are turns.
-    pub const fn is_told(self) -> bool {
+    pub const fn is_known(self) -> bool {
         match self {
             FrameSource::DataSheet | FrameSource::Description | FrameSource::Given => true,
             FrameSource::Checksum | FrameSource::Assumed => false,
@@ -115,7 +115,7 @@ impl Identity {
     }
 
     fn is_told(&self) -> bool {
-        self.source.is_told()
+        self.source.is_known()
     }
 }
 
@@ -145,11 +145,11 @@ pub(super) fn identify_with(
         registers.number(&description, Role::SerialNumber).map(|number| number.to_string()).unwrap_or_default();
     let firmware = firmware_of(&description, registers);
     let data_sheet = read_data_sheet(master, kind.profile, registers)?;
-    let told = data_sheet.as_ref().and_then(|sheet| sheet.layout.clone().ok());
+    let sheet_layout = data_sheet.as_ref().and_then(|sheet| sheet.layout.clone().ok());
     let station: &mut Station = master.station();
     station.description = Some(description.clone());
     station.firmware = firmware;
-    let source = match (&told, description.layout()) {
+    let source = match (&sheet_layout, description.layout()) {
         (Some(_), _) => FrameSource::DataSheet,
         (None, Some(_)) => FrameSource::Description,
         (None, None) if station.given.is_some() => FrameSource::Given,
@@ -158,7 +158,7 @@ pub(super) fn identify_with(
     if station.given.is_some() && source != FrameSource::Given {
         tracing::warn!("mt, st and crc of the link are not used: the encoder tells its frame itself");
     }
-    station.layout = told.or_else(|| station.given.clone().filter(|_| source == FrameSource::Given));
+    station.layout = sheet_layout.or_else(|| station.given.clone().filter(|_| source == FrameSource::Given));
     let source = if source == FrameSource::Assumed { look_at_frames(master)? } else { source };
     let station = master.station();
     station.source = Some(source);
@@ -180,7 +180,7 @@ pub(super) fn identify_with(
 /// Determines an unknown frame: that of the kit encoder if its checksum fits, else one is searched for. Over the
 /// configuration pin it cannot be observed.
 fn look_at_frames(master: &mut Master<'_>) -> Result<FrameSource, Error> {
-    if master.station().way == Way::ConfigPin {
+    if master.station().transport == Transport::ConfigPin {
         return Ok(FrameSource::Assumed);
     }
     match master.position() {

@@ -15,7 +15,7 @@ use bus::NoFrame;
 
 use super::error::{Damage, RequestedItem, asked_register};
 use super::position::PositionReading;
-use super::{Error, Station, Way};
+use super::{Error, Station, Transport};
 use crate::buses::ubicom::protocol::{BYTE_TIME_OUT, Request, order_told_by};
 use crate::devices::biss::protocol::{Description, RegisterAddress};
 use crate::link::Ctx;
@@ -49,7 +49,7 @@ enum ExchangeError {
 type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 /// An encoder's reaction to a value.
-enum Taken {
+enum WriteReaction {
     Yes,
     /// It refused; with what the register gives back, where the way tells that.
     No(Option<u8>),
@@ -124,10 +124,10 @@ impl<'a> Master<'a> {
     /// When every try failed, when there is no such register, or when the user wished an end.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
         self.be_ready()?;
-        let asked = RequestedItem::Read(address);
-        match self.read_confirmed(asked, |master| master.read_once(address)) {
+        let requested = RequestedItem::Read(address);
+        match self.read_confirmed(requested, |master| master.read_once(address)) {
             Err(Error::NoReply { .. }) if self.is_silent_only_there(address)? => Err(Error::NoSuchRegister { address }),
-            Err(failed) if self.station.way == Way::Adapter => Err(self.diagnose(failed)),
+            Err(failed) if self.station.transport == Transport::Adapter => Err(self.diagnose(failed)),
             result => result,
         }
     }
@@ -153,12 +153,12 @@ impl<'a> Master<'a> {
     /// taken after five tries. With [`Error::Cancelled`] it was not.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.be_ready()?;
-        let asked = RequestedItem::Write(address, value);
+        let requested = RequestedItem::Write(address, value);
         let unclear = |cause| Error::Unclear { address, value, cause: Box::new(cause) };
         let mut tries = 0;
         loop {
             tries += 1;
-            if self.station.way == Way::Adapter {
+            if self.station.transport == Transport::Adapter {
                 self.select_bank(address)?;
             }
             if address != RegisterAddress::BANK_SELECT {
@@ -168,17 +168,17 @@ impl<'a> Master<'a> {
                 Error::Link(_) | Error::NeverSilent => unclear(error),
                 error => error,
             })? {
-                Ok(Taken::Yes) => {
+                Ok(WriteReaction::Yes) => {
                     self.station.line.recovered();
                     return Ok(());
                 }
-                Ok(Taken::No(reads)) => {
+                Ok(WriteReaction::No(reads)) => {
                     self.station.line.recovered();
                     return Err(Error::Refused { address, value, reads });
                 }
                 Err(trouble) => trouble,
             };
-            let failed = self.failed(asked, tries, &trouble);
+            let failed = self.failed(requested, tries, &trouble);
             let failure = self.may_try_again(tries, trouble, failed.clone());
             if !self.station.tells_back(address) {
                 return Err(unclear(failed));
@@ -197,7 +197,7 @@ impl<'a> Master<'a> {
     /// # Errors
     /// When every try failed, or when the user wished an end; [`Error::TooWide`] where it does not fit the widths.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
-        if self.station.way == Way::ConfigPin {
+        if self.station.transport == Transport::ConfigPin {
             return self.ask(RequestedItem::Position, |master| master.pin_position_once());
         }
         self.be_ready()?;
@@ -214,38 +214,38 @@ impl<'a> Master<'a> {
     }
 
     fn read_once(&mut self, address: RegisterAddress) -> Attempt<u8> {
-        match self.station.way {
-            Way::ConfigPin => self.pin_read_once(address),
-            Way::Adapter => self.bus_read_once(address),
+        match self.station.transport {
+            Transport::ConfigPin => self.pin_read_once(address),
+            Transport::Adapter => self.bus_read_once(address),
         }
     }
 
-    fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
-        match self.station.way {
-            Way::ConfigPin => self.pin_write_once(address, value),
-            Way::Adapter => self.bus_write_once(address, value),
+    fn write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
+        match self.station.transport {
+            Transport::ConfigPin => self.pin_write_once(address, value),
+            Transport::Adapter => self.bus_write_once(address, value),
         }
     }
 
     /// Prepares the first access: determines the order of a register number's bytes, or configures the bus.
     fn be_ready(&mut self) -> Result<(), Error> {
-        match self.station.way {
-            Way::Adapter => self.be_ready_on_bus(),
-            Way::ConfigPin if self.station.order.is_some() => Ok(()),
-            Way::ConfigPin => self.probe_order(),
+        match self.station.transport {
+            Transport::Adapter => self.be_ready_on_bus(),
+            Transport::ConfigPin if self.station.order.is_some() => Ok(()),
+            Transport::ConfigPin => self.probe_order(),
         }
     }
 
     fn probe_order(&mut self) -> Result<(), Error> {
-        let asked = RequestedItem::Read(asked_register(Request::PROBE_REGISTER));
-        let answer = self.read_confirmed(asked, |master| master.probe_once())?;
+        let requested = RequestedItem::Read(asked_register(Request::PROBE_REGISTER));
+        let answer = self.read_confirmed(requested, |master| master.probe_once())?;
         let order = order_told_by(answer).ok_or(Error::OrderUnknown { answer })?;
         self.station.order = Some(order);
         Ok(())
     }
 
     /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
-    fn ask<T>(&mut self, asked: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
+    fn ask<T>(&mut self, requested: RequestedItem, mut once: impl FnMut(&mut Self) -> Attempt<T>) -> Result<T, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
@@ -255,7 +255,7 @@ impl<'a> Master<'a> {
                     return Ok(answer);
                 }
                 Err(trouble) => {
-                    let failed = self.failed(asked, tries, &trouble);
+                    let failed = self.failed(requested, tries, &trouble);
                     self.may_try_again(tries, trouble, failed)?;
                 }
             }
@@ -265,28 +265,28 @@ impl<'a> Master<'a> {
     /// Asks like [`ask`](Self::ask); on a line that has damaged something before, the reply has to come twice.
     fn read_confirmed(
         &mut self,
-        asked: RequestedItem,
+        requested: RequestedItem,
         mut once: impl FnMut(&mut Self) -> Attempt<u8>,
     ) -> Result<u8, Error> {
-        let mut value = self.ask(asked, &mut once)?;
+        let mut value = self.ask(requested, &mut once)?;
         for _ in 0..TRIES {
             if !self.station.reads_twice() {
                 return Ok(value);
             }
-            let again = self.ask(asked, &mut once)?;
+            let again = self.ask(requested, &mut once)?;
             if again == value {
                 return Ok(value);
             }
             value = again;
         }
-        Err(Error::Damaged { asked, tries: TRIES, cause: Damage::Inconsistent })
+        Err(Error::Damaged { requested, tries: TRIES, cause: Damage::Inconsistent })
     }
 
     /// Returns the error of a failed attempt that is the last.
-    fn failed(&self, asked: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
+    fn failed(&self, requested: RequestedItem, tries: u32, trouble: &ExchangeError) -> Error {
         match trouble {
-            ExchangeError::Silence { echo_heard } => Error::NoReply { asked, tries, echo_heard: *echo_heard },
-            ExchangeError::Damage(cause) => Error::Damaged { asked, tries, cause: cause.clone() },
+            ExchangeError::Silence { echo_heard } => Error::NoReply { requested, tries, echo_heard: *echo_heard },
+            ExchangeError::Damage(cause) => Error::Damaged { requested, tries, cause: cause.clone() },
             ExchangeError::NoFrame(cause) => self.no_frame(*cause, tries),
         }
     }
@@ -299,9 +299,9 @@ impl<'a> Master<'a> {
             ExchangeError::Silence { .. } => quality.silent += 1,
             ExchangeError::Damage(_) | ExchangeError::NoFrame(_) => quality.damaged += 1,
         }
-        let longest = match self.station.way {
-            Way::ConfigPin => self.longest_pin_exchange(),
-            Way::Adapter => self.longest_bus_exchange(),
+        let longest = match self.station.transport {
+            Transport::ConfigPin => self.longest_pin_exchange(),
+            Transport::Adapter => self.longest_bus_exchange(),
         };
         if !self.line.may_ask_again(&mut self.station.line, tries, longest) {
             return Err(failed);
@@ -309,7 +309,7 @@ impl<'a> Master<'a> {
         match trouble {
             // Frames come one after the other, good or bad, and late packets are told by their number.
             ExchangeError::Damage(Damage::Frame(_)) => {}
-            _ if self.station.way == Way::Adapter => self.pause()?,
+            _ if self.station.transport == Transport::Adapter => self.pause()?,
             ExchangeError::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
             // A frame that the encoder still waits for the end of is over after that.
             _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
@@ -328,9 +328,9 @@ impl<'a> Master<'a> {
             if !answers || !matches!(self.read_once(address)?, Err(ExchangeError::Silence { .. })) {
                 return Ok(false);
             }
-            match self.station.way {
-                Way::ConfigPin => self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?,
-                Way::Adapter => self.pause()?,
+            match self.station.transport {
+                Transport::ConfigPin => self.line.hear_late(&mut self.station.line, 1, BYTE_TIME_OUT)?,
+                Transport::Adapter => self.pause()?,
             }
         }
         Ok(true)

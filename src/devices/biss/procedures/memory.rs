@@ -99,10 +99,10 @@ pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8
 ///
 /// # Errors
 /// What reading gives.
-pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
+pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
     let mut banks = Vec::new();
     for number in area.banks() {
-        told(number);
+        progress(number);
         let start = RegisterAddress::start_of(number);
         banks.push(Bank { number, bytes: exactly(start, master.read_run(start, Bank::SIZE)?)? });
     }
@@ -113,9 +113,13 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8))
 ///
 /// # Errors
 /// [`Error::Moving`], or what reading gives.
-pub fn read_area_surely(master: &mut Master<'_>, area: &Area, told: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
+pub fn read_area_surely(
+    master: &mut Master<'_>,
+    area: &Area,
+    progress: &mut dyn FnMut(u8),
+) -> Result<Vec<Bank>, Error> {
     ensure_standstill(master)?;
-    certainly(master, |master| read_area(master, area, told))
+    certainly(master, |master| read_area(master, area, progress))
 }
 
 /// Reads everything that can be restored, and the identity. The device mode is left as it is: leading back would

@@ -109,7 +109,7 @@ pub enum Sample {
 pub struct WatchedReading {
     /// When the answer was there.
     pub at: Moment,
-    pub what: RegisterRange,
+    pub range: RegisterRange,
     /// Their values, in the order of their addresses, or why there are none: no such register, or data.
     pub value: Result<Vec<u8>, Error>,
 }
@@ -144,5 +144,5 @@ pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<Watc
             value => value,
         },
     };
-    Ok(WatchedReading { at: master.now(), what, value })
+    Ok(WatchedReading { at: master.now(), range: what, value })
 }

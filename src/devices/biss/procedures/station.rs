@@ -73,19 +73,19 @@ parameters! {
 
 /// The way to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Transport {
     /// UBICOM over its configuration pin: registers by their global address.
     ConfigPin,
     /// BiSS over an adapter: registers by bank and address.
     Adapter,
 }
 
-impl Way {
+impl Transport {
     /// The link parameters that mean something over it.
     pub fn parameters(self) -> Vec<&'static str> {
         match self {
-            Way::ConfigPin => [PinParameters::KEYS, LineParameters::KEYS, FrameParameters::KEYS].concat(),
-            Way::Adapter => [LineParameters::KEYS, BusParameters::KEYS, FrameParameters::KEYS].concat(),
+            Transport::ConfigPin => [PinParameters::KEYS, LineParameters::KEYS, FrameParameters::KEYS].concat(),
+            Transport::Adapter => [LineParameters::KEYS, BusParameters::KEYS, FrameParameters::KEYS].concat(),
         }
     }
 }
@@ -94,7 +94,7 @@ impl Way {
 #[derive(Clone, Debug)]
 pub struct Station {
     /// The way to the encoder.
-    pub way: Way,
+    pub transport: Transport,
     /// Speed and parity on the configuration pin. The encoder has 115200 8N1 and nothing to set; what stands between it and
     /// us, a converter or a radio link, may have another.
     pub format: CharacterFormat,
@@ -177,9 +177,9 @@ pub(super) struct Bus {
 
 impl Station {
     /// Creates the state of an unused line.
-    pub fn new(way: Way, margin: Duration) -> Self {
+    pub fn new(way: Transport, margin: Duration) -> Self {
         Station {
-            way,
+            transport: way,
             format: FORMAT,
             line: LineState::new(margin),
             order: None,
@@ -211,7 +211,7 @@ impl Station {
     ///
     /// # Errors
     /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
-    pub fn from_query(query: &Query, way: Way, margin: Duration) -> Result<Self, UrlError> {
+    pub fn from_query(query: &Query, way: Transport, margin: Duration) -> Result<Self, UrlError> {
         let pairs = query.pairs();
         let (pin, bus) = (PinParameters::read(pairs)?, BusParameters::read(pairs)?);
         let mut station = Station::new(way, LineParameters::read(pairs)?.margin.unwrap_or(margin));
@@ -252,7 +252,7 @@ impl Station {
 
     /// Returns whether the number of turn bits is known.
     pub(super) fn is_split_known(&self) -> bool {
-        self.source.is_none_or(FrameSource::is_told)
+        self.source.is_none_or(FrameSource::is_known)
     }
 
     /// Once is not enough: a sum lets some pairs of flipped bits through.
@@ -281,9 +281,9 @@ impl Station {
 
 impl fmt::Display for Station {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.way {
-            Way::ConfigPin => write!(f, "UBICOM at {}", self.format),
-            Way::Adapter => write!(f, "BiSS at {} Hz", self.actual_clock_hz.unwrap_or(self.clock_hz)),
+        match self.transport {
+            Transport::ConfigPin => write!(f, "UBICOM at {}", self.format),
+            Transport::Adapter => write!(f, "BiSS at {} Hz", self.actual_clock_hz.unwrap_or(self.clock_hz)),
         }
     }
 }
@@ -322,7 +322,7 @@ mod tests {
     use crate::devices::biss::protocol::Descriptions;
 
     fn station(query: &str) -> Result<Station, UrlError> {
-        Station::from_query(&query.parse().unwrap(), Way::ConfigPin, Duration::from_millis(50))
+        Station::from_query(&query.parse().unwrap(), Transport::ConfigPin, Duration::from_millis(50))
     }
 
     #[test]
@@ -389,7 +389,7 @@ mod tests {
     /// commands, cannot be written, or are not described.
     #[test]
     fn reading_back_tells_of_registers_that_keep_what_they_are_given() {
-        let mut station = Station::new(Way::ConfigPin, Duration::ZERO);
+        let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);
         let tells = |station: &Station, text: &str| station.tells_back(text.parse().unwrap());
         assert!(tells(&station, "0x40") && !tells(&station, "0x6B"), "nothing is known of the encoder yet");
         station.description = Descriptions::built_in().named("POSITAL IXARC kit encoder").cloned().map(Arc::new);

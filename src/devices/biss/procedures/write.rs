@@ -2,7 +2,7 @@
 //! the motor where needed, and leads the encoder back to operation after each.
 
 use super::error::exactly;
-use super::procedure::{Failure, Guide, LeftState, News, Operator, Outcome, ProcedureStep};
+use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
 use super::{Error, Identity, Master, ensure_standstill};
 use crate::devices::biss::profile::{Bank, Base, BissPlan, BissProfile, DeviceState, Op};
 use crate::devices::biss::protocol::{
@@ -77,7 +77,7 @@ impl<'w, 'm> EncoderWrite<'w, 'm> {
         master: &'w mut Master<'m>,
         identity: &'w Identity,
         operator: &'w mut dyn Operator,
-        tell: &'w mut dyn FnMut(News),
+        tell: &'w mut dyn FnMut(ProcedureProgress),
     ) -> Result<Self, Error> {
         let description = master.description()?;
         Ok(EncoderWrite {
@@ -175,8 +175,9 @@ fn count(done: &mut Written, op: &Op, outcome: Outcome) {
         done.ops += 1;
         done.written += op.weight();
         // The encoder's word is all there is of a calibration, and of a result that shows after a restart.
-        let told = matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
-        done.verified += if told { 0 } else { op.weight() };
+        let is_unverifiable =
+            matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
+        done.verified += if is_unverifiable { 0 } else { op.weight() };
     }
     done.outcomes.push(outcome);
 }
@@ -229,7 +230,7 @@ pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
     banks: &[u8],
-    told: &mut dyn FnMut(u64, u8),
+    progress: &mut dyn FnMut(u64, u8),
 ) -> Result<DeviceState, Error> {
     let description = &identity.description;
     ensure_operation(master, description)?;
@@ -240,7 +241,7 @@ pub fn read_state(
     }
     let mut read = Vec::new();
     for (done, number) in (0..).zip(banks) {
-        told(done, *number);
+        progress(done, *number);
         read.push(read_bank(master, *number)?);
     }
     let areas: Vec<Area> = description.areas().iter().filter(|area| area.access.reads()).cloned().collect();

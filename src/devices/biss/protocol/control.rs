@@ -32,11 +32,11 @@ const REGISTERS: u8 = 0x80;
 pub struct Request {
     slave: u8,
     address: u8,
-    what: What,
+    kind: RequestKind,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum What {
+enum RequestKind {
     Read { count: u8 },
     Write { values: Vec<u8> },
 }
@@ -87,7 +87,7 @@ impl Request {
     /// # Errors
     /// [`RequestError`] where they are not there.
     pub fn read(slave: u8, address: u8, count: u8) -> Result<Self, RequestError> {
-        Self::checked(slave, address, What::Read { count })
+        Self::checked(slave, address, RequestKind::Read { count })
     }
 
     /// Writes registers one after the other.
@@ -95,11 +95,11 @@ impl Request {
     /// # Errors
     /// [`RequestError`] where they are not there.
     pub fn write(slave: u8, address: u8, values: &[u8]) -> Result<Self, RequestError> {
-        Self::checked(slave, address, What::Write { values: values.to_vec() })
+        Self::checked(slave, address, RequestKind::Write { values: values.to_vec() })
     }
 
-    fn checked(slave: u8, address: u8, what: What) -> Result<Self, RequestError> {
-        let request = Request { slave, address, what };
+    fn checked(slave: u8, address: u8, what: RequestKind) -> Result<Self, RequestError> {
+        let request = Request { slave, address, kind: what };
         let count = request.count();
         if slave > 7 {
             return Err(RequestError::Slave(slave));
@@ -111,21 +111,21 @@ impl Request {
     }
 
     fn count(&self) -> usize {
-        match &self.what {
-            What::Read { count } => usize::from(*count),
-            What::Write { values } => values.len(),
+        match &self.kind {
+            RequestKind::Read { count } => usize::from(*count),
+            RequestKind::Write { values } => values.len(),
         }
     }
 
     fn reads(&self) -> bool {
-        matches!(self.what, What::Read { .. })
+        matches!(self.kind, RequestKind::Read { .. })
     }
 
     /// DATA and CRC4 that the host sends for the register number `index` of the request; zeros where it reads.
     fn data(&self, index: usize) -> u16 {
-        match &self.what {
-            What::Read { .. } => 0,
-            What::Write { values } => values.get(index).map_or(0, |value| with_crc(*value)),
+        match &self.kind {
+            RequestKind::Read { .. } => 0,
+            RequestKind::Write { values } => values.get(index).map_or(0, |value| with_crc(*value)),
         }
     }
 }

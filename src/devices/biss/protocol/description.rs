@@ -84,7 +84,7 @@ pub struct Procedure {
 
 /// A description that cannot be used, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}, line {line}, column {column}: {what}")]
+#[error("{file}, line {line}, column {column}: {problem}")]
 pub struct DescriptionError {
     /// The file's name as it was given.
     pub file: String,
@@ -93,7 +93,7 @@ pub struct DescriptionError {
     /// Column, counted from 1.
     pub column: usize,
     /// The problem.
-    pub what: String,
+    pub problem: String,
 }
 
 /// All kinds of encoders known, the most particular first.
@@ -111,7 +111,7 @@ impl Description {
             file: file.to_owned(),
             line: error.span.start.line,
             column: error.span.start.col,
-            what: error.code.to_string(),
+            problem: error.code.to_string(),
         })
     }
 

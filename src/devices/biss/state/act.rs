@@ -32,7 +32,7 @@ impl Encoder {
                         run.data = profile.and_then(|body| body.into_profile().ok()).map(Box::new);
                         self.plan(Change::Guided { run: *run, motor }, context.services);
                     }
-                    Err(refusal) => context.services.tell(Severity::Error, vec![refusal], None),
+                    Err(refusal) => context.services.notify(Severity::Error, vec![refusal], None),
                 }
             }
             BissAction::ReadStatus => self.submit(BissJob::Status, services),
@@ -104,7 +104,7 @@ impl Encoder {
     }
 
     /// Returns the part of an area that can be shown: of a profile what it contains, of an encoder only the whole.
-    pub fn shown(&self, area: &Area) -> Option<Area> {
+    pub fn visible_part(&self, area: &Area) -> Option<Area> {
         if self.profile().is_some() { self.memory.part(area) } else { Some(area.clone()) }
     }
 

@@ -9,7 +9,7 @@ use crate::buses::bridge::procedures::SupplyAfter;
 use crate::buses::bridge::sim as bridge;
 use crate::buses::ubicom::protocol::FORMAT;
 use crate::devices::biss::jobs::check;
-use crate::devices::biss::procedures::{Echo, Way};
+use crate::devices::biss::procedures::{Echo, Transport};
 use crate::devices::biss::sim;
 use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
@@ -18,7 +18,7 @@ use crate::units::Parity;
 
 /// The way to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BissWay {
+pub enum BissLinkKind {
     /// The virtual encoder in this program.
     #[default]
     Virtual,
@@ -34,7 +34,7 @@ pub enum BissWay {
 /// for what is usual.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
-    pub way: BissWay,
+    pub kind: BissLinkKind,
     /// The virtual encoder stands behind a virtual adapter; what was recorded passed an adapter.
     pub behind_adapter: bool,
     /// Over a network, and not a serial port of this machine.
@@ -81,7 +81,7 @@ impl Default for BissForm {
     fn default() -> Self {
         let none = String::new;
         BissForm {
-            way: BissWay::default(),
+            kind: BissLinkKind::default(),
             behind_adapter: true,
             network: false,
             port: none(),
@@ -123,16 +123,16 @@ impl FormModel for BissForm {
             Scheme::Bridge => adapter_in_network(target),
             _ => None,
         };
-        form.way = match url.scheme {
-            Scheme::Sim => BissWay::Virtual,
-            Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => BissWay::Pin,
-            Scheme::Bridge => BissWay::Bus,
-            Scheme::Replay => BissWay::Replay,
+        form.kind = match url.scheme {
+            Scheme::Sim => BissLinkKind::Virtual,
+            Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => BissLinkKind::Pin,
+            Scheme::Bridge => BissLinkKind::Bus,
+            Scheme::Replay => BissLinkKind::Replay,
         };
         if let Some(network) = network {
             form.network = true;
             (form.host, form.tcp_port) = parted(network);
-        } else if form.way == BissWay::Replay {
+        } else if form.kind == BissLinkKind::Replay {
             form.file = target.to_owned();
         } else {
             form.port = target.to_owned();
@@ -161,7 +161,7 @@ impl BissForm {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;
             return self.leave_supply;
         }
-        let is_virtual = self.way == BissWay::Virtual;
+        let is_virtual = self.kind == BissLinkKind::Virtual;
         let entry = match name {
             "mt" => &mut self.turns,
             "st" => &mut self.steps,
@@ -204,23 +204,23 @@ impl BissForm {
 
     /// The encoder is reached over its bus.
     pub fn is_on_the_bus(&self) -> bool {
-        self.way == BissWay::Bus || (self.may_say_what_is_between() && self.behind_adapter)
+        self.kind == BissLinkKind::Bus || (self.may_say_what_is_between() && self.behind_adapter)
     }
 
     /// A link of this kind leads to the configuration pin or to the bus.
     pub fn may_say_what_is_between(&self) -> bool {
-        matches!(self.way, BissWay::Virtual | BissWay::Replay)
+        matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
         let port = || entered(&self.port, "form.port_missing");
-        Ok(match self.way {
-            BissWay::Virtual => (Scheme::Sim, String::new()),
-            BissWay::Pin if self.network => (Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
-            BissWay::Pin => (Scheme::Serial, port()?),
-            BissWay::Bus if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
-            BissWay::Bus => (Scheme::Bridge, port()?),
-            BissWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        Ok(match self.kind {
+            BissLinkKind::Virtual => (Scheme::Sim, String::new()),
+            BissLinkKind::Pin if self.network => (Scheme::Tcp, host_and_port(&self.host, &self.tcp_port)?),
+            BissLinkKind::Pin => (Scheme::Serial, port()?),
+            BissLinkKind::Bus if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
+            BissLinkKind::Bus => (Scheme::Bridge, port()?),
+            BissLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
@@ -229,7 +229,7 @@ impl BissForm {
         if self.may_say_what_is_between() && self.behind_adapter {
             parameters.set(BRIDGE.0, BRIDGE.1);
         }
-        if self.way == BissWay::Virtual {
+        if self.kind == BissLinkKind::Virtual {
             parameters.decimal("rpm", &self.rpm);
             parameters.entry("fault", &self.fault);
         }
@@ -267,11 +267,11 @@ impl BissForm {
     /// Returns whether a parameter belongs to this way. Those of other ways are dropped; unknown ones are kept, so that
     /// they are refused by name.
     fn belongs(&self, name: &str) -> bool {
-        let way = if self.is_on_the_bus() { Way::Adapter } else { Way::ConfigPin };
-        let own = |way: Way| way.parameters().contains(&name);
+        let way = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
+        let own = |way: Transport| way.parameters().contains(&name);
         let (encoder, adapter) = (sim::Config::KEYS.contains(&name), bridge::keys(at_adapter()).contains(&name));
-        let of_the_virtual = self.way == BissWay::Virtual && (encoder || (adapter && self.behind_adapter));
-        let elsewhere = own(Way::ConfigPin) || own(Way::Adapter) || encoder || adapter || name == BRIDGE.0;
+        let of_the_virtual = self.kind == BissLinkKind::Virtual && (encoder || (adapter && self.behind_adapter));
+        let elsewhere = own(Transport::ConfigPin) || own(Transport::Adapter) || encoder || adapter || name == BRIDGE.0;
         own(way) || of_the_virtual || !elsewhere
     }
 }
@@ -320,10 +320,13 @@ mod tests {
             change(&mut form);
             form.url().unwrap().to_string()
         };
-        let to_pin: fn(&mut BissForm) = |form| (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
+        let to_pin: fn(&mut BissForm) = |form| (form.kind, form.port) = (BissLinkKind::Pin, "COM3".to_owned());
         assert_eq!(other("sim:?bridge=on&noise=0.1&temperature=80&rpm=5&margin=7", to_pin), "serial:COM3?margin=7");
         assert_eq!(other("bridge:COM3?clock=2000000&voltage=5&leave-supply=on", to_pin), "serial:COM3");
-        assert_eq!(other("serial:COM3?timeout=50&order=low-first", |form| form.way = BissWay::Bus), "bridge:COM3");
+        assert_eq!(
+            other("serial:COM3?timeout=50&order=low-first", |form| form.kind = BissLinkKind::Bus),
+            "bridge:COM3"
+        );
         assert_eq!(other("sim:?bridge=on&noise=0.1&rpm=5", |form| form.behind_adapter = false), "sim:?rpm=5");
     }
 
@@ -334,21 +337,21 @@ mod tests {
             change(&mut form);
             form.url().unwrap_err().id()
         };
-        assert_eq!(refused(|form| form.way = BissWay::Pin), "form.port_missing");
-        assert_eq!(refused(|form| form.way = BissWay::Bus), "form.port_missing");
-        assert_eq!(refused(|form| (form.way, form.network) = (BissWay::Bus, true)), "form.host_missing");
-        assert_eq!(refused(|form| form.way = BissWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.kind = BissLinkKind::Pin), "form.port_missing");
+        assert_eq!(refused(|form| form.kind = BissLinkKind::Bus), "form.port_missing");
+        assert_eq!(refused(|form| (form.kind, form.network) = (BissLinkKind::Bus, true)), "form.host_missing");
+        assert_eq!(refused(|form| form.kind = BissLinkKind::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.margin = "soon".to_owned()), "form.margin");
         assert_eq!(refused(|form| form.clock = "1".to_owned()), "form.clock");
         assert_eq!(refused(|form| form.rpm = "fast".to_owned()), "form.rpm");
         assert_eq!(refused(|form| form.fault = "drop:2".to_owned()), "form.fault");
         assert_eq!(refused(|form| form.rest = vec![("motor".to_owned(), "none".to_owned())]), "form.parameter");
         let fast =
-            |form: &mut BissForm| (form.way, form.port, form.baud) = (BissWay::Pin, "COM3".into(), "fast".into());
+            |form: &mut BissForm| (form.kind, form.port, form.baud) = (BissLinkKind::Pin, "COM3".into(), "fast".into());
         assert_eq!(refused(fast), "form.parameter");
-        assert_eq!(refused(|form| (form.way, form.port) = (BissWay::Pin, "a?b".to_owned())), "form.characters");
+        assert_eq!(refused(|form| (form.kind, form.port) = (BissLinkKind::Pin, "a?b".to_owned())), "form.characters");
         let colour = |form: &mut BissForm| {
-            (form.way, form.port) = (BissWay::Pin, "COM3".to_owned());
+            (form.kind, form.port) = (BissLinkKind::Pin, "COM3".to_owned());
             form.rest = vec![("colour".to_owned(), "green".to_owned())];
         };
         assert_eq!(refused(colour), "form.other");

@@ -98,7 +98,7 @@ mod tests {
         let at: RegisterAddress = at.parse().unwrap();
         let group = &encoder.table.groups()[encoder.table.position(at.bank()).unwrap()];
         let row = group.rows().iter().position(|row| row.register.address == at).unwrap();
-        let shown = group.shown(row, &encoder.memory).unwrap();
+        let shown = group.entry(row, &encoder.memory).unwrap();
         encoder.meaning(&shown).map(|text| text.words(language)).unwrap_or_default()
     }
 

@@ -59,7 +59,7 @@ impl Kind for Biss {
         explained::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
 }
@@ -84,15 +84,15 @@ impl SessionEvents for Encoder {
 
     fn progressed(&mut self, what: JobStep) {
         let running = self.guide.as_mut().filter(|guide| guide.is_running());
-        if let (JobStep::Operation { news, .. }, Some(guide)) = (what, running) {
-            guide.tell(*news);
+        if let (JobStep::Operation { progress: news, .. }, Some(guide)) = (what, running) {
+            guide.take_progress(*news);
         }
     }
 
     fn message_received(&mut self, remark: DeviceMessage, services: &mut Services) {
         match remark {
             DeviceMessage::CrcErrors(count) => self.record.add_crc_errors(count),
-            remark => services.tell(Severity::Warning, explained::remark(&remark), None),
+            remark => services.notify(Severity::Warning, explained::remark(&remark), None),
         }
     }
 
@@ -132,7 +132,7 @@ impl SessionEvents for Encoder {
             BissOutput::LedBack(mode) => {
                 self.led_back();
                 let text = TEXTS.text("guide.led_back").with_text("mode", explained::mode(mode));
-                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }
             // The survey tells more.

@@ -62,13 +62,13 @@ pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
         Error::Adapter(error) => adapter(error),
-        Error::NoReply { asked, tries, echo_heard } => {
+        Error::NoReply { requested, tries, echo_heard } => {
             let id = if *echo_heard { "biss.echo_only" } else { "biss.no_reply" };
-            TEXTS.text(id).with_text("asked", self::asked(*asked)).with("tries", tries)
+            TEXTS.text(id).with_text("asked", self::item_text(*requested)).with("tries", tries)
         }
-        Error::Damaged { asked, tries, cause } => TEXTS
+        Error::Damaged { requested, tries, cause } => TEXTS
             .text("biss.damaged")
-            .with_text("asked", self::asked(*asked))
+            .with_text("asked", self::item_text(*requested))
             .with("tries", tries)
             .with_text("why", damage(cause)),
         Error::NeverSilent => TEXTS.text("biss.never_silent"),
@@ -107,8 +107,8 @@ pub fn encoder(error: &Error) -> Text {
         Error::Moving { rpm } => moving(*rpm),
         Error::NotInOperation { mode } => in_mode("biss.not_in_operation", *mode),
         Error::Changed { item } => TEXTS.text("biss.changed").with("item", item),
-        Error::OtherReply { asked, reply } => {
-            TEXTS.text("biss.other_reply").with_text("asked", self::asked(*asked)).with("reply", reply)
+        Error::OtherReply { requested, reply } => {
+            TEXTS.text("biss.other_reply").with_text("asked", self::item_text(*requested)).with("reply", reply)
         }
         Error::FrameStatus { status } => TEXTS.text("biss.frame_status").with("status", byte(*status)),
         Error::Layout(error) => layout(error),
@@ -169,8 +169,8 @@ fn moving(rpm: Option<f64>) -> Text {
     TEXTS.text(id).with_number("rpm", rpm.abs(), if rpm.abs() < 10.0 { 1 } else { 0 })
 }
 
-pub fn asked(asked: RequestedItem) -> Text {
-    match asked {
+pub fn item_text(requested: RequestedItem) -> Text {
+    match requested {
         RequestedItem::Read(address) => TEXTS.text("biss.asked_read").with("address", address),
         RequestedItem::Write(address, value) => {
             TEXTS.text("biss.asked_write").with("address", address).with("value", byte(value))
@@ -201,7 +201,7 @@ pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
 fn description(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<DescriptionError>() {
-        Some(DescriptionError { file, line, column, what }) => TEXTS
+        Some(DescriptionError { file, line, column, problem: what }) => TEXTS
             .text("store.description")
             .with("path", file)
             .with_text("why", syntax(*line, *column, general::plain(what))),
@@ -213,7 +213,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     match job_step {
         JobStep::Register(address) => TEXTS.text("biss.register").with("address", address),
         JobStep::Bank(bank) => TEXTS.text("biss.bank").with("bank", format!("0x{bank:02X}")),
-        JobStep::Operation { news, .. } => step(news.step),
+        JobStep::Operation { progress: news, .. } => step(news.step),
     }
 }
 
@@ -233,12 +233,12 @@ mod tests {
     #[test]
     fn every_error_says_what_happened_and_what_to_do() {
         let address: RegisterAddress = "0x24:0x10".parse().unwrap();
-        let asked = RequestedItem::Read(address);
+        let requested = RequestedItem::Read(address);
         let kind = Identity { profile: ProfileId::new(0x6129), manufacturer: *b"Fr", device_id: [1, 2, 3, 4, 5, 6] };
         let cases = [
-            (Error::NoReply { asked, tries: 5, echo_heard: false }, vec!["0x24:0x10", "5"]),
-            (Error::NoReply { asked, tries: 5, echo_heard: true }, vec!["0x24:0x10", "5"]),
-            (Error::Damaged { asked, tries: 5, cause: Damage::Inconsistent }, vec!["0x24:0x10", "5"]),
+            (Error::NoReply { requested, tries: 5, echo_heard: false }, vec!["0x24:0x10", "5"]),
+            (Error::NoReply { requested, tries: 5, echo_heard: true }, vec!["0x24:0x10", "5"]),
+            (Error::Damaged { requested, tries: 5, cause: Damage::Inconsistent }, vec!["0x24:0x10", "5"]),
             (Error::NeverSilent, vec![]),
             (Error::NoAcknowledge { tries: 5, supply_off: false }, vec!["MA", "SLO"]),
             (Error::NoAcknowledge { tries: 5, supply_off: true }, vec!["voltage="]),

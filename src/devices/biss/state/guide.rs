@@ -3,14 +3,14 @@
 
 use crate::app::Text;
 use crate::devices::biss::procedures::procedure::{
-    Answer, Demand, Detail, News, OperatorChannel, Outcome, ProcedureStep, Task, steps_of,
+    Answer, Demand, Detail, OperatorChannel, Outcome, ProcedureProgress, ProcedureStep, Task, steps_of,
 };
 use crate::devices::biss::profile::Op;
 
 /// A procedure on its way, or as it ended.
 pub struct Guide {
     ops: Vec<Op>,
-    news: Option<News>,
+    progress: Option<ProcedureProgress>,
     /// The step that it was at when it was cut off: what is told last is the way back from there.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
@@ -69,7 +69,7 @@ pub struct GuideStep<'a> {
 
 impl Guide {
     pub(super) fn new(ops: Vec<Op>) -> Self {
-        Guide { ops, news: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
+        Guide { ops, progress: None, cut: None, seat: OperatorChannel::default(), skips: Vec::new(), end: None }
     }
 
     /// Returns whether the procedure is running.
@@ -82,13 +82,13 @@ impl Guide {
         &self.ops
     }
 
-    pub(super) fn tell(&mut self, news: News) {
-        self.news = Some(news);
+    pub(super) fn take_progress(&mut self, news: ProcedureProgress) {
+        self.progress = Some(news);
     }
 
     /// Returns the detail of the present step.
     pub fn detail(&self) -> Option<&Detail> {
-        self.news.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
+        self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
     /// Returns the present task of the person.
@@ -102,7 +102,7 @@ impl Guide {
     /// Answers what is being asked.
     pub(super) fn answer(&mut self, task: Task, answer: Answer) {
         if self.is_running() {
-            if let Some(op) = self.news.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {
+            if let Some(op) = self.progress.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {
                 self.skips.push((op, task));
             }
             self.seat.answer(task, answer);
@@ -111,7 +111,7 @@ impl Guide {
 
     /// All steps, in their order.
     pub fn steps(&self) -> Vec<GuideStep<'_>> {
-        let at = self.news.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
+        let at = self.progress.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
         let mut steps = Vec::new();
         let mut passed = true;
         for (number, op) in self.ops.iter().enumerate() {
@@ -166,9 +166,9 @@ impl Guide {
 
     /// This is the way back from where it was cut off, and it was gone to its end.
     fn was_led_back(&self, op: usize, step: ProcedureStep) -> bool {
-        let told = self.news.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
+        let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
-        step == ProcedureStep::LeadBack && told && in_operation
+        step == ProcedureStep::LeadBack && was_reported && in_operation
     }
 }
 
@@ -178,9 +178,11 @@ mod tests {
     use crate::devices::biss::procedures::procedure::Run;
     use crate::devices::biss::protocol::DeviceMode;
 
-    fn reached(told: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
+    fn reached(reported: &[ProcedureStep], cut: Option<ProcedureStep>, may_lead_back: bool) -> Vec<Reached> {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        told.iter().for_each(|step| guide.tell(News { op: 0, step: *step, detail: Detail::Begins }));
+        reported
+            .iter()
+            .for_each(|step| guide.take_progress(ProcedureProgress { op: 0, step: *step, detail: Detail::Begins }));
         guide.cut = cut;
         guide.end = Some(End::Failed { texts: Vec::new(), before: Vec::new(), may_lead_back, cancelled: false });
         guide.steps().iter().map(|own| own.reached).collect()
@@ -196,10 +198,14 @@ mod tests {
             (second, Some(first), [Done, Done, Done, Done, Skipped, Skipped, Done]),
         ] {
             let mut guide = Guide::new(vec![Op::Calibrate, Op::WiegandTest { save: false }]);
-            guide.tell(News { op: 0, step: ProcedureStep::Await(Task::Turn(task)), detail: Detail::Begins });
+            guide.take_progress(ProcedureProgress {
+                op: 0,
+                step: ProcedureStep::Await(Task::Turn(task)),
+                detail: Detail::Begins,
+            });
             guide.answer(Task::Turn(task), Answer::Skip);
             let next = ProcedureStep::Await(Task::Turn(Run::WiegandClockwise));
-            guide.tell(News { op: 1, step: next, detail: Detail::Begins });
+            guide.take_progress(ProcedureProgress { op: 1, step: next, detail: Detail::Begins });
             assert_eq!(states(&guide), [&expected[..], &[Runs], &[Ahead; 6]].concat());
             guide.end = Some(End::Done(vec![Outcome::Skipped { after }, Outcome::Skipped { after: None }]));
             assert_eq!(states(&guide), [&expected[..], &[Skipped; 7]].concat());
@@ -227,7 +233,7 @@ mod tests {
     #[test]
     fn who_cancels_has_not_failed() {
         let mut guide = Guide::new(vec![Op::Calibrate]);
-        guide.tell(News { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
+        guide.take_progress(ProcedureProgress { op: 0, step: ProcedureStep::Conditions, detail: Detail::Begins });
         guide.cut = Some(ProcedureStep::Conditions);
         let (texts, before) = (Vec::new(), Vec::new());
         guide.end = Some(End::Failed { texts, before, may_lead_back: false, cancelled: true });

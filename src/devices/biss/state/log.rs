@@ -16,7 +16,7 @@ impl Encoder {
     /// Logs the first answer since the link was opened.
     pub(super) fn log_answer(&self, services: &mut Services) {
         let Some(identity) = self.identity() else { return };
-        self.session.log_answer(vec![way(identity), who(identity)], services);
+        self.session.log_answer(vec![transport_text(identity), identity_text(identity)], services);
     }
 
     /// A write has begun: what it changes, old and new.
@@ -52,7 +52,7 @@ fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
 }
 
 /// Returns the way to the encoder in words.
-fn way(identity: &Identity) -> Text {
+fn transport_text(identity: &Identity) -> Text {
     match (&identity.adapter, identity.order) {
         (Some(hello), _) => Text::new("log.adapter")
             .with("name", &hello.name)
@@ -64,7 +64,7 @@ fn way(identity: &Identity) -> Text {
 }
 
 /// Returns the reported identity in words.
-fn who(identity: &Identity) -> Text {
+fn identity_text(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
     TEXTS
         .text("log.identity")

@@ -18,7 +18,7 @@ use crate::link::{Direction, TraceEntry};
 pub(super) struct Meaning {
     /// Which byte of a register's number comes first, once known.
     pub(super) order: Option<ByteOrder>,
-    asked: Option<Request>,
+    requested: Option<Request>,
     /// The last request went over the configuration pin.
     is_pin: bool,
     bank: Option<u8>,
@@ -28,7 +28,7 @@ impl Meaning {
     /// Returns the meaning of a frame.
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
-        let said = match entry.direction {
+        let meaning = match entry.direction {
             Direction::Sent if bytes.first() == Some(&SYNC) => self.request(&bytes),
             Direction::Sent => {
                 self.is_pin = false;
@@ -40,15 +40,15 @@ impl Meaning {
                 None => self.packet(&bytes),
             },
         };
-        said.into_iter().collect::<Vec<_>>().into()
+        meaning.into_iter().collect::<Vec<_>>().into()
     }
 
     fn request(&mut self, bytes: &[u8]) -> Option<Text> {
         let frame = Frame::parse(bytes).ok()?;
         self.is_pin = true;
-        self.asked = Request::parse(&frame, self.order.unwrap_or(ByteOrder::LowFirst)).ok();
+        self.requested = Request::parse(&frame, self.order.unwrap_or(ByteOrder::LowFirst)).ok();
         let place = |register| RegisterAddress::from_global(register).map_or_else(String::new, |at| at.to_string());
-        Some(match self.asked? {
+        Some(match self.requested? {
             Request::Read { register } => TEXTS.text("trace.read").with("address", place(register)),
             Request::Write { register, value } => written("trace.write", place(register), value),
             Request::Position { .. } => Text::new("trace.position"),
@@ -59,12 +59,12 @@ impl Meaning {
     fn reply(&mut self, bytes: &[u8]) -> Explained {
         let broken = |damage| Explained::broken(words::damage(&damage));
         let Ok(frame) = Frame::parse(bytes) else { return broken(Damage::NoFrame { bytes: bytes.len() }) };
-        let Some(asked) = self.asked else { return Explained::default() };
-        let reply = match Reply::parse(&frame, asked.command()) {
+        let Some(requested) = self.requested else { return Explained::default() };
+        let reply = match Reply::parse(&frame, requested.command()) {
             Ok(reply) => reply,
             Err(error) => return broken(Damage::Reply(error)),
         };
-        self.asked = None;
+        self.requested = None;
         let text = match reply {
             Reply::Value(value) => plain(format!("0x{value:02X}")),
             Reply::Written(Written::Acknowledged) => Text::new("trace.taken"),
@@ -99,13 +99,13 @@ impl Meaning {
                 TEXTS.text("trace.read").with("address", place(address))
             }
             bridge::Request::BissRegisterWrite { address, value, .. } => {
-                let said = written("trace.write", place(address), value);
+                let meaning = written("trace.write", place(address), value);
                 if address == RegisterAddress::BANK_SELECT.address() {
                     self.bank = Some(value);
                 }
-                said
+                meaning
             }
-            ref other => adapter::asked(other),
+            ref other => adapter::request_text(other),
         }
     }
 }

@@ -28,7 +28,7 @@ mod write;
 pub use texts::TEXTS;
 
 pub use action::BissAction;
-pub use connect_form::{BissForm, BissWay};
+pub use connect_form::{BissForm, BissLinkKind};
 pub use encoder::Encoder;
 pub use guide::{End, Guide, GuideStep, Reached};
 pub use mark::Mark;

@@ -78,7 +78,7 @@ impl Record {
         match self.stream {
             // Whatever was dropped, the numbers of the frames show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
-            _ => self.track.lose(dropped),
+            _ => self.track.note_dropped(dropped),
         }
         // Thousands a second, with the same widths: recorded together.
         let mut batch = Batch::default();
@@ -95,14 +95,14 @@ impl Record {
                 Sample::Watched(reading) => self.add_watched(&reading),
             }
         }
-        self.keep(&mut batch);
+        self.append(&mut batch);
     }
 
     /// Records a position.
     pub(super) fn add_position(&mut self, reading: PositionReading) {
         let mut batch = Batch::default();
         self.see(&reading, &mut batch);
-        self.keep(&mut batch);
+        self.append(&mut batch);
     }
 
     fn see(&mut self, reading: &PositionReading, batch: &mut Batch) {
@@ -110,7 +110,7 @@ impl Record {
         self.add_crc_errors(reading.crc_errors);
         let widths = Widths::from(reading);
         if batch.widths.is_some_and(|own| own != widths) {
-            self.keep(batch);
+            self.append(batch);
         }
         batch.widths = Some(widths);
         batch.sightings.push(sighting(reading));
@@ -119,10 +119,10 @@ impl Record {
 
     /// Records streamed frames; missing ones are reported and never joined.
     fn see_frames(&mut self, run: &FrameRun, batch: &mut Batch) {
-        let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
+        let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
-        if run.begins() || missing > 0 {
-            self.keep(batch);
+        if run.is_stream_start() || missing > 0 {
+            self.append(batch);
             self.track.gap();
         }
         self.lost += missing;
@@ -132,7 +132,7 @@ impl Record {
         let (multiturn, singleturn) = (run.layout.multiturn_bits(), run.layout.singleturn_bits());
         let widths = Widths { multiturn, singleturn, is_split_known: run.is_split_known };
         if batch.widths.is_some_and(|own| own != widths) {
-            self.keep(batch);
+            self.append(batch);
         }
         batch.widths = Some(widths);
         for (at, frame) in run.timed() {
@@ -147,7 +147,7 @@ impl Record {
         }
     }
 
-    fn keep(&mut self, batch: &mut Batch) {
+    fn append(&mut self, batch: &mut Batch) {
         if batch.sightings.is_empty() {
             return;
         }
@@ -165,7 +165,7 @@ impl Record {
     }
 
     fn add_watched(&mut self, reading: &WatchedReading) {
-        let watched = self.track.watched().into_iter().find(|own| own.address == reading.what.start());
+        let watched = self.track.watched().into_iter().find(|own| own.address == reading.range.start());
         let Some(register) = watched else { return };
         let value = reading.value.as_ref().ok().and_then(|bytes| value_of(&register, bytes));
         let never = match &reading.value {
@@ -178,8 +178,8 @@ impl Record {
     }
 
     /// Records these registers too, and no others beside the position.
-    pub(super) fn watch(&mut self, wished: &[Register]) {
-        self.track.watch(wished);
+    pub(super) fn watch(&mut self, watched: &[Register]) {
+        self.track.watch(watched);
     }
 
     /// The registers that are recorded beside the position.
@@ -346,7 +346,7 @@ mod tests {
             (Error::NotWatched { address }, Some("recorder.data")),
             (Error::NeverSilent, None),
         ] {
-            let reading = WatchedReading { at: Moment::START, what, value: Err(error) };
+            let reading = WatchedReading { at: Moment::START, range: what, value: Err(error) };
             record.add(vec![Sample::Watched(reading)], 0);
             let line = record.recorder().lines().iter().find(|line| line.heading.contains("temperature"));
             assert_eq!(line.unwrap().remark, said.map(|id| TEXTS.text(id)));

@@ -1,7 +1,7 @@
 //! The review of a write into a BiSS encoder: what its plan needs, warns of and costs.
 
 use crate::app::explain::plain;
-use crate::app::review::{self, Manner, OpWords, Permit, Reviewed};
+use crate::app::review::{self, ExecutionMode, OpWords, Permit, Reviewed};
 use crate::app::{Text, explain};
 use crate::devices::biss::jobs::{Biss, Change, Prepared, WEAR_LIMIT};
 use crate::devices::biss::procedures::write::Written;
@@ -96,11 +96,11 @@ impl Reviewed for Biss {
         words::written(written)
     }
 
-    fn manner(prepared: &Prepared) -> Manner {
+    fn execution_mode(prepared: &Prepared) -> ExecutionMode {
         match prepared.plan.ops.iter().any(is_guided) {
-            false => Manner::Writes,
-            true if prepared.plan.write_cycles() == 0 => Manner::Tests,
-            true => Manner::Leads,
+            false => ExecutionMode::Writes,
+            true if prepared.plan.write_cycles() == 0 => ExecutionMode::Tests,
+            true => ExecutionMode::Leads,
         }
     }
 }

@@ -98,7 +98,7 @@ impl Group {
     }
 
     /// A row with its value.
-    pub fn shown<'a>(&'a self, row: usize, memory: &Memory) -> Option<RegisterEntry<'a>> {
+    pub fn entry<'a>(&'a self, row: usize, memory: &Memory) -> Option<RegisterEntry<'a>> {
         let row = self.rows.get(row)?;
         let places = || {
             let first = row.register.address.global();
@@ -189,10 +189,10 @@ mod tests {
         let (table, mut memory) = (kit(), Memory::default());
         let direct = &table.groups()[0];
         let serial = direct.rows().iter().position(|row| row.register.name.english() == "serial number").unwrap();
-        assert_eq!(direct.shown(serial, &memory).unwrap().bytes, None);
+        assert_eq!(direct.entry(serial, &memory).unwrap().bytes, None);
         assert!(!direct.is_read(&memory));
         memory.take(direct.start().unwrap(), &[7; 64]);
-        let shown = direct.shown(serial, &memory).unwrap();
+        let shown = direct.entry(serial, &memory).unwrap();
         assert_eq!(shown.number(), Some(0x0707_0707));
         assert!(direct.is_read(&memory) && !shown.is_edited && !shown.has_changed);
     }

@@ -7,7 +7,7 @@ use super::encoder::Encoder;
 use super::guide::{End, Guide};
 use super::review::{ReviewState, is_guided};
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, EarlyEnd, Known, Saved, WithMemory, without_edits};
+use crate::app::session::{ApprovedPlanOf, EarlyEnd, KnownProfile, Saved, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::biss::jobs::{Biss, BissJob, Change, Commit, Committed, JobError, OperatorPresence, Prepared};
 use crate::devices::biss::procedures::procedure::{Answer, Failure, Task, Unattended};
@@ -158,7 +158,7 @@ impl Saved for Encoder {
         self.wanted_profile().map(Body::new)
     }
 
-    fn known_body(&self) -> Option<Known> {
+    fn known_body(&self) -> Option<KnownProfile> {
         let survey = self.survey.as_ref()?;
         let (mut data, mut missing) = (Vec::new(), Vec::new());
         for area in survey.identity.description.areas().iter().filter(|area| area.access.reads()) {

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::Action;
 use crate::app::connect::Connect as Dialog;
 use crate::bits::ByteOrder;
-use crate::devices::biss::state::{BissForm, BissWay};
+use crate::devices::biss::state::{BissForm, BissLinkKind};
 use crate::devices::biss::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph, text_entry};
@@ -30,24 +30,24 @@ impl TypedConnectForm for BissConnectForm {
         actions: &mut Vec<Action>,
     ) {
         let ways = [
-            (BissWay::Virtual, "connect.virtual"),
-            (BissWay::Pin, "connect.biss_pin"),
-            (BissWay::Bus, "connect.biss_bus"),
-            (BissWay::Replay, "connect.replay"),
+            (BissLinkKind::Virtual, "connect.virtual"),
+            (BissLinkKind::Pin, "connect.biss_pin"),
+            (BissLinkKind::Bus, "connect.biss_bus"),
+            (BissLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.way, ways);
-        let words = match form.way {
-            BissWay::Virtual | BissWay::Replay => None,
-            BissWay::Pin => Some("connect.biss_pin_words"),
-            BissWay::Bus => Some("connect.biss_bus_words"),
+        segments(ui, theme, &mut form.kind, ways);
+        let words = match form.kind {
+            BissLinkKind::Virtual | BissLinkKind::Replay => None,
+            BissLinkKind::Pin => Some("connect.biss_pin_words"),
+            BissLinkKind::Bus => Some("connect.biss_bus_words"),
         };
         if let Some(words) = words {
             paragraph(ui, theme.caption(say(theme, words)));
         }
         ui.add_space(theme.space.between);
-        match form.way {
-            BissWay::Virtual => simulated(ui, theme, form),
-            BissWay::Pin | BissWay::Bus => {
+        match form.kind {
+            BissLinkKind::Virtual => simulated(ui, theme, form),
+            BissLinkKind::Pin | BissLinkKind::Bus => {
                 segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
                     network(ui, theme, &mut form.host, &mut form.tcp_port);
@@ -55,7 +55,7 @@ impl TypedConnectForm for BissConnectForm {
                     serial(ui, theme, dialog, &mut form.port, actions);
                 }
             }
-            BissWay::Replay => {
+            BissLinkKind::Replay => {
                 recording(ui, theme, &mut form.file, actions);
                 reached(ui, theme, form);
             }
@@ -66,7 +66,7 @@ impl TypedConnectForm for BissConnectForm {
                 ui.label(theme.label("Hz"));
             });
         }
-        if form.way != BissWay::Replay && unfolded(ui, theme, more) {
+        if form.kind != BissLinkKind::Replay && unfolded(ui, theme, more) {
             if !form.is_on_the_bus() {
                 entry(ui, theme, &theme.say("settings_card.baud"), |ui| {
                     text_entry(ui, &mut form.baud, 96.0, &theme.say("settings_card.baud"), "115200");

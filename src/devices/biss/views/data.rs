@@ -33,9 +33,9 @@ pub(super) fn page_ui(
         return;
     };
     egui::Panel::bottom("data_foot").frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
+        edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Bytes, actions);
     });
-    let shown = encoder.shown(area);
+    let shown = encoder.visible_part(area);
     ui.horizontal_wrapped(|ui| {
         for (at, own) in areas.iter().enumerate() {
             let word = theme.words(&words::name(&own.name));

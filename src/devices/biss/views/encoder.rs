@@ -96,7 +96,7 @@ fn facts(ui: &mut Ui, theme: &Theme, identity: &Identity) {
         FrameSource::Assumed => "biss_card.assumed",
     };
     row(ui, theme, "", theme.caption(say(theme, source)));
-    if !identity.source.is_told() {
+    if !identity.source.is_known() {
         paragraph(ui, theme.caption(say(theme, "biss_card.give_frame")));
     }
     if let Some(adapter) = &identity.adapter {

@@ -147,7 +147,7 @@ fn mounting_ui(
         ui.checkbox(own.with_preset, say(theme, "mounting_card.preset"));
         data_ui(ui, theme, studio, own.data);
         ui.add_space(theme.space.between);
-        let wish = wish(encoder, own);
+        let wish = requested_run(encoder, own);
         let ready = if encoder.session.is_ready() { Ok(()) } else { Err(Text::new("session.not_ready")) };
         let allowed = ready.and(wish.as_ref().map(|_| ()).map_err(Clone::clone));
         if allowed_button(ui, theme, &allowed, icons::LIST_CHECKS, &say(theme, "mounting_card.review")).clicked()
@@ -170,7 +170,7 @@ fn choice(ui: &mut Ui, theme: &Theme, on: &mut bool, id: &'static str, words: &T
 }
 
 /// Returns the requested run, or why it cannot be reviewed yet.
-fn wish(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
+fn requested_run(encoder: &Encoder, own: &Mounting<'_>) -> Result<MountingRun, Text> {
     let turns = *own.calibrate || *own.wiegand;
     match own.motor {
         None if turns => return Err(TEXTS.text("mounting_card.no_motor")),

@@ -164,7 +164,7 @@ fn table(
 ) {
     let none = say(theme, "registers.elsewhere");
     let row = |place: RegisterLocation| {
-        let shown = encoder.table.groups().get(place.group).and_then(|own| own.shown(place.row, &encoder.memory));
+        let shown = encoder.table.groups().get(place.group).and_then(|own| own.entry(place.row, &encoder.memory));
         shown.map(|own| row_of(theme, encoder, &own, &none)).unwrap_or_default()
     };
     let label = theme.say("page.registers");

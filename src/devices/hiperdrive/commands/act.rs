@@ -57,7 +57,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);
-    let said = change_lines(&prepared.plan);
+    let changes = change_lines(&prepared.plan);
     let before: Vec<DriveNumber> = prepared.identity.drives.iter().map(|own| own.number).collect();
     let spent = commit(&mut runner, output, prepared, &act.consent)?;
     let found = if action == HiperdriveAction::PresenceTest { drives(&mut runner)? } else { Vec::new() };
@@ -68,8 +68,8 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
         }
         _ => {}
     }
-    let told: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
-    let done = show_done(output, &act.action, &operations, &spent, &[], &format!("{said}{told}"))?;
+    let drive_list: String = found.iter().map(|own| format!("drive {}: {}\n", own.number.get(), own.name)).collect();
+    let done = show_done(output, &act.action, &operations, &spent, &[], &format!("{changes}{drive_list}"))?;
     // The completed part may have been in vain.
     match action {
         HiperdriveAction::PresenceTest => present(&before, &found)?,
@@ -103,8 +103,8 @@ fn present(before: &[DriveNumber], found: &[DriveIdentity]) -> Result<()> {
 fn set_position(of: &OfDrive, text: &str) -> Result<Change> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a number")))?;
     let position = i32::try_from(number).map_err(|_| {
-        let said = TEXTS.text("hd_cli.position_range").with("value", text);
-        failed(&said.with("low", i32::MIN).with("high", i32::MAX))
+        let text_of_range = TEXTS.text("hd_cli.position_range").with("value", text);
+        failed(&text_of_range.with("low", i32::MIN).with("high", i32::MAX))
     })?;
     Ok(Change::SetPosition { drive: drive(of), position, save: true })
 }

@@ -4,7 +4,7 @@ use serde_json::{Map, json};
 
 use super::args::WordOptions;
 use super::image;
-use super::meaning::{self, Known, WordMeaning, parameter_words};
+use super::meaning::{self, BytesContext, WordMeaning, parameter_words};
 use crate::bits::{hex, hex_compact};
 use crate::buses::ethernet_ip::commands::{self as ethernet_ip, DecodedBytes, Device};
 use crate::cli::args::Decode;
@@ -15,7 +15,8 @@ use crate::devices::hiperdrive::protocol::{KIND, Layout};
 
 pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     let options: WordOptions = arguments.own.read()?;
-    let known = Known { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
+    let known =
+        BytesContext { direction: options.way.direction, order: options.order.map(Into::into).unwrap_or_default() };
     let explained: Vec<Explained> =
         captured(&arguments.hex)?.iter().map(|captured| explain(captured, &known)).collect();
     show(output, &explained)
@@ -46,15 +47,15 @@ fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
     }
 }
 
-fn explain(captured: &Captured, known: &Known) -> Explained {
-    let (shown, compact, said) = match captured {
+fn explain(captured: &Captured, known: &BytesContext) -> Explained {
+    let (shown, compact, meaning_lines) = match captured {
         Captured::Word(word) => {
             let text = format!("{word:04X}");
             (text.clone(), text, meaning::of_word(*word, known).map(|readings| lines(&readings)))
         }
         Captured::Bytes(bytes) => (hex(bytes), hex_compact(bytes), of_bytes(bytes, known)),
     };
-    let (meaning, mut more) = match said {
+    let (meaning, mut more) = match meaning_lines {
         Ok(DecodedBytes { lines, more, .. }) => (Ok(lines), more),
         Err(why) => (Err(why), Map::new()),
     };
@@ -70,18 +71,18 @@ fn lines(readings: &[WordMeaning]) -> DecodedBytes {
 }
 
 /// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
-fn of_bytes(bytes: &[u8], known: &Known) -> std::result::Result<DecodedBytes, String> {
+fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::of_length(bytes.len()).next().is_some();
     let packet =
         ethernet_ip::explain(bytes, Device::Known(parameter_words)).filter(|_| !fits || known.direction.is_none());
-    if let Some(said) = packet {
-        let mut said = said?;
-        if let Some((data, to_target)) = said.data.take() {
+    if let Some(explained) = packet {
+        let mut explained = explained?;
+        if let Some((data, to_target)) = explained.data.take() {
             let readings = image::cyclic(&data, to_target, known);
-            said.lines.extend(readings.iter().flat_map(WordMeaning::lines));
-            said.more.insert("readings".to_owned(), readings.iter().map(WordMeaning::json).collect());
+            explained.lines.extend(readings.iter().flat_map(WordMeaning::lines));
+            explained.more.insert("readings".to_owned(), readings.iter().map(WordMeaning::json).collect());
         }
-        return Ok(said);
+        return Ok(explained);
     }
     if !fits {
         return Err(format!(

@@ -11,19 +11,20 @@ use crate::cli::args::Common;
 use crate::cli::output::Output;
 use crate::cli::runner::failed;
 use crate::cli::{Done, Failure, Result};
-use crate::devices::hiperdrive::procedures::{Found, discover};
+use crate::devices::hiperdrive::procedures::{DiscoveredDevice, discover};
 use crate::devices::hiperdrive::state::explain as words;
-use crate::link::{Cancel, Clock, LinkUrl, RealClock, Scheme, UdpShout, Wire};
+use crate::link::{Cancel, Clock, LinkUrl, RealClock, Scheme, UdpBroadcast, Wire};
 
 pub(super) fn find(common: &Common, output: &Output) -> Result {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let shout = match &common.link {
-        None => UdpShout::to_all(EXPLICIT_PORT, clock.clone()),
-        Some(url) => UdpShout::to(addresses(url)?, clock.clone()),
+        None => UdpBroadcast::to_all(EXPLICIT_PORT, clock.clone()),
+        Some(url) => UdpBroadcast::to(addresses(url)?, clock.clone()),
     };
     let mut shout = shout.map_err(|error| failed(&explain::link(&error)))?;
     let found = discover(&mut shout, &*clock, &Cancel::default()).map_err(|error| failed(&words::device(&error)))?;
-    let (drives, others): (Vec<Found>, Vec<Found>) = found.into_iter().partition(Found::is_hiperdrive);
+    let (drives, others): (Vec<DiscoveredDevice>, Vec<DiscoveredDevice>) =
+        found.into_iter().partition(DiscoveredDevice::is_hiperdrive);
     let list: Vec<Json> = drives.iter().map(json_of).collect();
     let text: String = drives.iter().map(text_of).collect();
     output.show(&json!({"devices": list, "others": others.len()}), &text)?;
@@ -62,14 +63,14 @@ fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     Ok(found)
 }
 
-fn link_of(found: &Found) -> String {
+fn link_of(found: &DiscoveredDevice) -> String {
     match found.port {
         EXPLICIT_PORT => format!("enip:{}", found.address),
         port => format!("enip:{}:{port}", found.address),
     }
 }
 
-fn json_of(found: &Found) -> Json {
+fn json_of(found: &DiscoveredDevice) -> Json {
     let identity = &found.identity.identity;
     json!({
         "link": link_of(found),
@@ -81,7 +82,7 @@ fn json_of(found: &Found) -> Json {
     })
 }
 
-fn text_of(found: &Found) -> String {
+fn text_of(found: &DiscoveredDevice) -> String {
     let identity = &found.identity.identity;
     format!("{}  {}, serial number {}\n", link_of(found), identity.product_name, identity.serial_number)
 }

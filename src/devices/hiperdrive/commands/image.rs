@@ -2,7 +2,7 @@
 
 use serde_json::{Value as Json, json};
 
-use super::meaning::{self, Known, WordMeaning, control_words, parameter_name, status_words};
+use super::meaning::{self, BytesContext, WordMeaning, control_words, parameter_name, status_words};
 use crate::cli::args::Direction;
 use crate::devices::hiperdrive::protocol::{
     Actual, Answer, ControlWord, InImage, Kind, Layout, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Task,
@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::{
 ///
 /// # Errors
 /// Why they cannot have gone the way that is known.
-pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
@@ -34,7 +34,7 @@ pub(super) fn of_bytes(bytes: &[u8], known: &Known) -> Result<Vec<WordMeaning>, 
     Ok(readings)
 }
 
-fn layouts(length: usize, known: &Known) -> impl Iterator<Item = Layout> {
+fn layouts(length: usize, known: &BytesContext) -> impl Iterator<Item = Layout> {
     Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
@@ -49,7 +49,7 @@ fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
 }
 
 /// Process data of a cyclic packet, which tells the way itself where nothing else is said. Nothing of a length that there is not.
-pub(super) fn cyclic(data: &[u8], to_target: bool, known: &Known) -> Vec<WordMeaning> {
+pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
         if !to_target {
@@ -126,7 +126,7 @@ fn in_turns(position: i32) -> String {
 }
 
 /// Eight bytes as a parameter word, where the manual has the parameter. Texts alone have elements.
-fn parameter_word(bytes: &[u8], known: &Known) -> Vec<WordMeaning> {
+fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
     let Some(row) = row(pkw) else { return Vec::new() };
@@ -153,7 +153,7 @@ fn parameter_word(bytes: &[u8], known: &Known) -> Vec<WordMeaning> {
 
 fn request_words(pkw: Pkw) -> String {
     let name = parameter_name(pkw.number());
-    let said = match pkw.task() {
+    let request = match pkw.task() {
         None => return format!("parameter word: a request {}, which there is not, about {name}", pkw.pke >> 12),
         Some(Task::None) => return "parameter word: nothing is asked".to_owned(),
         Some(task @ (Task::Read | Task::Count)) => format!("{} of {name}", task.name()),
@@ -164,12 +164,12 @@ fn request_words(pkw: Pkw) -> String {
             format!("{} {} of {name}: {}", task.name(), pkw.ind, pkw.pwe)
         }
     };
-    format!("parameter word: {said}")
+    format!("parameter word: {request}")
 }
 
 fn answer_words(pkw: Pkw) -> String {
     let name = parameter_name(pkw.number());
-    let said = match pkw.answer() {
+    let answer = match pkw.answer() {
         Answer::None => return "parameter word: nothing is answered".to_owned(),
         Answer::Unknown => format!("an answer {}, which there is not, about {name}", pkw.pke >> 12),
         Answer::Word(word) => format!("{name} is {}", value_words(pkw, word.into(), true)),
@@ -177,7 +177,7 @@ fn answer_words(pkw: Pkw) -> String {
         Answer::Elements(count) => format!("{name} has {count} elements"),
         Answer::Refused(error) => format!("{name} refused: {error}"),
     };
-    format!("parameter word: {said}")
+    format!("parameter word: {answer}")
 }
 
 /// An answer has the width of its parameter's type.

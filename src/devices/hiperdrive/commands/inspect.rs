@@ -70,10 +70,12 @@ fn identity_text(identity: &Identity) -> String {
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
     let status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
-    let said: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
-    let list =
-        |weight: Weight| said.iter().filter(|own| own.weight == weight).map(DriveFact::json).collect::<Vec<Json>>();
-    let (errors, warnings, earlier) = (list(Weight::Error), list(Weight::Warning), list(Weight::Earlier));
+    let facts: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
+    let list = |weight: FactSeverity| {
+        facts.iter().filter(|own| own.severity == weight).map(DriveFact::json).collect::<Vec<Json>>()
+    };
+    let (errors, warnings, earlier) =
+        (list(FactSeverity::Error), list(FactSeverity::Warning), list(FactSeverity::Earlier));
     let drives: Vec<Json> = status
         .drives
         .iter()
@@ -98,13 +100,13 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
         "supply_v": volts(&status),
         "temperature_c": status.temperature,
     });
-    output.show(&json, &status_text(&status, &said))?;
+    output.show(&json, &status_text(&status, &facts))?;
     Ok(Done::Well)
 }
 
 /// The weight of a fact.
 #[derive(Clone, Copy, PartialEq)]
-enum Weight {
+enum FactSeverity {
     Error,
     Warning,
     /// It was once, and is in the buffer alone.
@@ -116,7 +118,7 @@ struct DriveFact {
     drive: u8,
     code: u16,
     text: String,
-    weight: Weight,
+    severity: FactSeverity,
 }
 
 impl DriveFact {
@@ -133,25 +135,25 @@ fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
     let is_fault = drive.status.has(StatusBit::Fault);
     let since = usize::from(drive.faults).max(usize::from(is_fault));
     let error = |(at, code): (usize, &ErrorCode)| {
-        let weight = if at < since { Weight::Error } else { Weight::Earlier };
-        DriveFact { drive: number, code: code.code(), text: error_text(*code), weight }
+        let weight = if at < since { FactSeverity::Error } else { FactSeverity::Earlier };
+        DriveFact { drive: number, code: code.code(), text: error_text(*code), severity: weight }
     };
-    let mut said: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();
+    let mut facts: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();
     if is_fault && drive.buffer.is_empty() {
         let text = "the drive is in a fault and names no error".to_owned();
-        said.push(DriveFact { drive: number, code: 0, text, weight: Weight::Error });
+        facts.push(DriveFact { drive: number, code: 0, text, severity: FactSeverity::Error });
     }
     if drive.status.has(StatusBit::PositionLimit) {
         let text = "the drive stands outside its limits (158, 160)".to_owned();
-        said.push(DriveFact { drive: number, code: drive.status.word(), text, weight: Weight::Warning });
+        facts.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
     }
     // 118: 0 is well, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
         let text = format!("RS-485 to the drive has errors (parameter 118: 0x{communication:04X})");
-        said.push(DriveFact { drive: number, code: communication, text, weight: Weight::Warning });
+        facts.push(DriveFact { drive: number, code: communication, text, severity: FactSeverity::Warning });
     }
-    said
+    facts
 }
 
 pub(super) fn error_text(code: ErrorCode) -> String {
@@ -177,11 +179,11 @@ fn volts(status: &Status) -> f64 {
     status.supply_tenths as f64 / 10.0
 }
 
-fn status_text(status: &Status, said: &[DriveFact]) -> String {
+fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     let mut lines = Lines::default();
-    let of = |weight: Weight| said.iter().filter(move |own| own.weight == weight);
+    let of = |weight: FactSeverity| facts.iter().filter(move |own| own.severity == weight);
     let words = |own: &DriveFact| format!("drive {}: 0x{:04X} {}", own.drive, own.code, own.text);
-    for (label, weight) in [("error", Weight::Error), ("warning", Weight::Warning)] {
+    for (label, weight) in [("error", FactSeverity::Error), ("warning", FactSeverity::Warning)] {
         for own in of(weight) {
             lines.add(label, words(own));
         }
@@ -189,7 +191,7 @@ fn status_text(status: &Status, said: &[DriveFact]) -> String {
             lines.add(format!("{label}s"), "none");
         }
     }
-    for own in of(Weight::Earlier) {
+    for own in of(FactSeverity::Earlier) {
         lines.add("note", format!("{} (in the error buffer from before, not present now)", words(own)));
     }
     lines.add("supply", format!("{:.1} V", volts(status))).add("temperature", format!("{} °C", status.temperature));

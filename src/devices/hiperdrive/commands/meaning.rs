@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::protocol::{
 };
 
 /// Known facts about bytes besides themselves.
-pub(super) struct Known {
+pub(super) struct BytesContext {
     pub(super) direction: Option<Direction>,
     pub(super) order: ByteOrder,
 }
@@ -44,7 +44,7 @@ impl WordMeaning {
 ///
 /// # Errors
 /// That a control word must not be sent, where it is said to be one.
-pub(super) fn of_word(word: u16, known: &Known) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn of_word(word: u16, known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
         (Some(Direction::Out), Err(why)) => Err(why.to_string()),

@@ -32,7 +32,7 @@ const REFRESH: Duration = Duration::from_millis(20);
 const END: Duration = Duration::from_secs(3);
 
 /// The end of a motion.
-enum Came {
+enum MotionOutcome {
     /// The act ended like this.
     Ended(Ended),
     /// Ctrl-C.
@@ -67,7 +67,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     // Given back also where it was lost: what there is to be told has been said then.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
-    let reached = matches!(came, Came::Ended(Ended::Arrived));
+    let reached = matches!(came, MotionOutcome::Ended(Ended::Arrived));
     let mut json = json!({"drive": drive.get(), "target": target, "position": position, "reached": reached});
     if reached {
         given?;
@@ -76,7 +76,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
         return Ok(Done::Well);
     }
     let error = match came {
-        Came::Ended(Ended::Fault) => newest_error(&mut runner, drive),
+        MotionOutcome::Ended(Ended::Fault) => newest_error(&mut runner, drive),
         _ => None,
     };
     if let (Some(error), Some(object)) = (error, json.as_object_mut()) {
@@ -140,7 +140,7 @@ fn refused(refusal: Refusal) -> Failure {
 }
 
 /// Wants it until it has ended, is interrupted, or the time is up.
-fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> Came {
+fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
     let act = motion.intend(drive, wish);
@@ -148,15 +148,15 @@ fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience:
         // The motion is not refreshed any more: Ctrl-C has stopped the drive itself.
         if runner.is_interrupted() {
             motion.stop();
-            return Came::Interrupted;
+            return MotionOutcome::Interrupted;
         }
         motion.refresh();
         if let Some(ended) = over(runner, drive, act) {
-            return if runner.is_interrupted() { Came::Interrupted } else { Came::Ended(ended) };
+            return if runner.is_interrupted() { MotionOutcome::Interrupted } else { MotionOutcome::Ended(ended) };
         }
         if Instant::now() >= until {
             motion.stop();
-            return Came::Late;
+            return MotionOutcome::Late;
         }
         sleep(REFRESH);
     }
@@ -191,11 +191,13 @@ fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
     stood.filter(|own| own.actual.status.is_present())
 }
 
-fn stop_reasons(came: &Came, stood: Option<DriveView>, seconds: u16) -> Vec<String> {
+fn stop_reasons(came: &MotionOutcome, stood: Option<DriveView>, seconds: u16) -> Vec<String> {
     let first = match came {
-        Came::Ended(ended) => words::ended(*ended, place).terminal(),
-        Came::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
-        Came::Late => format!("It is not there after {seconds} s, and was stopped. Give it more time with --timeout."),
+        MotionOutcome::Ended(ended) => words::ended(*ended, place).terminal(),
+        MotionOutcome::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
+        MotionOutcome::Late => {
+            format!("It is not there after {seconds} s, and was stopped. Give it more time with --timeout.")
+        }
     };
     let place = match stood {
         Some(own) => format!("Drive {} is at {}.", own.number.get(), own.actual.position),

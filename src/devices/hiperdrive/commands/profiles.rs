@@ -6,7 +6,7 @@ use super::plan::{commit, prepare, shown};
 use super::run::Runner;
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Unrestored, keep, restore_options, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, restore_options, save_profile, to_restore, write_restore};
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{Change, HiperdriveJob, HiperdriveOutput, Prepared};
 use crate::devices::hiperdrive::profile::{self, HiperdriveProfile, Item};
@@ -17,7 +17,7 @@ use crate::result_of;
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common)?;
     let (parameters, drives) = (profile.image.values.len(), profile.identity.drives.len());
-    keep(&save.file, Body::new(profile))?;
+    save_profile(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "parameters": parameters, "drives": drives});
     let counted = format!("{} of the device and {}", count(parameters, "parameter"), count(drives, "drive"));
     output.show(&json, &format!("{}: {counted}\n", save.file.display()))?;

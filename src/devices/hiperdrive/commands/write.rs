@@ -27,9 +27,9 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     }
     let mut runner = Runner::open(common)?;
     let prepared = prepare(&mut runner, output, change)?;
-    let (operations, said) = (operations(&prepared.plan), change_lines(&prepared.plan));
+    let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
-    show_done(output, &item.to_string(), &operations, &spent, &[], &said)
+    show_done(output, &item.to_string(), &operations, &spent, &[], &changes)
 }
 
 /// Parses the change of a value. Values that no device accepts are refused before anything is opened.

@@ -6,18 +6,18 @@ use crate::devices::hiperdrive::profile::{Base, HiperdrivePlan, HiperdriveProfil
 use crate::profile::Body;
 use crate::store::DeviceKey;
 use crate::worker::commit::{Planned, backup_of, write_plan};
-use crate::worker::{SessionContext, Tell};
+use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
     device: &mut Hiperdrive,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     commit: &Commit,
     tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-    let mut write = DeviceWrite { master: device.master(desk), identity: &commit.prepared.identity };
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let mut write = DeviceWrite { master: device.master(context), identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        tell(Tell::Progress(at.map(|op| JobStep::Operation(op.item()))));
+        tell(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })
 }
 

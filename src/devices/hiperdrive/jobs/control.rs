@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use super::commit::commit as carry_through;
-use super::rules_refresh::Looks;
+use super::rules_refresh::RulesRefresh;
 use super::{Commit, Committed, Cyclic, DeviceMessage, Hiperdrive, JobError, Motion, ProgressSink};
 use crate::buses::ethernet_ip::protocol::ForwardClose;
 use crate::devices::hiperdrive::procedures::cyclic::CyclicLost;
@@ -23,7 +23,7 @@ pub(super) struct Control {
     /// The device and its drives, as they were when it was opened last.
     identity: Option<Identity>,
     /// When what rules them could not be read.
-    pub(super) looks: Looks,
+    pub(super) rules_refresh: RulesRefresh,
 }
 
 struct Open {
@@ -39,7 +39,7 @@ impl Control {
             motion: Motion::new(clock),
             open: None,
             identity: None,
-            looks: Looks::default(),
+            rules_refresh: RulesRefresh::default(),
         }
     }
 
@@ -55,7 +55,7 @@ impl Control {
     }
 
     /// The device and its drives, while drives may be moved.
-    pub(super) fn held(&self) -> Option<Identity> {
+    pub(super) fn controlled_device(&self) -> Option<Identity> {
         self.open.as_ref().and(self.identity.clone())
     }
 
@@ -93,18 +93,18 @@ impl Hiperdrive {
     /// Opens the cyclic connection. Nothing moves by that.
     pub(super) fn take(
         &mut self,
-        desk: &mut SessionContext,
-        told: &mut dyn FnMut(u64, u64, ParameterNumber),
+        context: &mut SessionContext,
+        progress: &mut dyn FnMut(u64, u64, ParameterNumber),
     ) -> Result<(), Error> {
         if self.control.open.is_some() {
             return Err(Error::InControl);
         }
-        let identity = identify(&mut self.master(desk), told)?;
-        self.control.looks = Looks::default();
+        let identity = identify(&mut self.master(context), progress)?;
+        self.control.rules_refresh = RulesRefresh::default();
         identity.drives.iter().for_each(|drive| self.control.motion.doubt_limits(drive.number));
-        self.read_rules(desk, &identity)?;
+        self.read_rules(context, &identity)?;
         let mut packets = self.control.port.as_mut().ok_or(Error::NoCyclic)?.open()?;
-        let opened = self.master(desk).forward_open(identity.topology, packets.port())?;
+        let opened = self.master(context).forward_open(identity.topology, packets.port())?;
         packets.aim(opened.port);
         let joined = opened.group.map_or(Ok(()), |group| packets.join(group));
         let drives: Vec<DriveNumber> = identity.drives.iter().map(|drive| drive.number).collect();
@@ -122,7 +122,7 @@ impl Hiperdrive {
             }
             Err(error) => {
                 // An unusable connection is closed; the original error is the one reported.
-                if let Err(why) = self.master(desk).forward_close(&opened.close) {
+                if let Err(why) = self.master(context).forward_close(&opened.close) {
                     tracing::warn!("{why}");
                 }
                 Err(error.into())
@@ -131,46 +131,46 @@ impl Hiperdrive {
     }
 
     /// Stops all drives and closes the cyclic connection.
-    pub(super) fn give(&mut self, desk: &mut SessionContext) -> Result<(), Error> {
+    pub(super) fn release(&mut self, context: &mut SessionContext) -> Result<(), Error> {
         let Some(Open { cyclic, close }) = self.control.open.take() else { return Ok(()) };
         cyclic.close();
-        let closed = self.master(desk).forward_close(&close);
+        let closed = self.master(context).forward_close(&close);
         self.control.motion.set_connected(false);
         closed
     }
 
     /// The session ends: drives that are in control are stopped and let go, and a device that had a master is told.
-    pub(super) fn end(&mut self, desk: &mut SessionContext) {
+    pub(super) fn end(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
-        if let Err(why) = self.give(desk) {
+        if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
         // Nothing answers that, and a device that is gone needs not to know.
-        if had_control && let Err(why) = self.master(desk).unregister() {
+        if had_control && let Err(why) = self.master(context).unregister() {
             tracing::debug!("{why}");
         }
     }
 
     /// The program ends, and drives are in control still.
     pub(super) fn is_to_end(&self) -> bool {
-        self.control.open.is_some() && self.control.motion.is_leaving()
+        self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
     /// Closes a lost cyclic connection at the other end as well, and reports it once. It is also lost when explicit
     /// messages are: motion is not allowed without access to parameters.
-    pub(super) fn let_go_of_lost(&mut self, desk: &mut SessionContext) {
+    pub(super) fn let_go_of_lost(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.lose_session();
         }
         if self.is_to_end() {
-            return self.end(desk);
+            return self.end(context);
         }
         if self.control.open.as_ref().is_none_or(|open| open.cyclic.lost().is_none()) {
             return;
         }
         self.remark = Some(DeviceMessage::ControlLost);
         // It may have ended there already, or there is no answer: it then ends there by itself.
-        if let Err(why) = self.give(desk) {
+        if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
     }
@@ -178,7 +178,7 @@ impl Hiperdrive {
     /// Carries a plan out, and looks again at what drives may do: until that is known, nothing.
     pub(super) fn commit(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         commit: &Commit,
         tell: ProgressSink<'_>,
     ) -> Result<Committed, JobError> {
@@ -186,16 +186,16 @@ impl Hiperdrive {
         for drive in &identity.drives {
             // As they are before the plan: a scale that it changes is told from this one.
             let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
-            let now = desk.clock.now();
+            let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {
                 limits.take(rules, (identity.topology, drive.variant), [now; GROUPS]);
                 limits.forget();
             });
         }
-        let ended = carry_through(self, desk, commit, tell);
+        let ended = carry_through(self, context, commit, tell);
         let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
         // A lost device is not asked again.
-        if !lost && let Err(why) = self.read_rules(desk, identity) {
+        if !lost && let Err(why) = self.read_rules(context, identity) {
             tracing::warn!("{why}");
         }
         ended

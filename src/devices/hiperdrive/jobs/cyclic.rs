@@ -21,7 +21,7 @@ use crate::link::{Clock, Datagrams, wake_before_others};
 /// A cyclic connection on its thread. Dropped, it stops the drives and ends by itself; [`close`](Self::close) waits for that.
 pub struct Cyclic {
     motion: Motion,
-    wishes: Arc<CyclicCommands>,
+    commands: Arc<CyclicCommands>,
     ended: Receiver<Never>,
 }
 
@@ -41,7 +41,7 @@ pub struct Pump {
     port: Box<dyn Datagrams>,
     clock: Arc<dyn Clock>,
     motion: Motion,
-    wishes: Arc<CyclicCommands>,
+    commands: Arc<CyclicCommands>,
     packet: Vec<u8>,
 }
 
@@ -63,7 +63,7 @@ impl Cyclic {
         motion: &Motion,
     ) -> std::io::Result<Self> {
         let mut pump = Pump::new(port, opened, drives, clock, motion);
-        let wishes = pump.wishes.clone();
+        let commands = pump.commands.clone();
         let (alive, ended) = bounded(0);
         let failed = motion.clone();
         let thread = std::thread::Builder::new().name("cyclic".to_owned()).spawn(move || {
@@ -78,7 +78,7 @@ impl Cyclic {
             motion.fail();
             return Err(error);
         }
-        Ok(Cyclic { motion: motion.clone(), wishes, ended })
+        Ok(Cyclic { motion: motion.clone(), commands, ended })
     }
 
     /// Returns why it has ended without being closed. The owner closes it over the session's own connection.
@@ -88,12 +88,12 @@ impl Cyclic {
 
     /// The session knows that it is lost: the drives are told to stop.
     pub fn lose(&self, why: CyclicLost) {
-        *self.wishes.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
+        *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
     /// Stops the drives, switches them off and ends; what is left is to close the connection. Why it was lost, where it was.
     pub fn close(self) -> Option<CyclicLost> {
-        self.wishes.end.store(true, Ordering::SeqCst);
+        self.commands.end.store(true, Ordering::SeqCst);
         // The channel ends with the thread; a later end is not awaited.
         let _ = self.ended.recv_timeout(PATIENCE);
         self.lost()
@@ -102,7 +102,7 @@ impl Cyclic {
 
 impl Drop for Cyclic {
     fn drop(&mut self) {
-        self.wishes.end.store(true, Ordering::SeqCst);
+        self.commands.end.store(true, Ordering::SeqCst);
     }
 }
 
@@ -117,13 +117,13 @@ impl Pump {
     ) -> Self {
         let drives = Drives::new(opened, drives, motion.open(), clock.now());
         motion.publish(&drives);
-        let (motion, wishes) = (motion.clone(), Arc::default());
-        Pump { drives, port, clock, motion, wishes, packet: Vec::new() }
+        let (motion, commands) = (motion.clone(), Arc::default());
+        Pump { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
     /// The drives are to stop and the connection is to end; [`turn`](Self::turn) does it.
     pub fn end(&self) {
-        self.wishes.end.store(true, Ordering::SeqCst);
+        self.commands.end.store(true, Ordering::SeqCst);
     }
 
     /// Receives until the next packet is due, and sends it. False: the connection is over.
@@ -141,7 +141,7 @@ impl Pump {
                 Err(error) => return self.is_gone(error.into()),
             }
         }
-        self.hear_wishes();
+        self.apply_commands();
         let now = self.clock.now();
         let packet = self.motion.with_wanted(|intent, permit| self.drives.poll(now, intent, permit));
         let sent = packet.map_or(Ok(()), |packet| self.port.send(&packet));
@@ -152,12 +152,12 @@ impl Pump {
         !self.drives.is_over()
     }
 
-    fn hear_wishes(&mut self) {
+    fn apply_commands(&mut self) {
         let now = self.clock.now();
-        if let Some(why) = self.wishes.lost.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(why) = self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner).take() {
             self.drives.lose(now, why);
         }
-        if self.wishes.end.load(Ordering::SeqCst) || self.motion.is_leaving() {
+        if self.commands.end.load(Ordering::SeqCst) || self.motion.is_shutting_down() {
             self.drives.close(now);
         }
     }

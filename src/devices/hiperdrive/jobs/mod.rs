@@ -22,7 +22,7 @@ pub use job::{
     Change, ChangeKind, Commit, Committed, DeviceMessage, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Prepared,
     WEAR_WARNING, device_key,
 };
-pub use motion::{DriveView, Glance, Motion, MotionSnapshot};
+pub use motion::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
 pub use open::{check, open};
 use session_watch::WatchedWire;
 
@@ -34,7 +34,7 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
 use crate::link::{ByteLink, Clock, DatagramPort, LinkError};
 use crate::store::Store;
-use crate::worker::{Device, IDLE, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, IDLE, JobReport, Progress, Session, SessionContext, Watched};
 
 /// An adapter or a hub with its drives.
 pub struct Hiperdrive {
@@ -58,17 +58,17 @@ impl fmt::Debug for Hiperdrive {
 const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 
 /// Receives the reports of a job.
-type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
+type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
     /// The host's side of explicit messages.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+        Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 }
 
 /// The start of a session with an adapter or a hub.
-pub struct Way {
+pub struct DeviceConnection {
     /// Explicit messages.
     pub wire: Box<dyn ByteLink>,
     /// Port of cyclic data; `None` for a link without any.
@@ -81,8 +81,8 @@ pub struct Way {
 
 impl Session<Hiperdrive> {
     /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
-    pub fn to_target(way: Way, clock: Arc<dyn Clock>, store: Store) -> Self {
-        let Way { wire, port, station, target } = way;
+    pub fn to_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
+        let DeviceConnection { wire, port, station, target } = way;
         let is_virtual = target.is_some();
         let control = Control::new(port, clock.clone());
         let wire = Box::new(WatchedWire::new(wire, clock.clone(), control.motion()));
@@ -118,57 +118,57 @@ impl Device for Hiperdrive {
 
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: HiperdriveJob,
         tell: ProgressSink<'_>,
     ) -> Result<HiperdriveOutput, JobError> {
         use HiperdriveOutput as Out;
-        self.let_go_of_lost(desk);
-        let mut step = |done, total, what| tell(Tell::Progress(Progress { done, total, what }));
+        self.let_go_of_lost(context);
+        let mut step = |done, total, what| tell(JobReport::Progress(Progress { done, total, step: what }));
         let mut parameter = |done, total, number| step(done, total, JobStep::Parameter(number));
         Ok(match job {
-            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?)),
-            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(desk, &commit, tell)?)),
-            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
-            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Prepare(change) => Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)),
+            HiperdriveJob::Commit(commit) => Out::Committed(Box::new(self.commit(context, &commit, tell)?)),
+            HiperdriveJob::Hello => Out::Hello(Box::new(identify(&mut self.master(context), &mut parameter)?)),
+            HiperdriveJob::Identify => Out::Identity(Box::new(identify(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Survey => {
-                let began = desk.clock.now();
-                let survey = survey(&mut self.master(desk), &mut parameter)?;
+                let began = context.clock.now();
+                let survey = survey(&mut self.master(context), &mut parameter)?;
                 self.control.rule_by(&survey, began);
                 Out::Surveyed(Box::new(survey))
             }
-            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Status => Out::Status(Box::new(read_status(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Check => {
-                let told = &mut |done, total, what| step(done, total, JobStep::Step(what));
-                Out::Check(check_device(&mut self.master(desk), told)?)
+                let report = &mut |done, total, what| step(done, total, JobStep::Step(what));
+                Out::Check(check_device(&mut self.master(context), report)?)
             }
-            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(desk), drive)?),
-            HiperdriveJob::Read(number) => Out::Value(number, self.master(desk).read(number)?),
-            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(desk))?)),
-            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(desk), &mut parameter)?)),
+            HiperdriveJob::Position(drive) => Out::Position(position(&mut self.master(context), drive)?),
+            HiperdriveJob::Read(number) => Out::Value(number, self.master(context).read(number)?),
+            HiperdriveJob::Network => Out::Network(Box::new(network(&mut self.master(context))?)),
+            HiperdriveJob::Save => Out::Saved(Box::new(save(&mut self.master(context), &mut parameter)?)),
             HiperdriveJob::Take => {
-                self.take(desk, &mut parameter)?;
+                self.take(context, &mut parameter)?;
                 Out::Taken
             }
             HiperdriveJob::Give => {
-                self.give(desk)?;
+                self.release(context)?;
                 Out::Given
             }
             HiperdriveJob::Watch(drive) => {
                 self.watched = drive;
-                self.look_anew(desk, drive);
+                self.look_anew(context, drive);
                 Out::Watched(drive)
             }
         })
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<DriveReading, JobError> {
-        self.let_go_of_lost(desk);
+    fn sample(&mut self, context: &mut SessionContext) -> Result<DriveReading, JobError> {
+        self.let_go_of_lost(context);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
-            return Ok(DriveReading { at: desk.clock.now(), drive, actual });
+            return Ok(DriveReading { at: context.clock.now(), drive, actual });
         }
-        Ok(position(&mut self.master(desk), drive)?)
+        Ok(position(&mut self.master(context), drive)?)
     }
 
     fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<DriveReading>, JobError> {
@@ -184,18 +184,18 @@ impl Device for Hiperdrive {
     }
 
     fn idle_interval(&self) -> Duration {
-        if self.control.held().is_some() { IDLE_IN_CONTROL } else { IDLE }
+        if self.control.controlled_device().is_some() { IDLE_IN_CONTROL } else { IDLE }
     }
 
-    fn idle(&mut self, desk: &mut SessionContext) -> Option<DeviceMessage> {
-        self.let_go_of_lost(desk);
-        self.look_at_rules(desk);
+    fn idle(&mut self, context: &mut SessionContext) -> Option<DeviceMessage> {
+        self.let_go_of_lost(context);
+        self.look_at_rules(context);
         self.remark.take()
     }
 
     /// Drives that are in control are stopped and let go.
-    fn leave(&mut self, desk: &mut SessionContext) {
-        self.end(desk);
+    fn leave(&mut self, context: &mut SessionContext) {
+        self.end(context);
     }
 
     fn is_urgent(&self) -> bool {

@@ -33,14 +33,14 @@ struct Cell {
     punctual: bool,
     view: MotionSnapshot,
     /// The program ends: nothing moves any more.
-    leaving: bool,
+    is_shutting_down: bool,
     /// The target holds a cyclic connection that was opened here.
     connected: bool,
 }
 
 /// The drives at one moment: what they do, and what they may do.
 #[derive(Clone, Debug)]
-pub struct Glance {
+pub struct DrivesSnapshot {
     pub at: Moment,
     /// The state of the drives.
     pub view: MotionSnapshot,
@@ -91,7 +91,7 @@ impl Motion {
             session: SessionWatch::default(),
             punctual: false,
             view: MotionSnapshot::default(),
-            leaving: false,
+            is_shutting_down: false,
             connected: false,
         };
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
@@ -139,10 +139,10 @@ impl Motion {
     }
 
     /// Returns the state and the limits of the drives at one moment.
-    pub fn glance(&self) -> Glance {
+    pub fn glance(&self) -> DrivesSnapshot {
         let at = self.0.clock.now();
         let cell = self.lock();
-        Glance { at, view: cell.view.clone(), limits: cell.limits.clone() }
+        DrivesSnapshot { at, view: cell.view.clone(), limits: cell.limits.clone() }
     }
 
     /// Returns the limits of a drive, with the time of reading; the default for an unknown one.
@@ -238,7 +238,7 @@ impl Motion {
             act: man.act(),
             ended: man.ended(),
         };
-        let mut views: Vec<DriveView> = drives.men().map(of).collect();
+        let mut views: Vec<DriveView> = drives.dead_men().map(of).collect();
         views.sort_by_key(|view| view.number);
         let view = MotionSnapshot {
             open: !drives.is_ending(),
@@ -268,12 +268,12 @@ impl Motion {
 
     /// The program ends: all drives stop, are switched off, and their connection is closed. Nothing moves any more.
     pub fn leave(&self) {
-        self.lock().leaving = true;
+        self.lock().is_shutting_down = true;
     }
 
     /// The program ends.
-    pub(super) fn is_leaving(&self) -> bool {
-        self.lock().leaving
+    pub(super) fn is_shutting_down(&self) -> bool {
+        self.lock().is_shutting_down
     }
 
     /// The target holds a cyclic connection that was opened here and has not been closed.

@@ -3,7 +3,7 @@
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
 
-use super::{Hiperdrive, Way};
+use super::{DeviceConnection, Hiperdrive};
 use crate::bits::MaskedBytes;
 use crate::devices::hiperdrive::procedures::{LinkParameters, Station};
 use crate::devices::hiperdrive::sim::{Config, Target};
@@ -34,12 +34,12 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
         Wire::File(path) => {
             let entries = read_recording(path)?.into_iter().map(without_number).collect();
             let wire = Box::new(ReplayLink::new(path, entries, clock.clone()));
-            Way { wire, port: None, station, target: None }
+            DeviceConnection { wire, port: None, station, target: None }
         }
         Wire::Host(target) | Wire::Port(target) => {
             let wire = Box::new(TcpLink::connect(target, clock.clone())?);
             let port = Box::new(UdpPort::new(target, clock.clone()));
-            Way { wire, port: Some(port), station, target: None }
+            DeviceConnection { wire, port: Some(port), station, target: None }
         }
         Wire::Inside => virtually(&config, station, clock.clone()),
     };
@@ -47,12 +47,12 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
 }
 
 /// The way to a virtual device in this process.
-fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Way {
+fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> DeviceConnection {
     let target = Target::new(config);
     let connection = target.connection(Ipv4Addr::UNSPECIFIED);
     let wire = inside(connection, &clock);
     let port = Box::new(SimPort::new(Arc::new(Mutex::new(target.clone())), clock));
-    Way { wire, port: Some(port), station, target: Some(target) }
+    DeviceConnection { wire, port: Some(port), station, target: Some(target) }
 }
 
 /// The device as the link says, and the virtual one, which counts for a link to it alone.

@@ -9,22 +9,22 @@ use crate::devices::hiperdrive::profile::{
 };
 use crate::devices::hiperdrive::protocol::ParameterNumber;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Progress, SessionContext, Tell};
+use crate::worker::{JobReport, Progress, SessionContext};
 
 pub(super) fn prepare(
     device: &mut Hiperdrive,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-    let mut master = device.master(desk);
-    let told = &mut |done, total, number| {
-        tell(Tell::Progress(Progress { done, total, what: JobStep::Parameter(number) }));
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let mut master = device.master(context);
+    let report = &mut |done, total, number| {
+        tell(JobReport::Progress(Progress { done, total, step: JobStep::Parameter(number) }));
     };
     let beside = |wanted: &Image| wanted.values.keys().copied().collect::<Vec<_>>();
     let mut state = |master: &mut Master<'_>, numbers: Vec<ParameterNumber>| {
-        let (identity, state) = read_state(master, numbers, told)?;
+        let (identity, state) = read_state(master, numbers, report)?;
         are_there(&identity, change)?;
         Ok::<_, Error>((identity, state))
     };

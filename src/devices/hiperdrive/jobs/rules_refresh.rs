@@ -20,7 +20,7 @@ const REST: Duration = Duration::from_millis(500);
 
 /// Whether the limits of the drives could be read.
 #[derive(Debug, Default)]
-pub(super) struct Looks {
+pub(super) struct RulesRefresh {
     /// Until when nothing is asked, behind a look that failed.
     rests: Option<Moment>,
 }
@@ -43,9 +43,9 @@ fn turns(group: usize, at: Moment, turn: Duration) -> u128 {
 impl Hiperdrive {
     /// Reads the parameters that limit the motion, if that is due while drives may be moved. If they cannot be read,
     /// nothing moves until they can, which is reported once.
-    pub(super) fn look_at_rules(&mut self, desk: &mut SessionContext) {
-        let Some(identity) = self.control.held() else { return };
-        if self.control.looks.rests.is_some_and(|until| desk.clock.now() < until) {
+    pub(super) fn look_at_rules(&mut self, context: &mut SessionContext) {
+        let Some(identity) = self.control.controlled_device() else { return };
+        if self.control.rules_refresh.rests.is_some_and(|until| context.clock.now() < until) {
             return;
         }
         let moved = self.control.motion().wanted_drive();
@@ -53,35 +53,35 @@ impl Hiperdrive {
             if identity.drive(drive).is_none() {
                 continue;
             }
-            match self.look_at(desk, &identity, drive) {
+            match self.look_at(context, &identity, drive) {
                 Ok(()) => {}
                 // A job goes first, or another wish has come.
                 Err(error) if error.is_cancelled() => return,
-                Err(error) => return self.cannot_look(desk, drive, error),
+                Err(error) => return self.cannot_look(context, drive, error),
             }
         }
-        if self.control.looks.rests.take().is_some() {
+        if self.control.rules_refresh.rests.take().is_some() {
             self.remark.get_or_insert(DeviceMessage::RulesRead);
         }
     }
 
-    fn look_at(&mut self, desk: &mut SessionContext, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
+    fn look_at(&mut self, context: &mut SessionContext, identity: &Identity, drive: DriveNumber) -> Result<(), Error> {
         if self.control.actual(drive).is_some_and(|actual| !actual.status.is_present()) {
             self.control.forget(drive);
             return Ok(());
         }
         let known = self.control.motion().limits(drive);
         let Some(mut times) = known.times() else {
-            let began = desk.clock.now();
-            let rules = read_rules(&mut self.master(desk), drive)?;
+            let began = context.clock.now();
+            let rules = read_rules(&mut self.master(context), drive)?;
             self.control.limit(identity, drive, rules, [began; GROUPS]);
             return Ok(());
         };
         let mut rules = known.rules();
         let turn = if self.control.motion().is_under_way() { TURN_IN_MOTION } else { TURN };
-        for group in due(times, desk.clock.now(), turn) {
-            let now = desk.clock.now();
-            rules = read_rule(&mut self.master(desk), drive, rules, group)?;
+        for group in due(times, context.clock.now(), turn) {
+            let now = context.clock.now();
+            rules = read_rule(&mut self.master(context), drive, rules, group)?;
             if let Some(at) = times.get_mut(group) {
                 *at = now;
             }
@@ -90,7 +90,7 @@ impl Hiperdrive {
         Ok(())
     }
 
-    fn cannot_look(&mut self, desk: &mut SessionContext, drive: DriveNumber, error: Error) {
+    fn cannot_look(&mut self, context: &mut SessionContext, drive: DriveNumber, error: Error) {
         tracing::warn!("{error}");
         // All of it is read before anything moves again.
         self.control.motion().doubt_limits(drive);
@@ -98,26 +98,26 @@ impl Hiperdrive {
             // Nothing more can be asked: that is told as a loss.
             return self.control.lose_session();
         }
-        if self.control.looks.rests.replace(desk.clock.now() + REST).is_none() {
+        if self.control.rules_refresh.rests.replace(context.clock.now() + REST).is_none() {
             self.control.motion().stop();
             self.remark.get_or_insert(DeviceMessage::RulesUnread(Box::new(error)));
         }
     }
 
     /// Reads all that rules a drive before anything else: it is shown from now on.
-    pub(super) fn look_anew(&mut self, desk: &mut SessionContext, drive: DriveNumber) {
+    pub(super) fn look_anew(&mut self, context: &mut SessionContext, drive: DriveNumber) {
         self.control.motion().doubt_limits(drive);
-        self.look_at_rules(desk);
+        self.look_at_rules(context);
     }
 
     /// Reads the limits of all drives. Cancellation is ignored: after a change the new state must be known.
     ///
     /// # Errors
     /// The way.
-    pub(super) fn read_rules(&mut self, desk: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
+    pub(super) fn read_rules(&mut self, context: &mut SessionContext, identity: &Identity) -> Result<(), Error> {
         for drive in &identity.drives {
-            let began = desk.clock.now();
-            let rules = self.master(desk).shielded(|master| read_rules(master, drive.number))?;
+            let began = context.clock.now();
+            let rules = self.master(context).shielded(|master| read_rules(master, drive.number))?;
             self.control.limit(identity, drive.number, rules, [began; GROUPS]);
         }
         Ok(())

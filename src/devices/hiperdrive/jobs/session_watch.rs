@@ -33,7 +33,7 @@ const MOST_PATIENCE: Duration = Duration::from_secs(1);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SessionWatch {
     /// When the first request was sent that has no answer yet.
-    asked: Option<Moment>,
+    requested: Option<Moment>,
     /// When the line was looked at last without finding anything.
     looked: Moment,
     /// The slowest answer, fading with each faster one.
@@ -45,8 +45,8 @@ pub(super) struct SessionWatch {
 impl SessionWatch {
     /// A request goes out.
     pub(super) const fn ask(&mut self, now: Moment) {
-        if self.asked.is_none() {
-            self.asked = Some(now);
+        if self.requested.is_none() {
+            self.requested = Some(now);
         }
     }
 
@@ -54,7 +54,7 @@ impl SessionWatch {
     pub(super) fn answer(&mut self, now: Moment) {
         self.broken = false;
         // A parameter that takes seconds says nothing of the others.
-        if let Some(took) = self.asked.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
+        if let Some(took) = self.requested.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
             self.slowest = took.max(self.slowest * 7 / 8);
         }
     }
@@ -73,7 +73,7 @@ impl SessionWatch {
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
         let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;
-        self.broken || self.asked.is_some_and(is_late)
+        self.broken || self.requested.is_some_and(is_late)
     }
 }
 

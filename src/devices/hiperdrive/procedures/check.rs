@@ -76,7 +76,7 @@ pub enum CheckFinding {
     /// A value was read so often, within so long a reply each.
     Replies {
         /// Number of requests.
-        asked: u32,
+        requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
         /// Frames that arrived after their time limit.
@@ -193,10 +193,10 @@ const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 /// [`Error::NotHiperdrive`]; the way.
 pub fn check(
     master: &mut Master<'_>,
-    told: &mut dyn FnMut(u64, u64, CheckStep),
+    progress: &mut dyn FnMut(u64, u64, CheckStep),
 ) -> Result<Vec<HiperdriveStepResult>, Error> {
     let mut lines = Vec::new();
-    told(0, 1, CheckStep::Messages);
+    progress(0, 1, CheckStep::Messages);
     let identity = identify(master, &mut |_, _, _| {})?;
     lines.push(messages(master)?);
     lines.push(device(&identity));
@@ -218,7 +218,7 @@ pub fn check(
     lines.push(HiperdriveStepResult::of(CheckStep::Drives, drives(&identity)));
     let total = identity.drives.len() as u64 + 1;
     for (at, drive) in identity.drives.iter().enumerate() {
-        told(at as u64 + 1, total, CheckStep::Errors(drive.number));
+        progress(at as u64 + 1, total, CheckStep::Errors(drive.number));
         lines.extend(check_drive(master, &identity, drive)?);
     }
     Ok(lines)
@@ -237,7 +237,7 @@ fn messages(master: &mut Master<'_>) -> Result<HiperdriveStepResult, Error> {
     }
     let late = master.station().late();
     let verdict = if late == 0 { Verdict::Good } else { Verdict::Attention };
-    let replies = CheckFinding::Replies { asked: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
+    let replies = CheckFinding::Replies { requested: LOOKS, slowest_ms: slowest.as_millis() as u64, late };
     Ok(HiperdriveStepResult::of(CheckStep::Messages, vec![(verdict, replies)]))
 }
 

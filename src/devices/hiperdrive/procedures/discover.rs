@@ -6,11 +6,11 @@ use std::time::Duration;
 use super::Error;
 use crate::buses::ethernet_ip::protocol::{Body, Command, Frame, IdentityItem};
 use crate::devices::hiperdrive::protocol::VENDOR;
-use crate::link::{Cancel, Clock, Shout};
+use crate::link::{Broadcast, Cancel, Clock};
 
 /// A device that has answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct DiscoveredDevice {
     /// Address of the reply.
     pub address: Ipv4Addr,
     /// Port of explicit messages.
@@ -18,7 +18,7 @@ pub struct Found {
     pub identity: IdentityItem,
 }
 
-impl Found {
+impl DiscoveredDevice {
     /// Returns whether the device is by the manufacturer of HIPERDRIVE.
     pub const fn is_hiperdrive(&self) -> bool {
         self.identity.identity.vendor == VENDOR
@@ -34,17 +34,18 @@ const SLICE: Duration = Duration::from_millis(50);
 ///
 /// # Errors
 /// The network; [`Error::Cancelled`].
-pub fn discover(shout: &mut dyn Shout, clock: &dyn Clock, cancel: &Cancel) -> Result<Vec<Found>, Error> {
-    shout.shout(&Frame::list_identity([0; 8]).emit())?;
+pub fn discover(shout: &mut dyn Broadcast, clock: &dyn Clock, cancel: &Cancel) -> Result<Vec<DiscoveredDevice>, Error> {
+    shout.broadcast(&Frame::list_identity([0; 8]).emit())?;
     let until = clock.now() + GATHER;
-    let mut found: Vec<Found> = Vec::new();
+    let mut found: Vec<DiscoveredDevice> = Vec::new();
     let mut packet = Vec::new();
     while clock.now() < until {
         if cancel.is_requested() {
             return Err(Error::Cancelled);
         }
-        let Some(address) = shout.hear((clock.now() + SLICE).min(until), &mut packet)? else { continue };
-        let identity = answer(&packet).map(|identity| Found { address, port: identity.socket.port, identity });
+        let Some(address) = shout.receive((clock.now() + SLICE).min(until), &mut packet)? else { continue };
+        let identity =
+            answer(&packet).map(|identity| DiscoveredDevice { address, port: identity.socket.port, identity });
         found
             .extend(identity.filter(|new| !found.iter().any(|old| old.address == new.address && old.port == new.port)));
     }

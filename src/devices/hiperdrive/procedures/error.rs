@@ -67,10 +67,10 @@ pub enum Damage {
     #[error("a frame without a message")]
     Empty,
     /// It answers another service.
-    #[error("a reply to service {got:02X}h where one to {asked:02X}h was expected")]
+    #[error("a reply to service {got:02X}h where one to {requested:02X}h was expected")]
     Service {
         /// The service that was asked.
-        asked: u8,
+        requested: u8,
         /// The one that is answered.
         got: u8,
     },
@@ -148,29 +148,29 @@ pub enum Error {
     /// Bytes keep coming that are no frames.
     #[error("bytes keep arriving that are no EtherNet/IP frames")]
     NeverSilent,
-    #[error("no answer: {asked}, tried {tries} times")]
+    #[error("no answer: {requested}, tried {tries} times")]
     NoReply {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// It did, but too late; `None` where nothing came.
         late: Option<Late>,
     },
     /// It answers, and not as it should.
-    #[error("{asked}: {cause}, tried {tries} times")]
+    #[error("{requested}: {cause}, tried {tries} times")]
     Damaged {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
         cause: Damage,
     },
     /// The frame was refused.
-    #[error("{asked}: {status}")]
-    Encapsulation { asked: RequestedItem, status: EncapsulationStatus },
+    #[error("{requested}: {status}")]
+    Encapsulation { requested: RequestedItem, status: EncapsulationStatus },
     /// The request was refused.
-    #[error("{asked}: {refusal}")]
-    Refused { asked: RequestedItem, refusal: Refusal },
+    #[error("{requested}: {refusal}")]
+    Refused { requested: RequestedItem, refusal: Refusal },
     /// Another master has the cyclic connection.
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
@@ -239,10 +239,10 @@ pub enum Error {
     #[error("drive {} moves", drive.get())]
     Moving { drive: DriveNumber },
     /// Its identity is not that of a HIPERDRIVE.
-    #[error("this is no HIPERDRIVE: {says:?}")]
+    #[error("this is no HIPERDRIVE: {product:?}")]
     NotHiperdrive {
         /// Its category, or the name in its identity object.
-        says: String,
+        product: String,
     },
     /// A written value does not read back.
     #[error("parameter {number} ({}) reads {reads} after {wanted} was written", named(*number))]

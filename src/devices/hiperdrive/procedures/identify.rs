@@ -96,12 +96,12 @@ pub(super) type IdentifyProgress<'t> = &'t mut dyn FnMut(u64, u64, ParameterNumb
 struct Steps<'t> {
     done: u64,
     total: u64,
-    told: IdentifyProgress<'t>,
+    progress: IdentifyProgress<'t>,
 }
 
 impl Steps<'_> {
     fn next(&mut self, number: ParameterNumber) -> ParameterNumber {
-        (self.told)(self.done, self.total, number);
+        (self.progress)(self.done, self.total, number);
         self.done += 1;
         number
     }
@@ -144,13 +144,13 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; what the device refuses; the way.
-pub fn identify(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Identity, Error> {
+pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Identity, Error> {
     // Parameters of a drive, and of the device.
     const DRIVE: u64 = 6;
     const DEVICE: u64 = 5;
     let category = category(master)?;
-    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category.clone() })?;
-    let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, told };
+    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { product: category.clone() })?;
+    let mut steps = Steps { done: 0, total: DRIVE * u64::from(topology.drives()) + DEVICE, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
         let variant = master.read_number(steps.next(of(120, number)?))?;
@@ -187,8 +187,8 @@ pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber)
 fn category(master: &mut Master<'_>) -> Result<String, Error> {
     match master.read_text(own(13)?) {
         Err(Error::Refused { .. }) => {
-            let says = master.identity_object()?.product_name;
-            Err(Error::NotHiperdrive { says })
+            let product = master.identity_object()?.product_name;
+            Err(Error::NotHiperdrive { product })
         }
         ended => ended,
     }
@@ -198,13 +198,13 @@ fn category(master: &mut Master<'_>) -> Result<String, Error> {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn survey(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Survey, Error> {
-    let identity = identify(master, told)?;
+pub fn survey(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Survey, Error> {
+    let identity = identify(master, progress)?;
     let numbers: Vec<ParameterNumber> = readable(&identity).collect();
     let total = numbers.len() as u64;
     let (mut values, mut wrong_lengths) = (BTreeMap::new(), Vec::new());
     for (done, number) in numbers.into_iter().enumerate() {
-        told(done as u64, total, number);
+        progress(done as u64, total, number);
         match master.read(number) {
             Ok(value) => {
                 values.insert(number, value);
@@ -236,10 +236,10 @@ const OF_STATUS: u64 = 15;
 ///
 /// # Errors
 /// As [`identify`].
-pub fn read_status(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Status, Error> {
+pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = topology(master)?;
     // Of each drive whether it is there, and the rest.
-    let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, told };
+    let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
         if master.read_number(steps.next(of(120, number)?))? == i64::from(Variant::NONE.number()) {
@@ -254,7 +254,7 @@ pub fn read_status(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Resul
 }
 
 pub(super) fn drive_status(master: &mut Master<'_>, number: DriveNumber) -> Result<DriveStatus, Error> {
-    status_of(master, number, &mut Steps { done: 0, total: OF_STATUS, told: &mut |_, _, _| {} })
+    status_of(master, number, &mut Steps { done: 0, total: OF_STATUS, progress: &mut |_, _, _| {} })
 }
 
 fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>) -> Result<DriveStatus, Error> {
@@ -297,7 +297,7 @@ pub(super) fn topology(master: &mut Master<'_>) -> Result<Topology, Error> {
         return Ok(topology);
     }
     let category = category(master)?;
-    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { says: category })?;
+    let topology = Topology::of_category(&category).ok_or(Error::NotHiperdrive { product: category })?;
     master.learn(topology);
     Ok(topology)
 }

@@ -116,15 +116,15 @@ impl<'a> Master<'a> {
         if row.access == Access::Write {
             return Err(Error::WriteOnly { number, name: row.name });
         }
-        let asked = RequestedItem::Parameter(number);
+        let requested = RequestedItem::Parameter(number);
         let request = Request::get(number.class(), 1, number.attribute());
-        let data = match self.request(asked, &request, Repeats::Always) {
-            Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(asked, number, refusal)?),
+        let data = match self.request(requested, &request, Repeats::Always) {
+            Err(Error::Refused { refusal, .. }) => return Err(self.why_refused(requested, number, refusal)?),
             ended => ended?.data,
         };
         row.kind.parse(&data).map_err(|cause| match cause {
             ValueError::Length { expected, got } => WrongLength { number, name: row.name, expected, got }.into(),
-            cause => Error::Damaged { asked, tries: 1, cause: cause.into() },
+            cause => Error::Damaged { requested, tries: 1, cause: cause.into() },
         })
     }
 
@@ -161,13 +161,13 @@ impl<'a> Master<'a> {
         // The plan has checked the limits of its turns.
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
-        let asked = RequestedItem::Set(number);
+        let requested = RequestedItem::Set(number);
         let request = Request::set(number.class(), 1, number.attribute(), data);
         let once = Repeats::Never { takes: row.takes(wanted, self.station.known.topology) };
         let mut tries = 0;
         loop {
             tries += 1;
-            match self.request(asked, &request, once) {
+            match self.request(requested, &request, once) {
                 Ok(_) => return Ok(()),
                 Err(Error::Refused { refusal, .. }) => return Err(self.why_not_set(number, wanted, refusal)?),
                 Err(error @ (Error::NoReply { .. } | Error::Damaged { .. })) => {
@@ -188,14 +188,18 @@ impl<'a> Master<'a> {
     /// # Errors
     /// [`Error::Refused`]; the way.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
-        let asked = RequestedItem::Identity;
-        let reply = self.request(asked, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
-        IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+        let requested = RequestedItem::Identity;
+        let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
+        IdentityObject::parse_all(&reply.data).map_err(|cause| Error::Damaged {
+            requested,
+            tries: 1,
+            cause: cause.into(),
+        })
     }
 
     /// Reads an attribute of another object.
-    pub(super) fn attribute(&mut self, asked: RequestedItem, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
-        Ok(self.request(asked, &Request::get(class, 1, attribute), Repeats::Always)?.data)
+    pub(super) fn attribute(&mut self, requested: RequestedItem, class: u16, attribute: u16) -> Result<Vec<u8>, Error> {
+        Ok(self.request(requested, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
 
     /// Sets an attribute of the TCP/IP object, once; it is stored before it is answered.
@@ -204,11 +208,11 @@ impl<'a> Master<'a> {
     /// [`Error::Refused`]; the way.
     pub(super) fn set_attribute(
         &mut self,
-        asked: RequestedItem,
+        requested: RequestedItem,
         (class, attribute): (u16, u16),
         data: Vec<u8>,
     ) -> Result<(), Error> {
-        self.request(asked, &Request::set(class, 1, attribute, data), Repeats::Never { takes: Some(STORES) })?;
+        self.request(requested, &Request::set(class, 1, attribute, data), Repeats::Never { takes: Some(STORES) })?;
         Ok(())
     }
 
@@ -219,19 +223,19 @@ impl<'a> Master<'a> {
     }
 
     /// Asks something of an object.
-    fn request(&mut self, asked: RequestedItem, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
-        self.request_with(asked, request, &[], repeats).map(|(reply, _)| reply)
+    fn request(&mut self, requested: RequestedItem, request: &Request, repeats: Repeats) -> Result<Reply, Error> {
+        self.request_with(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
     /// Asks something of an object, with further items beside the message; gives back those beside the reply as well.
     fn request_with(
         &mut self,
-        asked: RequestedItem,
+        requested: RequestedItem,
         request: &Request,
         beside: &[Item],
         repeats: Repeats,
     ) -> Result<(Reply, Items), Error> {
-        let (reply, items) = self.again(asked, repeats, |master| {
+        let (reply, items) = self.again(requested, repeats, |master| {
             let session = master.session()?;
             let items = Items([&[Item::Null, Item::UnconnectedData(request.emit())], beside].concat());
             let body = Body::Data { interface: 0, timeout_s: 0, items };
@@ -245,7 +249,7 @@ impl<'a> Master<'a> {
             return Ok((reply, items));
         }
         let Reply { service, status, extended, .. } = reply;
-        Err(Error::Refused { asked, refusal: Refusal { service, status, extended } })
+        Err(Error::Refused { requested, refusal: Refusal { service, status, extended } })
     }
 
     /// The number of the session; it begins with the first request on a wire.
@@ -274,7 +278,7 @@ impl<'a> Master<'a> {
     /// Asks, and again where that may help and does no harm.
     fn again<T>(
         &mut self,
-        asked: RequestedItem,
+        requested: RequestedItem,
         repeats: Repeats,
         mut once: impl FnMut(&mut Self) -> Result<Result<T, ExchangeError>, Error>,
     ) -> Result<T, Error> {
@@ -301,18 +305,20 @@ impl<'a> Master<'a> {
             let may = self.line.may_ask_again(&mut self.station.line, tries, took);
             match trouble {
                 // It was not done: the device has forgotten the session.
-                ExchangeError::Status(EncapsulationStatus::NO_SESSION) if may && asked != RequestedItem::Session => {
+                ExchangeError::Status(EncapsulationStatus::NO_SESSION)
+                    if may && requested != RequestedItem::Session =>
+                {
                     self.station.session = None;
                 }
-                ExchangeError::Status(status) => return Err(Error::Encapsulation { asked, status }),
+                ExchangeError::Status(status) => return Err(Error::Encapsulation { requested, status }),
                 _ if may && repeats == Repeats::Always => {}
                 ExchangeError::Silence => {
                     let took = self.station.replies.longest();
                     let is_late = self.station.late > late && took >= longest;
                     let late = is_late.then_some(Late { took, waited: within });
-                    return Err(Error::NoReply { asked, tries, late });
+                    return Err(Error::NoReply { requested, tries, late });
                 }
-                ExchangeError::Damage(cause) => return Err(Error::Damaged { asked, tries, cause }),
+                ExchangeError::Damage(cause) => return Err(Error::Damaged { requested, tries, cause }),
             }
         }
     }
@@ -340,7 +346,7 @@ impl<'a> Master<'a> {
                     Ok(Some(answer)) => {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&answer.emit()));
-                        self.station.heard(u64::from_le_bytes(answer.context), now);
+                        self.station.note_reply(u64::from_le_bytes(answer.context), now);
                         let recorded = self.station.recorded && answer.command == frame.command;
                         if !recorded && !answer.answers(&frame) {
                             self.station.late += 1;
@@ -389,8 +395,8 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeErr
     let reply = Reply::parse(items.unconnected_data().ok_or(Damage::Empty)?)?;
     let services = (request.service.code(), reply.service.code());
     match services {
-        (asked, got) if asked == got => Ok((reply, items)),
-        (asked, got) => Err(Damage::Service { asked, got }.into()),
+        (requested, got) if requested == got => Ok((reply, items)),
+        (requested, got) => Err(Damage::Service { requested, got }.into()),
     }
 }
 

@@ -20,7 +20,7 @@ mod save;
 mod station;
 pub mod write;
 
-pub use discover::{Found, discover};
+pub use discover::{DiscoveredDevice, discover};
 pub use error::{Damage, Error, Late, Refusal, RequestedItem, WrongLength};
 pub use identify::{
     DriveIdentity, DriveReading, DriveStatus, Identity, Status, Survey, identify, position, read_status, survey,

@@ -62,15 +62,15 @@ fn attribute<T>(
     attribute: u16,
     parse: impl FnOnce(&[u8]) -> Result<T, PacketError>,
 ) -> Result<T, Error> {
-    let asked = RequestedItem::Network { attribute };
-    let data = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
-    parse(&data).map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })
+    let requested = RequestedItem::Network { attribute };
+    let data = master.attribute(requested, ConfigurationControl::CLASS, attribute)?;
+    parse(&data).map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })
 }
 
 /// Returns the value; `None` if it was refused.
 fn unless_refused<T>(ended: Result<T, Error>) -> Result<Option<T>, Error> {
     match ended {
-        Ok(told) => Ok(Some(told)),
+        Ok(value) => Ok(Some(value)),
         Err(Error::Refused { .. }) => Ok(None),
         Err(error) => Err(error),
     }

@@ -31,7 +31,7 @@ impl Identity {
     }
 
     /// All that a device keeps of itself and of the drives that are plugged in.
-    pub fn kept(&self) -> impl Iterator<Item = ParameterNumber> {
+    pub fn stored_parameters(&self) -> impl Iterator<Item = ParameterNumber> {
         let rows = || PARAMETERS.iter().filter(|row| Image::holds(row));
         let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
         let drives = self
@@ -46,9 +46,9 @@ impl Identity {
 ///
 /// # Errors
 /// [`Error::NotHiperdrive`]; the way.
-pub fn save(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
-    let identity = identify(master, told)?;
-    let image = read_image(master, identity.kept().collect(), told)?;
+pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
+    let identity = identify(master, progress)?;
+    let image = read_image(master, identity.stored_parameters().collect(), progress)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
@@ -60,13 +60,13 @@ pub fn save(master: &mut Master<'_>, told: IdentifyProgress<'_>) -> Result<Hiper
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,
-    told: IdentifyProgress<'_>,
+    progress: IdentifyProgress<'_>,
 ) -> Result<(Identity, DeviceState), Error> {
-    let identity = identify(master, told)?;
-    let mut numbers: Vec<ParameterNumber> = identity.kept().chain(beside).collect();
+    let identity = identify(master, progress)?;
+    let mut numbers: Vec<ParameterNumber> = identity.stored_parameters().chain(beside).collect();
     numbers.sort();
     numbers.dedup();
-    let image = read_image(master, numbers, told)?;
+    let image = read_image(master, numbers, progress)?;
     let mut positions = Positions::new();
     for drive in &identity.drives {
         match master.read_number(of(107, drive.number)?) {
@@ -85,12 +85,12 @@ pub fn read_state(
 fn read_image(
     master: &mut Master<'_>,
     numbers: Vec<ParameterNumber>,
-    told: IdentifyProgress<'_>,
+    progress: IdentifyProgress<'_>,
 ) -> Result<Image, Error> {
     let total = numbers.len() as u64;
     let mut image = Image::default();
     for (done, number) in numbers.into_iter().enumerate() {
-        told(done as u64, total, number);
+        progress(done as u64, total, number);
         match master.read_number(number) {
             Ok(value) => {
                 image.values.insert(number, value);

@@ -58,12 +58,12 @@ pub struct Station {
     pub(super) originator: u32,
     /// Number of connections opened by this session.
     pub(super) connections: u16,
-    pub(super) known: Known,
+    pub(super) known: KnownState,
 }
 
 /// The known state of the device.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Known {
+pub(super) struct KnownState {
     pub(super) topology: Option<Topology>,
 }
 
@@ -90,7 +90,7 @@ impl Station {
             late: 0,
             originator: random as u32,
             connections: (random >> 32) as u16,
-            known: Known::default(),
+            known: KnownState::default(),
         }
     }
 
@@ -130,7 +130,7 @@ impl Station {
     }
 
     /// A frame with this number has come, which answers the request of that number, in time or not.
-    pub(super) fn heard(&mut self, number: u64, at: Moment) {
+    pub(super) fn note_reply(&mut self, number: u64, at: Moment) {
         if let Some(place) = self.open.iter().position(|(own, ..)| *own == number)
             && let Some((_, sent, false)) = self.open.remove(place)
         {

@@ -241,10 +241,10 @@ fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error>
 fn write_network(master: &mut Master<'_>, from: &NetworkSettings, to: &NetworkSettings) -> Result<(), Error> {
     if from.source != to.source {
         let attribute = ConfigurationControl::ATTRIBUTE;
-        let asked = RequestedItem::Network { attribute };
-        let before = master.attribute(asked, ConfigurationControl::CLASS, attribute)?;
+        let requested = RequestedItem::Network { attribute };
+        let before = master.attribute(requested, ConfigurationControl::CLASS, attribute)?;
         let before = ConfigurationControl::parse(&before);
-        let before = before.map_err(|cause| Error::Damaged { asked, tries: 1, cause: cause.into() })?;
+        let before = before.map_err(|cause| Error::Damaged { requested, tries: 1, cause: cause.into() })?;
         set_network(master, attribute, before.with(to.source).emit().to_vec())?;
     }
     if from.interface != to.interface {

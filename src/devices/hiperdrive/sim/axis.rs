@@ -4,7 +4,7 @@ use std::time::Duration;
 
 /// The load of the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load {
+pub struct SpindleLoad {
     /// Percent of the nominal torque that it takes. With less effective torque nothing moves.
     pub percent: u8,
     /// It cannot turn below this place, in steps of 65536 a turn as the drive was built.
@@ -28,9 +28,9 @@ pub enum Defect {
     SaysOutside,
 }
 
-impl Default for Load {
+impl Default for SpindleLoad {
     fn default() -> Self {
-        Load { percent: 10, wall_below: None, wall_above: None, ambient: 25.0, defect: None }
+        SpindleLoad { percent: 10, wall_below: None, wall_above: None, ambient: 25.0, defect: None }
     }
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Axis {
 
 /// The demand on the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wanted {
+pub(super) enum AxisDemand {
     /// Stands still.
     Rest,
     /// Moves to a place, no faster than this.
@@ -53,21 +53,21 @@ pub(super) enum Wanted {
     Speed(f64),
 }
 
-impl Wanted {
+impl AxisDemand {
     /// Returns the effective demand in a drive with a defect, from this place.
-    pub(super) fn with(self, defect: Option<Defect>, place: f64) -> Wanted {
+    pub(super) fn with(self, defect: Option<Defect>, place: f64) -> AxisDemand {
         let turned = |speed: f64| if defect == Some(Defect::Reversed) { -speed } else { speed };
         match (self, defect) {
-            (wanted, None | Some(Defect::SaysOutside)) | (wanted @ Wanted::Rest, _) => wanted,
-            (Wanted::Place { at, speed }, Some(_)) => Wanted::Speed(turned((at - place).signum() * speed)),
-            (Wanted::Speed(speed), Some(_)) => Wanted::Speed(turned(speed)),
+            (wanted, None | Some(Defect::SaysOutside)) | (wanted @ AxisDemand::Rest, _) => wanted,
+            (AxisDemand::Place { at, speed }, Some(_)) => AxisDemand::Speed(turned((at - place).signum() * speed)),
+            (AxisDemand::Speed(speed), Some(_)) => AxisDemand::Speed(turned(speed)),
         }
     }
 }
 
 /// The outcome of a millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Came {
+pub(super) enum TickOutcome {
     /// It is under way.
     OnTheWay,
     /// It stands where it should, or as it should.
@@ -97,7 +97,7 @@ impl Axis {
         self.speed / TURN * 60.0
     }
 
-    pub(super) const fn stands(&self) -> bool {
+    pub(super) const fn is_standing(&self) -> bool {
         self.speed == 0.0
     }
 
@@ -107,13 +107,13 @@ impl Axis {
     }
 
     /// A millisecond.
-    pub(super) fn tick(&mut self, wanted: Wanted, load: &Load) -> Came {
+    pub(super) fn tick(&mut self, wanted: AxisDemand, load: &SpindleLoad) -> TickOutcome {
         let gain = ACCELERATION * TICK_S;
         let aim = match wanted {
-            Wanted::Rest => 0.0,
-            Wanted::Speed(speed) => speed,
+            AxisDemand::Rest => 0.0,
+            AxisDemand::Speed(speed) => speed,
             // No faster than it can still stop, millisecond by millisecond.
-            Wanted::Place { at, speed } => {
+            AxisDemand::Place { at, speed } => {
                 let (way, half) = (at - self.place, gain / 2.0);
                 way.signum() * speed.min((half * half + 2.0 * ACCELERATION * way.abs()).sqrt() - half)
             }
@@ -122,23 +122,24 @@ impl Axis {
         let next = self.place + self.speed * TICK_S;
         if let Some(held) = walls(load, next) {
             (self.place, self.speed) = (held.0, 0.0);
-            let arrived = wanted == Wanted::Rest || matches!(wanted, Wanted::Place { at, .. } if at == self.place);
-            return if arrived { Came::There } else { Came::Held { above: held.1 } };
+            let arrived =
+                wanted == AxisDemand::Rest || matches!(wanted, AxisDemand::Place { at, .. } if at == self.place);
+            return if arrived { TickOutcome::There } else { TickOutcome::Held { above: held.1 } };
         }
         self.place = next;
         match wanted {
-            Wanted::Place { at, .. } if self.speed.abs() <= 4.0 * gain && (at - self.place).abs() <= 2.0 => {
+            AxisDemand::Place { at, .. } if self.speed.abs() <= 4.0 * gain && (at - self.place).abs() <= 2.0 => {
                 (self.place, self.speed) = (at, 0.0);
-                Came::There
+                TickOutcome::There
             }
-            Wanted::Rest if self.stands() => Came::There,
-            _ => Came::OnTheWay,
+            AxisDemand::Rest if self.is_standing() => TickOutcome::There,
+            _ => TickOutcome::OnTheWay,
         }
     }
 }
 
 /// The wall that a place lies behind, and whether it is the upper one.
-fn walls(load: &Load, place: f64) -> Option<(f64, bool)> {
+fn walls(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))
 }
@@ -147,10 +148,10 @@ fn walls(load: &Load, place: f64) -> Option<(f64, bool)> {
 mod tests {
     use super::*;
 
-    fn ticks_until(axis: &mut Axis, wanted: Wanted, load: &Load) -> (u32, Came) {
+    fn ticks_until(axis: &mut Axis, wanted: AxisDemand, load: &SpindleLoad) -> (u32, TickOutcome) {
         for tick in 1..100_000 {
             match axis.tick(wanted, load) {
-                Came::OnTheWay => {}
+                TickOutcome::OnTheWay => {}
                 came => return (tick, came),
             }
         }
@@ -162,37 +163,37 @@ mod tests {
     fn a_turn_takes_its_time() {
         let mut axis = Axis::default();
         let speed = 35.0 / 60.0 * TURN;
-        let (ticks, came) = ticks_until(&mut axis, Wanted::Place { at: TURN, speed }, &Load::default());
-        assert_eq!((came, axis.place(), axis.stands()), (Came::There, TURN, true));
+        let (ticks, came) = ticks_until(&mut axis, AxisDemand::Place { at: TURN, speed }, &SpindleLoad::default());
+        assert_eq!((came, axis.place(), axis.is_standing()), (TickOutcome::There, TURN, true));
         assert!((1800..=1830).contains(&ticks), "{ticks} ms where 1814 were expected");
     }
 
     #[test]
     fn it_stops_in_a_tenth_of_a_second() {
         let mut axis = Axis::default();
-        let load = Load::default();
+        let load = SpindleLoad::default();
         for _ in 0..500 {
-            axis.tick(Wanted::Speed(-35.0 / 60.0 * TURN), &load);
+            axis.tick(AxisDemand::Speed(-35.0 / 60.0 * TURN), &load);
         }
         assert!((axis.rpm() + 35.0).abs() < 1e-9);
-        let (ticks, _) = ticks_until(&mut axis, Wanted::Rest, &load);
+        let (ticks, _) = ticks_until(&mut axis, AxisDemand::Rest, &load);
         assert!((99..=101).contains(&ticks), "{ticks} ms");
     }
 
     #[test]
     fn it_is_held_by_a_wall_and_comes_back_from_behind() {
-        let load = Load { wall_above: Some(1000.0), ..Load::default() };
+        let load = SpindleLoad { wall_above: Some(1000.0), ..SpindleLoad::default() };
         let mut axis = Axis::default();
-        let to = |at| Wanted::Place { at, speed: TURN };
-        assert_eq!(ticks_until(&mut axis, to(5000.0), &load).1, Came::Held { above: true });
+        let to = |at| AxisDemand::Place { at, speed: TURN };
+        assert_eq!(ticks_until(&mut axis, to(5000.0), &load).1, TickOutcome::Held { above: true });
         assert_eq!(axis.place(), 1000.0);
-        assert_eq!(ticks_until(&mut axis, to(-300.0), &load).1, Came::There);
+        assert_eq!(ticks_until(&mut axis, to(-300.0), &load).1, TickOutcome::There);
         // Turned round at full speed, it overshoots and returns.
         for _ in 0..300 {
-            axis.tick(Wanted::Speed(-TURN), &load);
+            axis.tick(AxisDemand::Speed(-TURN), &load);
         }
         let turned = axis.place();
-        assert_eq!(ticks_until(&mut axis, to(turned), &load).1, Came::There);
+        assert_eq!(ticks_until(&mut axis, to(turned), &load).1, TickOutcome::There);
         assert_eq!(axis.place(), turned);
     }
 }

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::axis::{Defect, Load};
+use super::axis::{Defect, SpindleLoad};
 use super::station::RESETS;
 use crate::devices::hiperdrive::protocol::drive_parameter::MAXIMUM_SPEEDS;
 use crate::devices::hiperdrive::protocol::{AddressSwitch, ByteOrder, DriveNumber, Topology, VARIANTS, Variant};
@@ -31,7 +31,7 @@ parameters! {
         /// Parameter 166: greatest speed in tenths of rpm.
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// Load of the spindle: above 100 no drive can move it.
-        load: u8 = Load::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
+        load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
         /// The spindle is held where it stands.
         blocked: bool = false, "blocked" => SWITCH;
         /// The drives stop neither at a target nor at a limit, turn the other way, or always set status bit 15.
@@ -39,7 +39,7 @@ parameters! {
             ("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed), ("says-outside", Defect::SaysOutside),
         ]));
         /// Around the drives: from 80 on they fail.
-        temperature: f64 = Load::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
+        temperature: f64 = SpindleLoad::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
         /// Switch S3; away from 0 nothing moves from the bus.
         pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
@@ -80,15 +80,21 @@ impl Config {
     }
 
     /// Returns the drive plugged into a place.
-    pub(super) fn drive(&self, number: DriveNumber) -> Option<(Variant, Load)> {
+    pub(super) fn drive(&self, number: DriveNumber) -> Option<(Variant, SpindleLoad)> {
         let place = usize::from(number.get()) - 1;
         let plugged = self.plugged.as_ref().is_none_or(|places| places.get(place) == Some(&true));
         plugged.then(|| (self.variant, self.load()))
     }
 
-    fn load(&self) -> Load {
+    fn load(&self) -> SpindleLoad {
         let wall = self.blocked.then(|| self.place());
-        Load { percent: self.load, wall_below: wall, wall_above: wall, ambient: self.temperature, defect: self.defect }
+        SpindleLoad {
+            percent: self.load,
+            wall_below: wall,
+            wall_above: wall,
+            ambient: self.temperature,
+            defect: self.defect,
+        }
     }
 
     /// Returns the position of the drives, in steps of 65536 a turn.

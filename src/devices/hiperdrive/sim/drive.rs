@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use super::axis::{Axis, Came, Defect, Load, TICK, TURN, Wanted};
+use super::axis::{Axis, AxisDemand, Defect, SpindleLoad, TICK, TURN, TickOutcome};
 use super::memory::Memory;
 use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NUMERATOR, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
@@ -31,7 +31,7 @@ pub struct Drive {
     /// Since the acknowledgement.
     pub(super) faults: u8,
     pub(super) celsius: f64,
-    load: Load,
+    load: SpindleLoad,
     control: ControlWord,
     /// Moving is told by the axis.
     state: State,
@@ -82,7 +82,7 @@ const WARMING_S: f64 = 60.0;
 
 impl Drive {
     /// A drive from the factory, switched on at the start of the clock.
-    pub fn new(variant: Variant, topology: Topology, load: Load) -> Self {
+    pub fn new(variant: Variant, topology: Topology, load: SpindleLoad) -> Self {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
             variant,
@@ -113,7 +113,7 @@ impl Drive {
     }
 
     /// Changes the load.
-    pub fn set_load(&mut self, now: Moment, load: Load) {
+    pub fn set_load(&mut self, now: Moment, load: SpindleLoad) {
         self.advance(now);
         self.load = load;
     }
@@ -179,7 +179,7 @@ impl Drive {
             (StatusBit::Warning, self.faults > 0),
             (StatusBit::TargetReached, self.target_reached),
             (StatusBit::SetpointAcknowledged, self.acknowledged),
-            (StatusBit::StandingStill, self.stands()),
+            (StatusBit::StandingStill, self.is_standing()),
             (StatusBit::OverCurrent, self.over_current),
             (StatusBit::PositionLimit, position < low || position > high || says_outside),
         ]
@@ -188,8 +188,8 @@ impl Drive {
     }
 
     /// Returns whether nothing moves or is about to.
-    pub(super) fn stands(&self) -> bool {
-        self.axis.stands() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
+    pub(super) fn is_standing(&self) -> bool {
+        self.axis.is_standing() && matches!(self.motion, Motion::Rest | Motion::Paused { .. })
     }
 
     /// Returns the position in scaled steps.
@@ -260,7 +260,7 @@ impl Drive {
     /// Returns whether nothing but its temperature changes by itself.
     fn is_settled(&self) -> bool {
         let begins = self.control.begins(self.control, self.status()).is_some();
-        self.motion == Motion::Rest && self.axis.stands() && !begins && self.next(self.control) == self.state
+        self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
     }
 
     /// The state that the word leads to behind another one.
@@ -284,17 +284,17 @@ impl Drive {
         let torque = effective_torque(self.percents().1);
         let wants = !matches!(self.motion, Motion::Rest | Motion::Paused { .. });
         let weak = wants && torque < self.load.percent;
-        let wanted = if weak { Wanted::Rest } else { self.wanted() };
+        let wanted = if weak { AxisDemand::Rest } else { self.wanted() };
         let came = self.axis.tick(wanted, &self.load);
-        self.warm(if self.stands() { 0 } else { torque }, ticks);
-        let stuck = weak || matches!(came, Came::Held { .. });
+        self.warm(if self.is_standing() { 0 } else { torque }, ticks);
+        let stuck = weak || matches!(came, TickOutcome::Held { .. });
         self.stuck_ms = if stuck { self.stuck_ms + 1 } else { 0 };
         match came {
-            Came::Held { above } if self.stuck_ms >= HELD_MS => {
+            TickOutcome::Held { above } if self.stuck_ms >= HELD_MS => {
                 self.fails(if above { ErrorCode::BLOCK_FORWARD } else { ErrorCode::BLOCK_REVERSE });
             }
             _ if weak && self.stuck_ms >= WEAK_MS => self.fails(ErrorCode::FOLLOWING),
-            Came::There if wants && !weak => {
+            TickOutcome::There if wants && !weak => {
                 self.target_reached |= matches!(self.motion, Motion::Job { .. });
                 self.motion = Motion::Rest;
             }
@@ -302,13 +302,13 @@ impl Drive {
         }
     }
 
-    fn wanted(&self) -> Wanted {
+    fn wanted(&self) -> AxisDemand {
         let rpm = f64::from(self.word(166)) / 10.0 * f64::from(self.percents().0.min(100)) / 100.0;
         let speed = rpm / 60.0 * TURN;
         let wanted = match self.motion {
-            Motion::Rest | Motion::Paused { .. } => Wanted::Rest,
-            Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => Wanted::Place { at, speed },
-            Motion::Run { to: None, clockwise } => Wanted::Speed(if clockwise { speed } else { -speed }),
+            Motion::Rest | Motion::Paused { .. } => AxisDemand::Rest,
+            Motion::Job { at, .. } | Motion::Run { to: Some(at), .. } => AxisDemand::Place { at, speed },
+            Motion::Run { to: None, clockwise } => AxisDemand::Speed(if clockwise { speed } else { -speed }),
         };
         wanted.with(self.load.defect, self.axis.place())
     }

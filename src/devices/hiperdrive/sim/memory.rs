@@ -42,10 +42,10 @@ impl Memory {
     /// Sets and saves a value.
     pub(super) fn preset(&mut self, number: u16, value: i64) {
         self.set(number, value);
-        self.keep();
+        self.save();
     }
 
-    pub(super) fn keep(&mut self) {
+    pub(super) fn save(&mut self) {
         self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
     }
 

@@ -16,7 +16,6 @@
 mod axis;
 mod config;
 mod drive;
-mod hindrance;
 mod memory;
 mod parameters;
 mod station;
@@ -24,11 +23,12 @@ mod target;
 #[cfg(test)]
 mod tests;
 mod words;
+mod write_fault;
 
-pub use axis::{Defect, Load};
+pub use axis::{Defect, SpindleLoad};
 pub use config::Config;
 pub use drive::Drive;
-pub use hindrance::Hindrance;
 pub use parameters::Refused;
 pub use station::{Setup, Station};
 pub use target::{Figures, Target};
+pub use write_fault::WriteFault;

@@ -6,12 +6,12 @@
 
 use std::time::Duration;
 
-use super::axis::{Axis, Load};
+use super::axis::{Axis, SpindleLoad};
 use super::config::Config;
 use super::drive::Drive;
-use super::hindrance::{Hindered, Hindrance};
 use super::memory::Memory;
 use super::parameters::Refused;
+use super::write_fault::{ActiveWriteFault, WriteFault};
 use crate::devices::hiperdrive::protocol::{
     Access, Actual, DriveNumber, Family, InImage, OutData, OutImage, ParameterNumber, ParameterRow, Pkw, Topology,
     Travel, Value, Variant,
@@ -24,7 +24,7 @@ pub struct Setup {
     /// Places for drives.
     pub topology: Topology,
     /// The drives, from the first place on.
-    pub drives: Vec<Option<(Variant, Load)>>,
+    pub drives: Vec<Option<(Variant, SpindleLoad)>>,
     /// Parameter 17.
     pub serial_number: u16,
 }
@@ -45,14 +45,14 @@ pub struct Station {
     /// The answer to it, and when it is there.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
-    plate: Plate,
+    plate: NamePlate,
     store: Store,
-    hindered: Hindered,
+    hindered: ActiveWriteFault,
 }
 
 /// The identity data that no [`Setup`] contains.
 #[derive(Clone, Debug)]
-struct Plate {
+struct NamePlate {
     name: String,
     switch: u8,
     supply_tenths: u16,
@@ -87,7 +87,7 @@ const DRIVE_RESETS: Duration = Duration::from_millis(300);
 impl Default for Setup {
     /// An adapter with a drive HDA30A.
     fn default() -> Self {
-        let drives = vec![Some((Variant::new(7), Load::default()))];
+        let drives = vec![Some((Variant::new(7), SpindleLoad::default()))];
         Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
     }
 }
@@ -101,7 +101,7 @@ impl Station {
             .map(|place| place.map(|(variant, load)| Drive::new(variant, setup.topology, load)))
             .collect();
         let memory = Memory::new(setup.topology, Family::Short, |row| row.number < 100);
-        let plate = Plate { name: "HIPERDRIVE".to_owned(), switch: 0, supply_tenths: 240 };
+        let plate = NamePlate { name: "HIPERDRIVE".to_owned(), switch: 0, supply_tenths: 240 };
         Station {
             setup,
             drives,
@@ -114,7 +114,7 @@ impl Station {
             resets: RESETS,
             plate,
             store: Store::default(),
-            hindered: Hindered::default(),
+            hindered: ActiveWriteFault::default(),
         }
     }
 
@@ -124,7 +124,7 @@ impl Station {
         let setup = Setup { topology: config.topology, drives, serial_number: config.serial_number };
         let mut station = Station::new(setup);
         station.plate =
-            Plate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths() };
+            NamePlate { name: config.name.clone(), switch: config.switch, supply_tenths: config.supply_tenths() };
         station.store.dies_in = config.faults.die_in_store();
         station.resets = config.resets;
         for drive in station.present() {
@@ -158,8 +158,8 @@ impl Station {
     }
 
     /// Injects a failure from now on; `None` removes it and repairs a lost line.
-    pub const fn hinder(&mut self, what: Option<(ParameterNumber, Hindrance)>) {
-        self.hindered = Hindered::by(what);
+    pub const fn set_write_fault(&mut self, what: Option<(ParameterNumber, WriteFault)>) {
+        self.hindered = ActiveWriteFault::by(what);
     }
 
     /// Returns whether none of its replies get through.
@@ -320,20 +320,20 @@ impl Station {
             self.answers_at = Some(self.busy_until);
             return;
         }
-        let mut keep: fn(&mut Memory) = Memory::keep;
+        let mut save: fn(&mut Memory) = Memory::save;
         if matches!(value, 1 | -3) {
             self.store.count = self.store.count.saturating_add(1);
             if self.store.dies_in == Some(self.store.count) {
-                (self.store.dies_at, keep) = (Some(now + SAVES / 2), Memory::keep_half);
+                (self.store.dies_at, save) = (Some(now + SAVES / 2), Memory::keep_half);
             }
         }
         let each = |memory: &mut Memory| match value {
-            1 => keep(memory),
+            1 => save(memory),
             -1 => memory.forget_own(),
             -2 => memory.recall(),
             -3 => {
                 memory.forget();
-                keep(memory);
+                save(memory);
             }
             _ => {}
         };

@@ -102,7 +102,7 @@ impl Unit {
     /// Opens the cyclic connection; from then on the drive that is shown is seen all the time.
     fn take_control(&mut self, services: &mut Services) {
         if let Err(why) = self.can_take() {
-            services.tell(Severity::Warning, vec![why], Some(&self.session.name()));
+            services.notify(Severity::Warning, vec![why], Some(&self.session.name()));
             return;
         }
         self.submit(HiperdriveJob::Take, services);

@@ -1,5 +1,5 @@
 //! The set-up of an axis as one run: from an unknown drive to limits in millimetres that have survived a loss of the
-//! supply. A state machine over what is read ([`Seen`]) and what is to be done ([`Ask`]); it does nothing itself, and
+//! supply. A state machine over what is read ([`DriveFacts`]) and what is to be done ([`DriveRequest`]); it does nothing itself, and
 //! no step continues before the drive confirms it.
 //!
 //! What the steps have made sure of is a chain: each result rests on facts of the drive (its scale, the pitch, the reference,
@@ -10,14 +10,14 @@
 //! but one. The manual does not promise that what was not saved is gone without supply: what is wanted back is written back.
 
 mod act;
-mod chain;
 mod differences;
+mod drive_facts;
 mod entries;
 mod follow;
 mod gate;
 mod report;
-mod seen;
 mod standstill;
+mod step_outcomes;
 mod supply;
 mod test_targets;
 pub mod words;
@@ -25,15 +25,15 @@ pub mod words;
 #[cfg(test)]
 mod tests;
 
-pub use act::{Ask, AxisAction, Button};
+pub use act::{AxisAction, Button, DriveRequest};
+pub use drive_facts::DriveFacts;
 pub use entries::{Entries, Preview, Reference};
 pub use report::{Device, end_lines, report};
-pub use seen::Seen;
 pub use supply::{Power, Restart};
 pub use test_targets::{Outcome, TestTarget, Travel};
 
-use chain::{Basis, Chain, Origin};
 use standstill::Standstill;
+use step_outcomes::{Origin, Preconditions, StepOutcomes};
 
 use super::ruler::Ruler;
 use crate::devices::hiperdrive::protocol::{DriveNumber, PositionScale};
@@ -98,11 +98,11 @@ pub enum AxisChange {
 
 /// The end of a run: how, when, and what was known then.
 #[derive(Clone, Debug)]
-pub struct Over {
+pub struct RunSummary {
     pub end: End,
     /// The time, as it is written.
     pub when: String,
-    seen: Box<Seen>,
+    seen: Box<DriveFacts>,
 }
 
 /// Limits that a person has agreed to.
@@ -126,7 +126,7 @@ pub struct Axis {
     /// The entered text.
     entries: Entries,
     /// The confirmed results.
-    chain: Chain,
+    chain: StepOutcomes,
     confirmed: Option<Confirmed>,
     travel: Travel,
     /// The position that the place got, and what places count from since.
@@ -149,8 +149,8 @@ pub struct Axis {
     /// The values written back.
     returned: Vec<(u16, i64)>,
     /// The pending write.
-    asked: Option<Ask>,
-    over: Option<Over>,
+    asked: Option<DriveRequest>,
+    over: Option<RunSummary>,
 }
 
 impl AxisStep {
@@ -189,7 +189,7 @@ impl AxisStep {
         self as usize
     }
 
-    fn beside(self, by: isize) -> Option<AxisStep> {
+    fn neighbour(self, by: isize) -> Option<AxisStep> {
         AxisStep::ALL.get(self.index().checked_add_signed(by)?).copied()
     }
 }
@@ -201,7 +201,7 @@ impl Axis {
             drive,
             step: AxisStep::Request,
             entries: Entries::new(ruler),
-            chain: Chain::default(),
+            chain: StepOutcomes::default(),
             confirmed: None,
             travel: Travel::default(),
             reference: None,
@@ -242,12 +242,12 @@ impl Axis {
     }
 
     /// Returns the end, with its time.
-    pub const fn over(&self) -> Option<&Over> {
+    pub const fn over(&self) -> Option<&RunSummary> {
         self.over.as_ref()
     }
 
     /// Returns the facts known at its end; before that, the present ones.
-    pub fn as_seen<'a>(&'a self, now: &'a Seen) -> &'a Seen {
+    pub fn as_seen<'a>(&'a self, now: &'a DriveFacts) -> &'a DriveFacts {
         self.over.as_ref().map_or(now, |over| &over.seen)
     }
 
@@ -321,13 +321,13 @@ impl Axis {
         self.power.is_some_and(Power::is_survived)
     }
 
-    fn origin(&self, seen: &Seen) -> Origin {
+    fn origin(&self, seen: &DriveFacts) -> Origin {
         Origin::of(seen, self.jumps)
     }
 
     /// The facts of now on which results rest.
-    fn basis(&self, seen: &Seen) -> Basis {
-        Basis {
+    fn basis(&self, seen: &DriveFacts) -> Preconditions {
+        Preconditions {
             requested: seen.requested,
             scale: seen.scale,
             pitch: seen.pitch,

@@ -13,7 +13,7 @@ use crate::parameter::{Entry, Parameters as _};
 
 /// The way to the drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum HiperdriveWay {
+pub enum HiperdriveLinkKind {
     /// Virtual drives in this program.
     #[default]
     Virtual,
@@ -39,7 +39,7 @@ pub enum VirtualHub {
 /// for what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
-    pub way: HiperdriveWay,
+    pub kind: HiperdriveLinkKind,
     pub hub: VirtualHub,
     /// Name or address of the device.
     pub host: String,
@@ -85,15 +85,17 @@ impl FormModel for HiperdriveForm {
 
     fn from_url(url: &LinkUrl) -> Self {
         let way = match url.scheme {
-            Scheme::Sim => HiperdriveWay::Virtual,
-            Scheme::Replay => HiperdriveWay::Replay,
-            Scheme::Enip | Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp => HiperdriveWay::Network,
+            Scheme::Sim => HiperdriveLinkKind::Virtual,
+            Scheme::Replay => HiperdriveLinkKind::Replay,
+            Scheme::Enip | Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp => {
+                HiperdriveLinkKind::Network
+            }
         };
-        let mut form = HiperdriveForm { way, ..HiperdriveForm::default() };
-        match form.way {
-            HiperdriveWay::Replay => form.file = url.target.clone(),
-            HiperdriveWay::Network => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
-            HiperdriveWay::Virtual => {}
+        let mut form = HiperdriveForm { kind: way, ..HiperdriveForm::default() };
+        match form.kind {
+            HiperdriveLinkKind::Replay => form.file = url.target.clone(),
+            HiperdriveLinkKind::Network => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
+            HiperdriveLinkKind::Virtual => {}
         }
         form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
@@ -115,7 +117,7 @@ impl FormModel for HiperdriveForm {
 impl HiperdriveForm {
     /// The parameters that are typed: those of the virtual device, where it is one, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
-        let own = if self.way == HiperdriveWay::Virtual { Config::entries() } else { Vec::new() };
+        let own = if self.kind == HiperdriveLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
@@ -132,7 +134,7 @@ impl HiperdriveForm {
 
     /// Fills in the entry of a parameter; false where there is none that can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
-        if (name, self.way) == ("hub", HiperdriveWay::Virtual) {
+        if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::of_word(value);
             self.hub = hub.unwrap_or(self.hub);
             return hub.is_some();
@@ -143,17 +145,17 @@ impl HiperdriveForm {
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
-        Ok(match self.way {
-            HiperdriveWay::Virtual => (Scheme::Sim, String::new()),
-            HiperdriveWay::Network => {
+        Ok(match self.kind {
+            HiperdriveLinkKind::Virtual => (Scheme::Sim, String::new()),
+            HiperdriveLinkKind::Network => {
                 (Scheme::Enip, host_and_usual_port(&self.host, "form.device_missing", &self.tcp_port, PORT)?)
             }
-            HiperdriveWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+            HiperdriveLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
     fn parameters(&self) -> Parameters {
-        let is_virtual = self.way == HiperdriveWay::Virtual;
+        let is_virtual = self.kind == HiperdriveLinkKind::Virtual;
         let mut parameters = Parameters::default();
         if is_virtual {
             parameters.entry("hub", self.hub.word().unwrap_or_default());
@@ -195,8 +197,8 @@ mod tests {
             change(&mut form);
             form.url().unwrap_err().id()
         };
-        assert_eq!(refused(|form| form.way = HiperdriveWay::Network), "form.device_missing");
-        assert_eq!(refused(|form| form.way = HiperdriveWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.kind = HiperdriveLinkKind::Network), "form.device_missing");
+        assert_eq!(refused(|form| form.kind = HiperdriveLinkKind::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.typed.set("rpi", "4")), "form.parameter");
         assert_eq!(refused(|form| form.typed.set("drives", "2")), "form.parameter");
         assert_eq!(refused(|form| form.typed.set("timeout", "x")), "form.parameter");
@@ -205,7 +207,7 @@ mod tests {
     #[test]
     fn another_way_takes_along_only_what_it_has() {
         let mut form = HiperdriveForm::from_url(&"sim:?hub=4&seed=5&rpi=20".parse().unwrap());
-        (form.way, form.host) = (HiperdriveWay::Network, "192.168.1.5".to_owned());
+        (form.kind, form.host) = (HiperdriveLinkKind::Network, "192.168.1.5".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "enip:192.168.1.5:44818?rpi=20");
     }
 }

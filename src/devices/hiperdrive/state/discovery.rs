@@ -4,7 +4,7 @@ use std::fmt;
 use std::net::Ipv4Addr;
 use std::sync::Arc;
 
-use super::connect_form::{HiperdriveForm, HiperdriveWay};
+use super::connect_form::{HiperdriveForm, HiperdriveLinkKind};
 use super::unit::Unit;
 use crate::app::action::{Action, Done};
 use crate::app::connect::context::FinderContext;
@@ -12,9 +12,9 @@ use crate::app::connect::form::Finder;
 use crate::app::services::Services;
 use crate::app::{DeviceModel, Text};
 use crate::buses::ethernet_ip::protocol::EXPLICIT_PORT;
-use crate::devices::hiperdrive::procedures::{Error, Found, discover};
+use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
 use crate::devices::hiperdrive::state::explain as words;
-use crate::link::{Cancel, Clock, RealClock, UdpShout};
+use crate::link::{Cancel, Clock, RealClock, UdpBroadcast};
 
 /// A question to all, and its answers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub struct FoundDevice {
 }
 
 impl FoundDevice {
-    fn of(found: &Found) -> Self {
+    fn of(found: &DiscoveredDevice) -> Self {
         let identity = &found.identity.identity;
         FoundDevice {
             address: found.address,
@@ -69,11 +69,11 @@ impl Discovery {
 
 /// Asks who is there in this network, in place of a question to all who are in reach. Given by tests only.
 #[derive(Clone)]
-pub struct Discover(Arc<dyn Fn() -> Result<Vec<Found>, Error> + Send + Sync>);
+pub struct Discover(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
 impl Discover {
     /// Asks so.
-    pub fn new(ask: impl Fn() -> Result<Vec<Found>, Error> + Send + Sync + 'static) -> Self {
+    pub fn new(ask: impl Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync + 'static) -> Self {
         Discover(Arc::new(ask))
     }
 }
@@ -88,9 +88,9 @@ impl fmt::Debug for Discover {
 ///
 /// # Errors
 /// The request could not be sent.
-fn ask_all() -> Result<Vec<Found>, Error> {
+fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
-    let mut shout = UdpShout::to_all(EXPLICIT_PORT, clock.clone())?;
+    let mut shout = UdpBroadcast::to_all(EXPLICIT_PORT, clock.clone())?;
     discover(&mut shout, &*clock, &Cancel::default())
 }
 
@@ -137,7 +137,7 @@ impl Finder for DiscoveryFinder {
             DiscoveryAction::Choose(at) => {
                 let devices = self.discovery.as_ref().map(Discovery::devices).unwrap_or_default();
                 let Some(device) = devices.get(at) else { return };
-                form.way = HiperdriveWay::Network;
+                form.kind = HiperdriveLinkKind::Network;
                 form.host = device.address.to_string();
                 form.tcp_port = if device.port == EXPLICIT_PORT { String::new() } else { device.port.to_string() };
             }

@@ -31,7 +31,7 @@ impl Drafted for Unit {
     }
 
     fn edited(&self) -> Edits {
-        self.staged.kept()
+        self.staged.saved_edits()
     }
 
     fn take_edits(&mut self, edits: Edits) {

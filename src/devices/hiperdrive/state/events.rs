@@ -84,7 +84,7 @@ impl Kind for Hiperdrive {
         words::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         words::loss(error)
     }
 }
@@ -124,7 +124,7 @@ impl Unit {
         (self.is_stale, self.looks_at_all) = (true, true);
         services.log.settle(RULES, Some(&self.session.name()));
         let text = words::lost(self.moves.view().lost.as_ref());
-        services.tell(Severity::Error, vec![text], Some(&self.session.name()));
+        services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
     /// A fault that was told is over once no drive has one: they are told alike, whichever has it.
@@ -202,7 +202,7 @@ impl SessionEvents for Unit {
             DeviceMessage::RulesUnread(why) => {
                 self.moves.stop();
                 let texts = vec![TEXTS.text(RULES), words::device(&why)];
-                services.tell(Severity::Error, texts, Some(&self.session.name()));
+                services.notify(Severity::Error, texts, Some(&self.session.name()));
             }
             DeviceMessage::RulesRead => services.log.settle(RULES, Some(&self.session.name())),
         }

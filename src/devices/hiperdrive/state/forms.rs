@@ -1,7 +1,7 @@
 //! Numbers that are typed for a drive, and what they are to do.
 
 use super::rows::Row;
-use super::ruler::{Beyond, Measure};
+use super::ruler::{Measure, PositionRangeError};
 use super::staged::Edit;
 use super::unit::Unit;
 use crate::app::{Text, number};
@@ -48,8 +48,8 @@ pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
         return Err(TEXTS.text("hd_entry.whole_steps").with("entry", text.trim()));
     }
     unit.ruler(unit.drive()).steps(value, measure).map_err(|beyond| match beyond {
-        Beyond::NoPitch => TEXTS.text("hd_entry.no_pitch"),
-        Beyond::Bits { least, most } => TEXTS
+        PositionRangeError::NoPitch => TEXTS.text("hd_entry.no_pitch"),
+        PositionRangeError::Bits { least, most } => TEXTS
             .text("hd_entry.beyond")
             .with("entry", text.trim())
             .with_number("least", least, 0)

@@ -35,7 +35,7 @@ impl DeviceType for Unit {
         if let Some((profile, ())) = profile {
             unit.staged = Staged::of_profile(profile.image.clone());
             let drives = profile.identity.drives.iter();
-            unit.staged.know(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
+            unit.staged.set_families(drives.filter_map(|own| Some((own.number, own.family()?))).collect());
             unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
         }
         unit

@@ -22,7 +22,7 @@ pub struct Leds {
 
 /// An LED, or the two of a port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Lamp {
+pub enum Led {
     /// RS485.
     Drives,
     /// MS or NS.
@@ -53,16 +53,16 @@ impl Default for Leds {
     }
 }
 
-impl Lamp {
+impl Led {
     /// All of them, as they are drawn.
-    pub const ALL: [Lamp; 4] = [Lamp::Drives, Lamp::Bus(BusLamp::Module), Lamp::Bus(BusLamp::Network), Lamp::Port];
+    pub const ALL: [Led; 4] = [Led::Drives, Led::Bus(BusLamp::Module), Led::Bus(BusLamp::Network), Led::Port];
 
     /// Returns the label printed beside the LED.
     pub const fn name(self) -> &'static str {
         match self {
-            Lamp::Drives => "RS485",
-            Lamp::Bus(lamp) => lamp.name(),
-            Lamp::Port => "P1/P2",
+            Led::Drives => "RS485",
+            Led::Bus(lamp) => lamp.name(),
+            Led::Port => "P1/P2",
         }
     }
 }
@@ -91,32 +91,32 @@ impl Leds {
     }
 
     /// Changes an LED to its next possible state.
-    pub fn click(&mut self, lamp: Lamp) {
+    pub fn click(&mut self, lamp: Led) {
         match lamp {
-            Lamp::Drives => {
+            Led::Drives => {
                 let lights: Vec<DriveLight> = self.subject().rows().iter().map(|row| row.light).collect();
                 self.drives = next(&lights, self.drives);
             }
-            Lamp::Bus(BusLamp::Module) => self.module = next(&BUS, self.module),
-            Lamp::Bus(BusLamp::Network) => self.network = next(&BUS, self.network),
-            Lamp::Port => self.port = next(&[PortLight::Off, PortLight::Link, PortLight::Active], self.port),
+            Led::Bus(BusLamp::Module) => self.module = next(&BUS, self.module),
+            Led::Bus(BusLamp::Network) => self.network = next(&BUS, self.network),
+            Led::Port => self.port = next(&[PortLight::Off, PortLight::Link, PortLight::Active], self.port),
         }
     }
 
     /// Returns the meaning of an LED in its present state.
-    pub fn meaning_of(&self, lamp: Lamp) -> LedMeaning {
+    pub fn meaning_of(&self, lamp: Led) -> LedMeaning {
         let (severity, meaning, remedy) = match lamp {
-            Lamp::Drives => drives(self.subject(), self.drives),
-            Lamp::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
-            Lamp::Port => port(self.port),
+            Led::Drives => drives(self.subject(), self.drives),
+            Led::Bus(lamp) => bus(lamp, if lamp == BusLamp::Module { self.module } else { self.network }),
+            Led::Port => port(self.port),
         };
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
     /// Returns the state of an LED in words.
-    pub fn shown(&self, lamp: Lamp) -> Text {
+    pub fn state_text(&self, lamp: Led) -> Text {
         TEXTS.text(match lamp {
-            Lamp::Drives => match self.drives {
+            Led::Drives => match self.drives {
                 DriveLight::Off => "hd_led.off",
                 DriveLight::Green => "hd_led.green",
                 DriveLight::Red => "hd_led.red",
@@ -125,7 +125,7 @@ impl Leds {
                 DriveLight::RedGreenFlashing => "hd_led.red_green_flashing",
                 DriveLight::Alternating => "hd_led.alternating",
             },
-            Lamp::Bus(lamp) => match if lamp == BusLamp::Module { self.module } else { self.network } {
+            Led::Bus(lamp) => match if lamp == BusLamp::Module { self.module } else { self.network } {
                 BusLight::Off => "hd_led.off",
                 BusLight::Green => "hd_led.green",
                 BusLight::GreenFlashing => "hd_led.green_flashing",
@@ -133,7 +133,7 @@ impl Leds {
                 BusLight::RedFlashing => "hd_led.red_flashing",
                 BusLight::Alternating => "hd_led.alternating",
             },
-            Lamp::Port => match self.port {
+            Led::Port => match self.port {
                 PortLight::Off => "hd_led.off",
                 PortLight::Link => "hd_led.green",
                 PortLight::Active => "hd_led.green_yellow",
@@ -230,19 +230,19 @@ mod tests {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             for row in leds.subject().rows() {
                 leds.drives = row.light;
-                let said = leds.meaning_of(Lamp::Drives);
+                let said = leds.meaning_of(Led::Drives);
                 same(&said.meaning, row.meaning);
                 same(&said.remedy, row.remedy);
             }
         }
         for row in BUS_LEDS {
             let leds = Leds { module: row.light, network: row.light, ..Leds::default() };
-            let said = leds.meaning_of(Lamp::Bus(row.lamp));
+            let said = leds.meaning_of(Led::Bus(row.lamp));
             same(&said.meaning, row.meaning);
             same(&said.remedy, row.remedy);
         }
         for row in PORT_LEDS {
-            let said = Leds { port: row.light, ..Leds::default() }.meaning_of(Lamp::Port);
+            let said = Leds { port: row.light, ..Leds::default() }.meaning_of(Led::Port);
             same(&said.meaning, row.meaning);
             same(&said.remedy, row.remedy);
         }
@@ -254,14 +254,14 @@ mod tests {
             let mut leds = Leds { hub, s3, ..Leds::default() };
             let mut seen = Vec::new();
             for _ in 0..lights {
-                leds.click(Lamp::Drives);
+                leds.click(Led::Drives);
                 assert!(leds.subject().row(leds.drives).is_some() && !seen.contains(&leds.drives));
                 seen.push(leds.drives);
             }
-            leds.click(Lamp::Drives);
+            leds.click(Led::Drives);
             assert_eq!(seen.first(), Some(&leds.drives));
         }
-        for (lamp, lights) in [(Lamp::Bus(BusLamp::Module), 6), (Lamp::Bus(BusLamp::Network), 6), (Lamp::Port, 3)] {
+        for (lamp, lights) in [(Led::Bus(BusLamp::Module), 6), (Led::Bus(BusLamp::Network), 6), (Led::Port, 3)] {
             let mut leds = Leds::default();
             let mut said = Vec::new();
             (0..lights).for_each(|_| {

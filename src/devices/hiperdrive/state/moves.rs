@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::devices::hiperdrive::jobs::{DriveView, Glance, Motion, MotionSnapshot};
+use crate::devices::hiperdrive::jobs::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
 use crate::devices::hiperdrive::procedures::dead_man::{
     Effort, Ended, HEARD, Lock, MotionRequest, Motive, Permit, Phase,
 };
@@ -47,7 +47,7 @@ struct Act {
     /// The drive moves by it, or has a job that waits.
     moves: bool,
     /// Its end has been reported.
-    told: bool,
+    is_reported: bool,
 }
 
 /// The kind of an act, which determines how it is kept alive.
@@ -89,7 +89,7 @@ impl Moves {
         (self.experts, self.act) = (BTreeSet::new(), None);
         self.limits_changed.clear();
         self.taken = false;
-        let Glance { at, view, limits } = motion.glance();
+        let DrivesSnapshot { at, view, limits } = motion.glance();
         (self.looked, self.view, self.limits) = (at, view, limits);
         self.motion = Some(motion);
     }
@@ -128,7 +128,7 @@ impl Moves {
     /// Looks at what the drives say, and at what they may do.
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
-        let Glance { at, view, limits } = motion.glance();
+        let DrivesSnapshot { at, view, limits } = motion.glance();
         self.taken |= view.open && !self.view.open;
         for (drive, own) in &limits {
             let before = self.limits.get(drive).map(|before| (before.rules(), before.locks()));
@@ -151,12 +151,12 @@ impl Moves {
 
     /// Returns the end of the last act, once.
     pub(super) fn take_end(&mut self) -> Option<(DriveNumber, Ended)> {
-        let act = self.act.filter(|act| !act.told)?;
+        let act = self.act.filter(|act| !act.is_reported)?;
         let (number, ended) = self.drive(act.drive)?.ended?;
         if number < act.number {
             return None;
         }
-        self.act = Some(Act { told: true, ..act });
+        self.act = Some(Act { is_reported: true, ..act });
         Some((act.drive, ended))
     }
 
@@ -169,7 +169,7 @@ impl Moves {
         self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, wish);
         let moves = wish.moves() || wish == MotionRequest::Pause;
-        self.act = Some(Act { drive, number, kind, moves, told: false });
+        self.act = Some(Act { drive, number, kind, moves, is_reported: false });
         Some(number)
     }
 

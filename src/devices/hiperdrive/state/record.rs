@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::SpeedScale;
 
 /// A value recorded with the position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Beside {
+pub(super) enum RecordedValue {
     /// The drive's own speed, in rpm.
     Speed,
     /// The target, in steps of this ruler.
@@ -23,7 +23,7 @@ pub(super) enum Beside {
 /// The recorder of a drive, and what came last.
 #[derive(Debug, Default)]
 pub struct Record {
-    pub(super) track: Track<Beside>,
+    pub(super) track: Track<RecordedValue>,
     last: Option<DriveReading>,
 }
 
@@ -36,7 +36,7 @@ impl Record {
 
     /// Records that readings were dropped before the next ones.
     pub(super) fn lose(&mut self, dropped: u64) {
-        self.track.lose(dropped);
+        self.track.note_dropped(dropped);
     }
 
     /// Takes a reading, with the drive's target at that time.
@@ -51,14 +51,15 @@ impl Record {
         };
         self.track.add(&[sighting], &meaning(ruler));
         // A recorded target stays among the watched values without control.
-        let has_target = target.is_some() || self.track.watched().iter().any(|own| matches!(own, Beside::Target(_)));
-        let mut beside = vec![Beside::Speed];
-        beside.extend(has_target.then_some(Beside::Target(ruler)));
+        let has_target =
+            target.is_some() || self.track.watched().iter().any(|own| matches!(own, RecordedValue::Target(_)));
+        let mut beside = vec![RecordedValue::Speed];
+        beside.extend(has_target.then_some(RecordedValue::Target(ruler)));
         self.track.watch(&beside);
         let watching = |value| Watching { at, value: Some(value), is_warned: false, never: None };
-        self.track.add_watched(&Beside::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
+        self.track.add_watched(&RecordedValue::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
         if let Some(target) = target {
-            self.track.add_watched(&Beside::Target(ruler), &watching(Value::Whole(i64::from(target))));
+            self.track.add_watched(&RecordedValue::Target(ruler), &watching(Value::Whole(i64::from(target))));
         }
         self.last = Some(reading);
     }
@@ -93,26 +94,26 @@ fn meaning(ruler: Ruler) -> Meaning {
     meaning
 }
 
-impl Watchable for Beside {
+impl Watchable for RecordedValue {
     fn is_whole(&self) -> bool {
-        matches!(self, Beside::Target(_))
+        matches!(self, RecordedValue::Target(_))
     }
 
     /// The pitch of a spindle is only how steps are seen; with another scale a step is another distance.
     fn continues(&self, other: &Self) -> bool {
         match (self, other) {
-            (Beside::Target(own), Beside::Target(other)) => own.scale == other.scale,
+            (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,
             _ => self == other,
         }
     }
 
     fn line(&self, group: GroupId) -> Series {
         match self {
-            Beside::Speed => {
+            RecordedValue::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 1)];
                 Series::of(group, 0, TEXTS.text("hd_live.speed"), "drive speed".to_owned(), scales)
             }
-            Beside::Target(ruler) => {
+            RecordedValue::Target(ruler) => {
                 let [scales, ..] = meaning(*ruler).scales;
                 Series::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
             }

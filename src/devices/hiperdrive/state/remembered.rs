@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::ruler::Measure;
 use super::unit::Unit;
-use crate::app::{Marks, RememberedDrives, RemembersDrives};
+use crate::app::{RememberedDrives, RemembersDrives, SettingsReadState};
 use crate::devices::hiperdrive::protocol::{DriveNumber, Length};
 
 /// The values last exchanged between a device's session and the settings.
@@ -65,11 +65,11 @@ impl RemembersDrives for Unit {
         }
     }
 
-    fn marks(&self) -> Marks {
+    fn marks(&self) -> SettingsReadState {
         self.marks
     }
 
-    fn set_marks(&mut self, marks: Marks) {
+    fn set_marks(&mut self, marks: SettingsReadState) {
         self.marks = marks;
     }
 }

@@ -140,7 +140,7 @@ impl Unit {
 
     /// Reports something about a drive, which is named if there are others.
     pub(super) fn tell_of(&self, drive: DriveNumber, severity: Severity, texts: Vec<Text>, services: &mut Services) {
-        services.tell_of_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
+        services.notify_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
     }
 
     /// The name of a drive; `None` where there is only one.

@@ -88,7 +88,7 @@ impl Unit {
             number,
             name: explained::parameter(number),
             kind,
-            shown: value.as_ref().map(|value| words::shown(number, value)).unwrap_or_default(),
+            shown: value.as_ref().map(|value| words::value_text(number, value)).unwrap_or_default(),
             meaning: meant.and_then(|value| self.meaning(number, &value)),
             unit: words::unit(kind),
             range: kind.allowed(travel).filter(|_| is_editable).map(explained::range),

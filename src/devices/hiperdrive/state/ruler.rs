@@ -14,7 +14,7 @@ pub struct Ruler {
 
 /// A number that no position has.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum Beyond {
+pub enum PositionRangeError {
     /// Without room in 32 bits: the least and the greatest that have it.
     #[error("a position is between {least} and {most}")]
     Bits {
@@ -57,16 +57,16 @@ impl Ruler {
     /// The step that is nearest.
     ///
     /// # Errors
-    /// [`Beyond`] where there is none.
-    pub fn steps(self, value: f64, measure: Measure) -> Result<i32, Beyond> {
-        let unit = self.steps_in(measure).ok_or(Beyond::NoPitch)?;
+    /// [`PositionRangeError`] where there is none.
+    pub fn steps(self, value: f64, measure: Measure) -> Result<i32, PositionRangeError> {
+        let unit = self.steps_in(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
         // A cast of what is within is exact.
         if (least..=most).contains(&steps) {
             Ok(steps as i32)
         } else {
-            Err(Beyond::Bits { least: least / unit, most: most / unit })
+            Err(PositionRangeError::Bits { least: least / unit, most: most / unit })
         }
     }
 
@@ -115,11 +115,11 @@ mod tests {
         assert_eq!(hundredths().steps(12.344, Measure::Millimetres), Ok(1234));
         assert_eq!(hundredths().steps(-0.005, Measure::Millimetres), Ok(-1));
         assert_eq!(SPINDLE.steps(90.0, Measure::Degrees), Ok(16_384));
-        assert_eq!(Ruler::FACTORY.steps(1.0, Measure::Millimetres), Err(Beyond::NoPitch));
+        assert_eq!(Ruler::FACTORY.steps(1.0, Measure::Millimetres), Err(PositionRangeError::NoPitch));
         // 32768 turns have no room: 2³¹ / 65536.
         let beyond = SPINDLE.steps(32_768.0, Measure::Turns).unwrap_err();
         assert!(
-            matches!(beyond, Beyond::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
+            matches!(beyond, PositionRangeError::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
         );
     }
 

@@ -3,7 +3,7 @@
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
 
-use super::axis::{Ask, Axis, AxisAction, AxisStep, Button, Device, Seen, report};
+use super::axis::{Axis, AxisAction, AxisStep, Button, Device, DriveFacts, DriveRequest, report};
 use super::review::ReviewState;
 use super::unit::Unit;
 use crate::app::action::{Action as StudioAction, Done};
@@ -51,14 +51,14 @@ impl Unit {
     }
 
     /// Returns the known facts of a drive, for its set-up.
-    pub fn seen(&self, drive: DriveNumber) -> Seen {
+    pub fn seen(&self, drive: DriveNumber) -> DriveFacts {
         let view = self.moves.drive(drive);
         let actual = self.actual(drive);
         let is_heard = !self.moves.is_open() || self.moves.is_heard();
         let position = actual.filter(|own| own.status.is_present() && is_heard).map(|own| own.position);
         let errors = self.drive_status(drive).filter(|own| own.faults > 0);
         let family = self.drive_identity(drive).and_then(|own| own.variant.row()).map(|row| row.family);
-        Seen {
+        DriveFacts {
             connected: self.session.phase == Phase::Connected && self.session.line().is_some(),
             busy: self.session.is_busy() || self.session.review.is_some(),
             stale: self.is_stale,
@@ -122,7 +122,7 @@ impl Unit {
                 // The entries only served for a preview until now. Positions are measured on this spindle everywhere.
                 let confirms = axis.step() == AxisStep::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
                 let pitch = axis.entries().pitch().ok().filter(|_| confirms);
-                axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen }, &when);
+                axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen }, &when);
                 if let Some(pitch) = pitch {
                     self.pitches.insert(drive, pitch);
                 }
@@ -172,33 +172,40 @@ impl Unit {
     }
 
     /// Carries out a button's request. Everything persistent goes through a plan and its review.
-    fn carry_out(&mut self, drive: DriveNumber, button: Button, ask: Ask, seen: &Seen, services: &mut Services) {
+    fn carry_out(
+        &mut self,
+        drive: DriveNumber,
+        button: Button,
+        ask: DriveRequest,
+        seen: &DriveFacts,
+        services: &mut Services,
+    ) {
         match &ask {
-            Ask::Try(values) | Ask::Restore(values) => {
+            DriveRequest::Try(values) | DriveRequest::Restore(values) => {
                 let numbered =
                     |(number, value): &(u16, i64)| Some((ParameterNumber::of_drive(*number, drive)?, *value));
                 let image = Image { values: values.iter().filter_map(numbered).collect() };
                 self.plan(Change::Try(Box::new(image)), services);
             }
-            Ask::SetPosition(position) => {
+            DriveRequest::SetPosition(position) => {
                 self.plan(Change::SetPosition { drive, position: *position, save: false }, services);
             }
-            Ask::Save => self.plan(Change::Do(Service::Save), services),
-            Ask::BelieveRestart => {}
-            Ask::Acknowledge => {
+            DriveRequest::Save => self.plan(Change::Do(Service::Save), services),
+            DriveRequest::BelieveRestart => {}
+            DriveRequest::Acknowledge => {
                 if let Err(why) = self.may(drive, MotionRequest::Acknowledge) {
                     return self.tell_of(drive, Severity::Warning, vec![why], services);
                 }
                 self.moves.want(drive, MotionRequest::Acknowledge);
             }
-            Ask::ConfirmLimits => {
+            DriveRequest::ConfirmLimits => {
                 if !self.confirm_limits(drive, services) {
                     return;
                 }
             }
-            Ask::Take => self.act(super::HiperdriveAction::Take, services),
-            Ask::Give => self.act(super::HiperdriveAction::Give, services),
-            Ask::Move(target) => {
+            DriveRequest::Take => self.act(super::HiperdriveAction::Take, services),
+            DriveRequest::Give => self.act(super::HiperdriveAction::Give, services),
+            DriveRequest::Move(target) => {
                 let wish = MotionRequest::Move { target: *target, effort: Effort::JOG };
                 if let Err(why) = self.may(drive, wish) {
                     return self.tell_of(drive, Severity::Warning, vec![why], services);
@@ -209,7 +216,7 @@ impl Unit {
                 }
                 return;
             }
-            Ask::PowerCycle => {
+            DriveRequest::PowerCycle => {
                 if let Some(target) = &self.target {
                     target.power_cycle();
                     self.switched = true;
@@ -220,7 +227,9 @@ impl Unit {
             }
         }
         let begins = match ask {
-            Ask::Try(_) | Ask::Restore(_) | Ask::SetPosition(_) | Ask::Save => self.session.review.is_some(),
+            DriveRequest::Try(_) | DriveRequest::Restore(_) | DriveRequest::SetPosition(_) | DriveRequest::Save => {
+                self.session.review.is_some()
+            }
             _ => true,
         };
         if let Some(axis) = self.axes.get_mut(&drive).filter(|_| begins) {
@@ -239,7 +248,7 @@ impl Unit {
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),
             _ => None,
         });
-        let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
         for (drive, seen) in seen {
             let Some(axis) = self.axes.get_mut(&drive) else { continue };
             if !seen.connected {
@@ -260,7 +269,7 @@ impl Unit {
     /// All parameters were read: what was saved has survived, or not.
     pub(super) fn axes_surveyed(&mut self) {
         let switched = std::mem::take(&mut self.switched);
-        let seen: Vec<(DriveNumber, Seen)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
+        let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();
         for (drive, seen) in seen {
             if let Some(axis) = self.axes.get_mut(&drive) {
                 axis.surveyed(&seen, switched);

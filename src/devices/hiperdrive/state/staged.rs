@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use edit::{Edit, EditError, LimitsStay};
+pub use edit::{Edit, EditError, LimitsPolicy};
 pub use mark::Mark;
 
 use crate::app::PendingEdits;
@@ -24,7 +24,7 @@ use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, Paramete
 
 /// The values that the edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Ground {
+enum BaseSource {
     /// A device: what was not read is not known.
     #[default]
     Device,
@@ -35,7 +35,7 @@ enum Ground {
 /// The base, the edited values, and the steps of undo and redo.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
-    ground: Ground,
+    base_source: BaseSource,
     /// The values of the device or the profile; both or none.
     base: Option<Image>,
     wanted: Option<Image>,
@@ -75,11 +75,11 @@ pub fn is_editable(row: &ParameterRow) -> bool {
 impl Staged {
     /// Creates the edits of a profile, which can also gain values that it does not have.
     pub fn of_profile(image: Image) -> Self {
-        Staged { ground: Ground::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
+        Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
 
     /// The drives are these: what they turn bounds their limits from now on.
-    pub(super) fn know(&mut self, families: Families) {
+    pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }
 
@@ -90,7 +90,7 @@ impl Staged {
             self.base = Some(image);
             return;
         }
-        let edits = self.kept();
+        let edits = self.saved_edits();
         self.waiting.clear();
         self.history.forget();
         (self.base, self.wanted) = (Some(image.clone()), Some(image));
@@ -116,12 +116,12 @@ impl Staged {
     }
 
     const fn is_device(&self) -> bool {
-        matches!(self.ground, Ground::Device)
+        matches!(self.base_source, BaseSource::Device)
     }
 
     /// Forgets everything: another device.
     pub fn clear(&mut self) {
-        *self = Staged { ground: self.ground, ..Staged::default() };
+        *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
 
     /// Returns the values of the device or the profile; `None` if nothing was read.
@@ -180,7 +180,7 @@ impl Staged {
     /// Why it cannot be.
     pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
-        edit::edited((base, wanted), edit, self.ground, &self.families)
+        edit::edited((base, wanted), edit, self.base_source, &self.families)
     }
 
     fn step(&mut self, after: Image) -> bool {
@@ -188,7 +188,7 @@ impl Staged {
     }
 
     /// The edits, for a draft on disk; also those that wait for their parameter to be read.
-    pub fn kept(&self) -> Vec<SavedEdit> {
+    pub fn saved_edits(&self) -> Vec<SavedEdit> {
         let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()
     }

@@ -5,7 +5,7 @@ use super::staged::is_editable;
 use super::unit::Unit;
 use crate::app::services::Services;
 use crate::app::session::{Drafted, Saved, WithMemory};
-use crate::app::{Marks, Severity, Text};
+use crate::app::{SettingsReadState, Severity, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::procedures::{DriveLimits, DriveReading, Identity, LimitsSeen, Survey};
 use crate::devices::hiperdrive::profile::Image;
@@ -27,10 +27,10 @@ impl Unit {
         let known = self.survey.as_ref().map(|own| own.wrong_lengths.as_slice()).unwrap_or_default();
         for error in survey.wrong_lengths.iter().filter(|error| !known.contains(error)) {
             let text = words::wrong_length(error);
-            services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+            services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
         }
         let drives = survey.identity.drives.iter();
-        self.staged.know(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());
+        self.staged.set_families(drives.filter_map(|own| Some((own.number, own.variant.row()?.family))).collect());
         self.staged.refresh(image);
         self.survey = Some(survey);
         self.readings.clear();
@@ -66,7 +66,7 @@ impl Unit {
     /// also when control is taken.
     pub(super) fn notice_limits(&mut self) {
         if self.moves.take_taken() {
-            (self.is_stale, self.marks) = (true, Marks::Unread);
+            (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
         }
         for drive in self.moves.take_limits_changed() {
             if self.is_limited_otherwise(drive) {
@@ -92,7 +92,7 @@ impl Unit {
     pub(super) fn why_unread(&self, drive: DriveNumber) -> Option<Text> {
         if self.is_stale {
             Some(words::lock(Lock::Unread))
-        } else if self.moves.is_open() && self.marks != Marks::Read {
+        } else if self.moves.is_open() && self.marks != SettingsReadState::Read {
             Some(TEXTS.text("hd_lock.settings"))
         } else if self.moves.is_open() && !self.moves.are_limits_valid(drive) {
             Some(words::lock(Lock::Outdated))

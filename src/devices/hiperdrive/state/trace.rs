@@ -36,7 +36,7 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
         return if is_reply { Explained::broken(explained::damage(&Damage::Empty)) } else { name.into() };
     };
     if !is_reply {
-        return Request::parse(message).map_or(name, |request| vec![asked(&request)]).into();
+        return Request::parse(message).map_or(name, |request| vec![item_text(&request)]).into();
     }
     match Reply::parse(message) {
         Ok(reply) if reply.status == GeneralStatus::OK => vec![TEXTS.text("hd_trace.done")].into(),
@@ -49,7 +49,7 @@ fn reported(text: Text) -> Explained {
     Explained { meaning: vec![text], fault: Some(TraceFault::Reported) }
 }
 
-fn asked(request: &Request) -> Text {
+fn item_text(request: &Request) -> Text {
     let attribute = request.path.number(LogicalKind::Attribute);
     let number = request.class().zip(attribute).and_then(|(class, own)| ParameterNumber::of_attribute(class, own));
     match number {

@@ -15,7 +15,7 @@ use super::unsaved::Unsaved;
 use crate::app::check::CheckLine;
 use crate::app::live_session::LiveSession;
 use crate::app::session::{Phase, Session, Source};
-use crate::app::{Marks, PendingEdits, Text};
+use crate::app::{PendingEdits, SettingsReadState, Text};
 use crate::devices::hiperdrive::jobs::Hiperdrive;
 use crate::devices::hiperdrive::procedures::{
     DriveIdentity, DriveLimits, DriveReading, DriveStatus, Identity, Network, Status, Survey,
@@ -64,7 +64,7 @@ pub struct Unit {
     /// The values exchanged with the settings; `None` before the first exchange.
     pub(super) exchanged: Option<Exchanged>,
     /// Whether another window has marked limits since control was taken.
-    pub(super) marks: Marks,
+    pub(super) marks: SettingsReadState,
     /// The last reading of each drive without control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
     /// Limits and scaling may be others than those that were read: control was taken since.
@@ -100,7 +100,7 @@ impl Unit {
             switched: false,
             unsaved: Unsaved::default(),
             exchanged: None,
-            marks: Marks::Unread,
+            marks: SettingsReadState::Unread,
             readings: BTreeMap::new(),
             is_stale: false,
             watched: DriveNumber::FIRST,

@@ -12,7 +12,7 @@ use crate::devices::hiperdrive::state::explain as hiperdrive;
 use crate::devices::hiperdrive::state::explain as words;
 
 /// A value as it is written: words of bits and codes in hexadecimal.
-pub fn shown(number: ParameterNumber, value: &Value) -> String {
+pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
         Value::Number(value) if matches!(number.base(), 101 | 105 | 108..=118) => format!("0x{value:04X}"),

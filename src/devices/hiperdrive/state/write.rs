@@ -8,7 +8,7 @@ use super::unsaved::Unsaved;
 use super::words;
 use crate::app::review::OpWords;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, Known, Saved, WithMemory, some, without_edits};
+use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperdrive::jobs::{Change, Committed, Hiperdrive, HiperdriveJob, Prepared};
 use crate::devices::hiperdrive::profile::{
@@ -94,14 +94,14 @@ impl Saved for Unit {
         some(&self.marks(), words::mark)
     }
 
-    fn known_body(&self) -> Option<Known> {
+    fn known_body(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
         // Values that the device refuses are in no profile; damaged ones should have been in this one.
         let missing: Vec<Text> = survey.wrong_lengths.iter().map(|own| explained::item(Item(own.number))).collect();
         if !missing.is_empty() {
             return Some(Err(missing));
         }
-        let kept = survey.identity.kept().filter_map(|number| Some((number, base.get(number)?)));
+        let kept = survey.identity.stored_parameters().filter_map(|number| Some((number, base.get(number)?)));
         let image = Image { values: kept.collect() };
         let profile = HiperdriveProfile::of(survey.identity.profile(), image);
         let remarks = without_edits(self.staged.count()).into_iter().collect();

@@ -13,7 +13,7 @@ use egui::{RichText, Ui};
 use crate::app::{Action, Severity, Text};
 use crate::devices::hiperdrive::protocol::ErrorCode;
 use crate::devices::hiperdrive::state::axis::{
-    Axis, AxisAction as Run, AxisStep, Button, End, Entries, Reached, Seen, end_lines, words,
+    Axis, AxisAction as Run, AxisStep, Button, DriveFacts, End, Entries, Reached, end_lines, words,
 };
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
@@ -43,7 +43,7 @@ impl AxisUiState {
 pub(crate) struct AxisPicture<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
-    seen: &'a Seen,
+    seen: &'a DriveFacts,
     /// For how long the step has been looked at.
     looked_at: Duration,
 }
@@ -150,10 +150,10 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
             Reached::Failed => StepState::Failed,
             Reached::Ahead => StepState::ToCome,
         };
-        let told = matches!(reached, Reached::Done | Reached::Failed);
+        let has_result = matches!(reached, Reached::Done | Reached::Failed);
         let found = match (step, reached) {
             (AxisStep::Reference, Reached::Skipped) => Some(TEXTS.text("hd_axis.no_reference")),
-            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| told),
+            _ => words::found(shown.axis, step, shown.axis.as_seen(shown.seen)).filter(|_| has_result),
         };
         Line {
             title: theme.words(&words::title(step)),
@@ -196,7 +196,7 @@ fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
             shown.push(actions, Run::Edit(Box::new(entries.clone())));
         }
         ui.add_space(theme.space.groups);
-        foot(ui, theme, shown, actions);
+        buttons_ui(ui, theme, shown, actions);
         ui.add_space(theme.space.between);
         messages(ui, theme, shown, &entries);
     });
@@ -253,7 +253,7 @@ fn live(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
 }
 
 /// Draws the buttons Back, Cancel and Next. Before a step is settled it can only be cancelled, which stops the motion.
-fn foot(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
+fn buttons_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let settled = Axis::may_leave(shown.looked_at).is_ok();
     let step = axis.step();

@@ -5,7 +5,7 @@ use egui::Ui;
 use crate::app::connect::{Connect as Dialog, ConnectAction as Connect};
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{
-    Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveWay, TEXTS, VirtualHub,
+    Discovery, DiscoveryAction, DiscoveryFinder, HiperdriveForm, HiperdriveLinkKind, TEXTS, VirtualHub,
 };
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{button, choice, enabled_button, entry, paragraph, problem, spinner};
@@ -29,15 +29,15 @@ impl TypedConnectForm for HiperdriveConnectForm {
         actions: &mut Vec<Action>,
     ) {
         let ways = [
-            (HiperdriveWay::Virtual, "connect.virtual"),
-            (HiperdriveWay::Network, "connect.hd_network"),
-            (HiperdriveWay::Replay, "connect.replay"),
+            (HiperdriveLinkKind::Virtual, "connect.virtual"),
+            (HiperdriveLinkKind::Network, "connect.hd_network"),
+            (HiperdriveLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.way, ways);
+        segments(ui, theme, &mut form.kind, ways);
         ui.add_space(theme.space.between);
-        match form.way {
-            HiperdriveWay::Virtual => simulated(ui, theme, form),
-            HiperdriveWay::Network => {
+        match form.kind {
+            HiperdriveLinkKind::Virtual => simulated(ui, theme, form),
+            HiperdriveLinkKind::Network => {
                 place(
                     ui,
                     theme,
@@ -50,10 +50,10 @@ impl TypedConnectForm for HiperdriveConnectForm {
                 let finder = dialog.finder::<DiscoveryFinder>();
                 discovery(ui, theme, finder.and_then(|own| own.discovery.as_ref()), actions);
             }
-            HiperdriveWay::Replay => recording(ui, theme, &mut form.file, actions),
+            HiperdriveLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
-        if form.way != HiperdriveWay::Replay && unfolded(ui, theme, more) {
-            if form.way == HiperdriveWay::Virtual {
+        if form.kind != HiperdriveLinkKind::Replay && unfolded(ui, theme, more) {
+            if form.kind == HiperdriveLinkKind::Virtual {
                 interval(ui, theme, form);
             }
             let word = say(theme, "connect.byte_order");

@@ -69,11 +69,11 @@ fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     let buckets: Vec<Bucket> = histogram.buckets().collect();
     let size = vec2(ui.available_width().max(0.0), BARS + WORDS);
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
-    let told: Vec<String> = buckets.iter().map(|bucket| format!("{} {}", span(bucket), bucket.count)).collect();
+    let values: Vec<String> = buckets.iter().map(|bucket| format!("{} {}", span(bucket), bucket.count)).collect();
     let label = say(theme, "hd_link.jitter");
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, &label);
-        info.current_text_value = Some(told.join(", "));
+        info.current_text_value = Some(values.join(", "));
         info
     });
     if !ui.is_rect_visible(rect) || buckets.is_empty() {

@@ -4,7 +4,7 @@ use egui::{Align2, Color32, FontId, Painter, Pos2, RichText, Shape, Stroke, Ui, 
 
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, PortLight};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::leds::{Lamp, Leds};
+use crate::devices::hiperdrive::state::leds::{Led, Leds};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{card, entry, name, options, paragraph, severity};
@@ -22,7 +22,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, LedsUiState(leds): &mut LedsU
         paragraph(ui, theme.label(say(theme, "hd_led.words")));
         device(ui, theme, leds);
         ui.add_space(theme.space.between);
-        for lamp in Lamp::ALL {
+        for lamp in Led::ALL {
             row(ui, theme, leds, lamp);
         }
     });
@@ -54,39 +54,39 @@ fn device(ui: &mut Ui, theme: &Theme, leds: &mut Leds) {
 }
 
 /// Draws an LED with its meaning.
-fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
+fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.horizontal_top(|ui| {
         lamp_ui(ui, theme, leds, lamp);
         ui.vertical(|ui| {
             ui.spacing_mut().item_spacing.y = theme.space.inside;
-            let said = leds.meaning_of(lamp);
-            let (icon, ink) = severity(theme, said.severity);
+            let meaning = leds.meaning_of(lamp);
+            let (icon, ink) = severity(theme, meaning.severity);
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icon).color(ink));
-                paragraph(ui, RichText::new(theme.words(&said.meaning)).font(theme.strong(theme.sizes.body)));
+                paragraph(ui, RichText::new(theme.words(&meaning.meaning)).font(theme.strong(theme.sizes.body)));
             });
-            paragraph(ui, theme.label(theme.words(&said.remedy)));
+            paragraph(ui, theme.label(theme.words(&meaning.remedy)));
         });
     });
     ui.add_space(theme.space.inside);
 }
 
 /// Pressed, it shows the next of what it can.
-fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Lamp) {
-    let shown = theme.words(&leds.shown(lamp));
+fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
+    let shown = theme.words(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
     let (rect, painter) = (response.rect, ui.painter());
     let middle = pos2(rect.left() + 24.0, rect.center().y);
     paint(painter, theme, middle, look(theme, leds, lamp));
     let text = pos2(rect.left() + 48.0, rect.center().y);
     let about = match lamp {
-        Lamp::Drives if leds.hub && leds.s3 != 0 => {
+        Led::Drives if leds.hub && leds.s3 != 0 => {
             theme.words(&TEXTS.text("hd_led.switch_drive").with("drive", leds.s3))
         }
-        Lamp::Drives => say(theme, "hd_led.what_drives"),
-        Lamp::Bus(BusLamp::Module) => say(theme, "hd_led.what_module"),
-        Lamp::Bus(BusLamp::Network) => say(theme, "hd_led.what_network"),
-        Lamp::Port => say(theme, "hd_led.what_port"),
+        Led::Drives => say(theme, "hd_led.what_drives"),
+        Led::Bus(BusLamp::Module) => say(theme, "hd_led.what_module"),
+        Led::Bus(BusLamp::Network) => say(theme, "hd_led.what_network"),
+        Led::Port => say(theme, "hd_led.what_port"),
     };
     let strong = theme.strong(theme.sizes.body);
     let named = painter.text(text, Align2::LEFT_BOTTOM, lamp.name(), strong, theme.palette.text.into());
@@ -107,12 +107,12 @@ struct LedStyle {
     blinks: bool,
 }
 
-fn look(theme: &Theme, leds: &Leds, lamp: Lamp) -> LedStyle {
+fn look(theme: &Theme, leds: &Leds, lamp: Led) -> LedStyle {
     let palette = theme.palette;
     let (green, red, yellow) = (Some(palette.good.into()), Some(palette.bad.into()), Some(palette.staged.into()));
     let look = |left, right, blinks| LedStyle { left, right, blinks };
     match lamp {
-        Lamp::Drives => match leds.drives {
+        Led::Drives => match leds.drives {
             DriveLight::Off => look(None, None, false),
             DriveLight::Green => look(green, green, false),
             DriveLight::Red => look(red, red, false),
@@ -120,7 +120,7 @@ fn look(theme: &Theme, leds: &Leds, lamp: Lamp) -> LedStyle {
             DriveLight::GreenFlashing => look(green, green, true),
             DriveLight::RedGreenFlashing | DriveLight::Alternating => look(red, green, true),
         },
-        Lamp::Bus(own) => match if own == BusLamp::Module { leds.module } else { leds.network } {
+        Led::Bus(own) => match if own == BusLamp::Module { leds.module } else { leds.network } {
             BusLight::Off => look(None, None, false),
             BusLight::Green => look(green, green, false),
             BusLight::GreenFlashing => look(green, green, true),
@@ -128,7 +128,7 @@ fn look(theme: &Theme, leds: &Leds, lamp: Lamp) -> LedStyle {
             BusLight::RedFlashing => look(red, red, true),
             BusLight::Alternating => look(red, green, true),
         },
-        Lamp::Port => match leds.port {
+        Led::Port => match leds.port {
             PortLight::Off => look(None, None, false),
             PortLight::Link => look(green, None, false),
             PortLight::Active => look(green, yellow, true),

@@ -60,7 +60,7 @@ impl TabPage for Page {
 
 impl Page {
     /// Returns whether edits on the page are written from it.
-    fn has_foot(self) -> bool {
+    fn has_edit_bar(self) -> bool {
         self == Page::Parameters
     }
 }
@@ -125,11 +125,11 @@ impl TypedDeviceView for HiperdriveView {
                 .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
                 .show(ui, |ui| bar::bar_ui(ui, theme, studio, unit, actions));
         }
-        if page.has_foot() {
+        if page.has_edit_bar() {
             egui::Panel::bottom(id.with("hiperdrive_foot"))
                 .frame(egui::Frame::NONE.inner_margin(sides(0, 8)))
                 .show_separator_line(false)
-                .show(ui, |ui| edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
+                .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
         }
         let frame = egui::Frame::NONE.inner_margin(sides(16, around.min(16)));
         let drive = unit.drive();

@@ -114,7 +114,7 @@ fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let aside = |ui: &mut Ui| {
         ui.allocate_space(vec2(0.0, ui.spacing().interact_size.y));
         if beside {
-            news(ui, theme, unit, &mut acts);
+            status_ui(ui, theme, unit, &mut acts);
         }
     };
     card_with(ui, theme, TEXTS.text("hd_states.title"), aside, |ui| {
@@ -131,7 +131,7 @@ fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
         }
         if !beside {
             let top = ui.cursor().top();
-            ui.horizontal_wrapped(|ui| news(ui, theme, unit, actions));
+            ui.horizontal_wrapped(|ui| status_ui(ui, theme, unit, actions));
             ui.add_space((top + SAID - ui.cursor().top()).max(0.0));
         }
     });
@@ -139,7 +139,7 @@ fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
 }
 
 /// Draws a failure with the way out of it; or the state of the last act.
-fn news(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drive = unit.drive();
     if matches!(unit.state(drive), Some(State::Fault | State::Locked)) {
         let open = unit.moves.is_open();
@@ -155,9 +155,9 @@ fn news(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
             return;
         }
     }
-    if let Some(said) = unit.running_or_last(drive) {
-        let ink = if said.is_well { theme.palette.good } else { theme.palette.warn };
-        ui.add(egui::Label::new(RichText::new(theme.words(&said.words)).color(ink)).truncate());
+    if let Some(status) = unit.running_or_last(drive) {
+        let ink = if status.is_well { theme.palette.good } else { theme.palette.warn };
+        ui.add(egui::Label::new(RichText::new(theme.words(&status.words)).color(ink)).truncate());
     }
 }
 

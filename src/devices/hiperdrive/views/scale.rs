@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::{Action, Text};
 use crate::devices::hiperdrive::state::{
-    Edit, HiperdriveAction as Hiperdrive, LimitsStay, Measure, TEXTS, Unit, forms,
+    Edit, HiperdriveAction as Hiperdrive, LimitsPolicy, Measure, TEXTS, Unit, forms,
 };
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{card, enabled_button, entry, options, paragraph, problem, row, settled_entry, text_entry};
@@ -52,7 +52,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut ScaleU
             if enabled_button(ui, ready, icons::RULER, &say(theme, "hd_scale.set")).clicked()
                 && let Some(pitch) = pitch
             {
-                let limits = if view.stay_as_numbers { LimitsStay::AsNumbers } else { LimitsStay::InPlace };
+                let limits = if view.stay_as_numbers { LimitsPolicy::AsNumbers } else { LimitsPolicy::InPlace };
                 let scale = forms::length(&view.step).and_then(|step| forms::scale(pitch, step));
                 view.refused = scale
                     .map(|scale| {

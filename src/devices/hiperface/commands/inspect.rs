@@ -17,7 +17,7 @@ use crate::devices::hiperface::commands::table::Table;
 use crate::devices::hiperface::jobs::{
     Hiperface, HiperfaceJob, HiperfaceOutput, JobError, Value, may_have_other_master,
 };
-use crate::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
+use crate::devices::hiperface::procedures::find::{FindOptions, Findings, FoundEncoder};
 use crate::devices::hiperface::procedures::{Identity, PositionReading};
 use crate::devices::hiperface::profile::Item;
 use crate::devices::hiperface::protocol::{EncoderTypes, KIND, LineSettings, StatusCode};
@@ -67,10 +67,11 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     }
 }
 
-fn show_found(output: &Output, found: &[Found]) -> Result<()> {
+fn show_found(output: &Output, found: &[FoundEncoder]) -> Result<()> {
     let types = EncoderTypes::built_in();
-    let name =
-        |found: &Found| types.find(found.label.encoder_type).map_or("unknown type".to_owned(), |row| row.name.clone());
+    let name = |found: &FoundEncoder| {
+        types.find(found.label.encoder_type).map_or("unknown type".to_owned(), |row| row.name.clone())
+    };
     let list: Vec<Json> = found
         .iter()
         .map(|found| {
@@ -101,7 +102,7 @@ fn show_found(output: &Output, found: &[Found]) -> Result<()> {
     output.show(&json!({ "devices": list }), &text)
 }
 
-fn link_parameters(found: &Found) -> String {
+fn link_parameters(found: &FoundEncoder) -> String {
     format!("baud={}&parity={}&address=0x{:02X}", found.format.baud, found.format.parity, found.address)
 }
 

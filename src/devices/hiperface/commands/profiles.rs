@@ -8,7 +8,7 @@ use super::write::{commit, operations, plan_text};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
 use crate::cli::plan::PlanReport;
-use crate::cli::profiles::{Unrestored, keep, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, save_profile, say_mounting_left, to_restore, write_restore};
 use crate::cli::{Done, Failure, Result};
 use crate::devices::hiperface::commands::run::Runner;
 use crate::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Prepared, SavedProfile};
@@ -24,7 +24,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     name_locked(output, &saved, "saved without its bytes");
     let fields = saved.profile.fields.len();
     let locked: Vec<u8> = saved.locked.iter().map(|(field, _)| *field).collect();
-    keep(&save.file, Body::new(saved.profile))?;
+    save_profile(&save.file, Body::new(saved.profile))?;
     let json = json!({"file": save.file, "fields": fields, "locked": locked});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(fields, "data field")))?;
     Ok(Done::Well)

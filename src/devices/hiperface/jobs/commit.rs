@@ -12,12 +12,12 @@ use crate::worker::{Progress, SessionContext};
 
 pub(super) fn commit(
     encoder: &mut Hiperface,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     commit: &Commit,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Committed, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
-    let mut write = EncoderWrite::new(encoder.master(desk), &commit.prepared.identity);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
+    let mut write = EncoderWrite::new(encoder.master(context), &commit.prepared.identity);
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| tell(at.map(|op| JobStep::Operation(op.clone()))))
 }
 

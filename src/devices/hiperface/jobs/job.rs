@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::devices::hiperface::procedures::check::HiperfaceStepResult;
-use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, Findings, Found};
+use crate::devices::hiperface::procedures::find::{Attempt, FindOptions, Findings, FoundEncoder};
 use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::procedures::{Error, Identity, LineQuality, PositionReading, Rest, SaveOptions, Survey};
 use crate::devices::hiperface::profile::{
@@ -228,7 +228,7 @@ pub enum DeviceMessage {
     /// damaged.
     CodesUnheard(u32),
     /// An encoder that answered while one searched.
-    Found(Found),
+    Found(FoundEncoder),
     /// Something had to be repeated, or came too late.
     Line(LineQuality),
 }

@@ -20,7 +20,7 @@ pub use types::{BrokenTypes, encoder_types};
 
 use status::StatusKeeper;
 
-use crate::devices::hiperface::procedures::find::News;
+use crate::devices::hiperface::procedures::find::SearchProgress;
 use crate::devices::hiperface::procedures::{
     self, Codes, Error, Identity, Master, Sample, Station, Watch, check, find, identify, read_analogue, read_counter,
     read_field, read_field_status, read_position, read_range, read_sample, read_status, read_watched,
@@ -29,7 +29,7 @@ use crate::devices::hiperface::profile::{FieldRange, Item, PlanError};
 use crate::devices::hiperface::protocol::{EncoderTypes, Geometry, StatusCode};
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::store::{DeviceKey, Store};
-use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
 /// A HIPERFACE encoder at the end of its wire.
 pub struct Hiperface {
@@ -53,37 +53,37 @@ impl fmt::Debug for Hiperface {
 
 impl Hiperface {
     /// The host's side of the line.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+        Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
     /// Notes who has answered.
-    fn identified(&mut self, desk: &SessionContext, identity: &Identity) {
+    fn identified(&mut self, context: &SessionContext, identity: &Identity) {
         self.geometry = identity.geometry;
-        self.identified = Some(device_key(identity, desk.is_virtual));
+        self.identified = Some(device_key(identity, context.is_virtual));
     }
 
     /// Keeps the status codes that were read, before they are shown. An encoder that is not known yet is asked who it is:
     /// its logbook is to have them.
-    fn keep_codes(&mut self, desk: &mut SessionContext, codes: &[StatusCode]) {
+    fn keep_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
         }
         if self.identified.is_none() {
             let types = self.types.clone();
-            if let Ok(identity) = identify(&mut self.master(desk), &types) {
-                self.identified(desk, &identity);
+            if let Ok(identity) = identify(&mut self.master(context), &types) {
+                self.identified(context, &identity);
             }
         }
-        let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(desk.is_virtual));
-        status::keep(&desk.store, &device, codes);
+        let device = self.identified.clone().unwrap_or_else(|| status::unknown_device(context.is_virtual));
+        status::record_codes(&context.store, &device, codes);
     }
 
     /// The same for what is sampled, where a code that stays comes with each sample.
-    fn keep_sampled_codes(&mut self, desk: &mut SessionContext) {
+    fn keep_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_codes_read();
-        if !codes.is_empty() && self.status.is_news(&codes, desk.clock.now()) {
-            self.keep_codes(desk, &codes);
+        if !codes.is_empty() && self.status.is_news(&codes, context.clock.now()) {
+            self.keep_codes(context, &codes);
         }
     }
 }
@@ -126,31 +126,31 @@ impl Device for Hiperface {
 
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
+        tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
-        let result = self.carry_out(desk, job, tell);
+        let result = self.carry_out(context, job, tell);
         let codes = self.station.take_codes_read();
-        self.keep_codes(desk, &codes);
+        self.keep_codes(context, &codes);
         result
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Sample, JobError> {
+    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         let geometry = self.geometry;
         let met_before = self.station.codes_met.len();
-        let sample = read_sample(&mut self.master(desk), geometry);
-        self.keep_sampled_codes(desk);
+        let sample = read_sample(&mut self.master(context), geometry);
+        self.keep_sampled_codes(context);
         let sample = sample?;
         // The codes met are in it.
         self.station.codes_met.truncate(met_before);
         Ok(sample)
     }
 
-    fn watch(&mut self, desk: &mut SessionContext, what: &Watch) -> Result<Watched<Sample>, JobError> {
+    fn watch(&mut self, context: &mut SessionContext, what: &Watch) -> Result<Watched<Sample>, JobError> {
         let met_before = self.station.codes_met.len();
-        let reading = read_watched(&mut self.master(desk), *what);
-        self.keep_sampled_codes(desk);
+        let reading = read_watched(&mut self.master(context), *what);
+        self.keep_sampled_codes(context);
         let reading = reading?;
         // The codes met are in it.
         self.station.codes_met.truncate(met_before);
@@ -190,23 +190,23 @@ impl Hiperface {
 
     fn carry_out(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: HiperfaceJob,
-        tell: &mut dyn FnMut(Tell<DeviceMessage, JobStep>),
+        tell: &mut dyn FnMut(JobReport<DeviceMessage, JobStep>),
     ) -> Result<HiperfaceOutput, JobError> {
         let types = self.types.clone();
-        let steps = &mut |progress| tell(Tell::Progress(progress));
+        let steps = &mut |progress| tell(JobReport::Progress(progress));
         Ok(match job {
             HiperfaceJob::Prepare(change) => {
-                let prepared = prepare::prepare(self, desk, change, steps)?;
-                self.identified = Some(device_key(&prepared.identity, desk.is_virtual));
+                let prepared = prepare::prepare(self, context, change, steps)?;
+                self.identified = Some(device_key(&prepared.identity, context.is_virtual));
                 HiperfaceOutput::Prepared(Box::new(prepared))
             }
-            HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, desk, &commit, steps)?),
+            HiperfaceJob::Commit(commit) => HiperfaceOutput::Committed(commit::commit(self, context, &commit, steps)?),
             HiperfaceJob::Survey => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: JobStep::Field(done) });
-                let survey = procedures::survey(&mut self.master(desk), &types, progress)?;
-                self.identified(desk, &survey.identity);
+                let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
+                let survey = procedures::survey(&mut self.master(context), &types, progress)?;
+                self.identified(context, &survey.identity);
                 HiperfaceOutput::Surveyed(Box::new(survey))
             }
             HiperfaceJob::UseCode { number, code } => {
@@ -214,48 +214,48 @@ impl Hiperface {
                 HiperfaceOutput::CodeNoted
             }
             HiperfaceJob::Identify => {
-                let identity = identify(&mut self.master(desk), &types)?;
-                self.identified(desk, &identity);
+                let identity = identify(&mut self.master(context), &types)?;
+                self.identified(context, &identity);
                 HiperfaceOutput::Identity(identity)
             }
-            HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(desk))?),
+            HiperfaceJob::Status => HiperfaceOutput::Status(read_status(&mut self.master(context))?),
             HiperfaceJob::Position(geometry) => {
-                HiperfaceOutput::Position(read_position(&mut self.master(desk), geometry)?)
+                HiperfaceOutput::Position(read_position(&mut self.master(context), geometry)?)
             }
             HiperfaceJob::Rest => {
                 let geometry = self.geometry;
-                HiperfaceOutput::Rest(procedures::read_at_rest(&mut self.master(desk), geometry)?)
+                HiperfaceOutput::Rest(procedures::read_at_rest(&mut self.master(context), geometry)?)
             }
-            HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(desk), item)?),
+            HiperfaceJob::Read(item) => HiperfaceOutput::Value(read_item(&mut self.master(context), item)?),
             HiperfaceJob::Save(options) => {
-                let progress = &mut |done, total| steps(Progress { done, total, what: JobStep::Field(done) });
-                let profile = procedures::save(&mut self.master(desk), &types, options, progress)?;
+                let progress = &mut |done, total| steps(Progress { done, total, step: JobStep::Field(done) });
+                let profile = procedures::save(&mut self.master(context), &types, options, progress)?;
                 let locked = profile.fields.iter().filter(|field| field.bytes.is_none());
                 let locked = locked.map(|field| (field.number, field.status.code())).collect();
                 HiperfaceOutput::Saved(Box::new(SavedProfile { profile, locked }))
             }
             HiperfaceJob::Check { restart } => {
-                HiperfaceOutput::Check(check::check(&mut self.master(desk), &types, restart)?)
+                HiperfaceOutput::Check(check::check(&mut self.master(context), &types, restart)?)
             }
-            HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(desk))?),
+            HiperfaceJob::Reset => HiperfaceOutput::Reset(procedures::reset(&mut self.master(context))?),
             HiperfaceJob::Find(options) => {
-                let watch = &mut |news: News<'_>| tell(message_of(news));
-                HiperfaceOutput::Found(find::find(&mut self.master(desk), &options, watch)?)
+                let watch = &mut |news: SearchProgress<'_>| tell(message_of(news));
+                HiperfaceOutput::Found(find::find(&mut self.master(context), &options, watch)?)
             }
             HiperfaceJob::ConfigureForNow(settings) => {
-                procedures::change_line_for_now(&mut self.master(desk), settings)?;
+                procedures::change_line_for_now(&mut self.master(context), settings)?;
                 HiperfaceOutput::Configured
             }
         })
     }
 }
 
-fn message_of(news: News<'_>) -> Tell<DeviceMessage, JobStep> {
+fn message_of(news: SearchProgress<'_>) -> JobReport<DeviceMessage, JobStep> {
     match news {
-        News::Trying { done, total, attempt } => {
-            Tell::Progress(Progress { done, total, what: JobStep::Attempt(attempt.clone()) })
+        SearchProgress::Trying { done, total, attempt } => {
+            JobReport::Progress(Progress { done, total, step: JobStep::Attempt(attempt.clone()) })
         }
-        News::Found(found) => Tell::Remark(DeviceMessage::Found(found.clone())),
+        SearchProgress::Found(found) => JobReport::Remark(DeviceMessage::Found(found.clone())),
     }
 }
 

@@ -19,12 +19,12 @@ use crate::worker::{Progress, SessionContext};
 
 pub(super) fn prepare(
     encoder: &mut Hiperface,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     change: Change,
     tell: &mut dyn FnMut(Progress<JobStep>),
 ) -> Result<Prepared, JobError> {
     let types = encoder.types.clone();
-    let mut master = encoder.master(desk);
+    let mut master = encoder.master(context);
     let identity = identify(&mut master, &types)?;
     let mut prepared = Prepared {
         kind: change.kind(),
@@ -109,7 +109,7 @@ pub(super) fn prepare(
             plan_scalar(memory.fields, Scalar::Counter(from), Some(Op::IncrementCounter { from }))
         }
     };
-    prepared.cycles_seen = cycles_seen(&desk.store, &device_key(&prepared.identity, desk.is_virtual));
+    prepared.cycles_seen = cycles_seen(&context.store, &device_key(&prepared.identity, context.is_virtual));
     Ok(prepared)
 }
 
@@ -125,7 +125,7 @@ fn restore(
     // Known before the fields are read.
     check_allowed(profile, &serial_number, encoder_type, &options)?;
     let memory = read_memory(master)?;
-    let progress = &mut |done, total| tell(Progress { done, total, what: JobStep::Field(done) });
+    let progress = &mut |done, total| tell(Progress { done, total, step: JobStep::Field(done) });
     let fields = read_all_fields(master, memory.fields, progress)?;
     let restore = plan_restore(profile, &DeviceState { serial_number, encoder_type, memory, fields }, options)?;
     let Restore { common, unknown_fields, created_left } = restore;

@@ -32,7 +32,7 @@ impl StatusKeeper {
 }
 
 /// Writes codes into the log and the logbook. The log has them where the logbook cannot be used.
-pub(super) fn keep(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
+pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);
     let noted = Logbook::open(&store.logbook_path())

@@ -2,7 +2,7 @@
 
 use super::error::Damage;
 use super::identify::read_type_label;
-use super::master::Trouble;
+use super::master::ExchangeFailure;
 use super::{Error, Master};
 use crate::devices::hiperface::profile::FieldImage;
 use crate::devices::hiperface::protocol::{
@@ -127,7 +127,7 @@ pub fn read_range(
         let trouble = match (read_once(master, &request)?, first.take()) {
             (Ok(again), Some(before)) if again != before => {
                 first = Some(again);
-                Trouble::Damage(Damage::Inconsistent)
+                ExchangeFailure::Damage(Damage::Inconsistent)
             }
             (Ok(once), None) if master.station().reads_twice() => {
                 first = Some(once);
@@ -177,7 +177,7 @@ fn transfer(field: u8, address: usize, count: usize, code: AccessCode) -> Result
     }
 }
 
-fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, Trouble>, Error> {
+fn read_once(master: &mut Master<'_>, request: &Request) -> Result<Result<Vec<u8>, ExchangeFailure>, Error> {
     let answered = match master.attempt(request)? {
         Ok(answered) => answered,
         Err(trouble) => return Ok(Err(trouble)),

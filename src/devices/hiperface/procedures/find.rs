@@ -7,7 +7,7 @@
 use std::fmt;
 use std::time::Duration;
 
-use super::master::Trouble;
+use super::master::ExchangeFailure;
 use super::{Error, Master};
 use crate::devices::hiperface::protocol::{Answer, BAUDS, BROADCAST, DeviceAddress, Reply, Request, Timing, TypeLabel};
 use crate::units::{Baud, CharacterFormat, Parity};
@@ -26,7 +26,7 @@ pub struct FindOptions {
 
 /// An encoder that answered.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Found {
+pub struct FoundEncoder {
     pub address: u8,
     /// The format that was used.
     pub format: CharacterFormat,
@@ -61,7 +61,7 @@ impl fmt::Display for Attempt {
 
 /// A report of a running search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum News<'a> {
+pub enum SearchProgress<'a> {
     /// The next try.
     Trying {
         /// Tries done.
@@ -71,7 +71,7 @@ pub enum News<'a> {
         attempt: &'a Attempt,
     },
     /// An encoder that answered, once for each.
-    Found(&'a Found),
+    Found(&'a FoundEncoder),
 }
 
 /// The end of a search.
@@ -85,7 +85,7 @@ pub enum Findings {
     /// The line was searched.
     Searched {
         /// All that answered, in the order in which they did; maybe none.
-        found: Vec<Found>,
+        found: Vec<FoundEncoder>,
         /// Everything was tried; else the user wished an end before.
         complete: bool,
     },
@@ -99,7 +99,7 @@ pub enum Findings {
 pub fn find(
     master: &mut Master<'_>,
     options: &FindOptions,
-    watch: &mut dyn FnMut(News<'_>),
+    watch: &mut dyn FnMut(SearchProgress<'_>),
 ) -> Result<Findings, Error> {
     let before = (master.station().address, master.station().format);
     let mut search = Search { found: Vec::new(), watch };
@@ -117,8 +117,8 @@ pub fn find(
 }
 
 struct Search<'a> {
-    found: Vec<Found>,
-    watch: &'a mut dyn FnMut(News<'_>),
+    found: Vec<FoundEncoder>,
+    watch: &'a mut dyn FnMut(SearchProgress<'_>),
 }
 
 impl Search<'_> {
@@ -128,13 +128,13 @@ impl Search<'_> {
         let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
-        self.tell(0, total, &Attempt::Listening);
+        self.report(0, total, &Attempt::Listening);
         let heard = master.drain(LISTEN)?;
         if !heard.is_empty() {
             return Ok(Some(heard.len()));
         }
         if let Some(patience) = options.power_cycle {
-            self.tell(0, total, &Attempt::DefaultWindow);
+            self.report(0, total, &Attempt::DefaultWindow);
             let hit = catch_default_window(master, patience, options.one_encoder)?;
             self.add(hit);
         }
@@ -144,7 +144,7 @@ impl Search<'_> {
             let found_before = self.found.len();
             let broadcast = options.one_encoder.then_some(BROADCAST);
             for address in DeviceAddress::all().map(DeviceAddress::byte).chain(broadcast) {
-                self.tell(done, total, &Attempt::Probing { address, format });
+                self.report(done, total, &Attempt::Probing { address, format });
                 done += 1;
                 if address == BROADCAST && self.found.len() > found_before {
                     continue;
@@ -156,13 +156,13 @@ impl Search<'_> {
         Ok(None)
     }
 
-    fn tell(&mut self, done: u64, total: u64, attempt: &Attempt) {
-        (self.watch)(News::Trying { done, total, attempt });
+    fn report(&mut self, done: u64, total: u64, attempt: &Attempt) {
+        (self.watch)(SearchProgress::Trying { done, total, attempt });
     }
 
-    fn add(&mut self, hit: Option<Found>) {
+    fn add(&mut self, hit: Option<FoundEncoder>) {
         if let Some(hit) = hit.filter(|hit| !self.found.contains(hit)) {
-            (self.watch)(News::Found(&hit));
+            (self.watch)(SearchProgress::Found(&hit));
             self.found.push(hit);
         }
     }
@@ -178,7 +178,11 @@ fn formats() -> Vec<CharacterFormat> {
 }
 
 /// Asks every tenth of a second at factory settings until an encoder that has just been switched on answers.
-fn catch_default_window(master: &mut Master<'_>, patience: Duration, broadcast: bool) -> Result<Option<Found>, Error> {
+fn catch_default_window(
+    master: &mut Master<'_>,
+    patience: Duration,
+    broadcast: bool,
+) -> Result<Option<FoundEncoder>, Error> {
     master.set_format(CharacterFormat::FACTORY)?;
     let address = if broadcast { BROADCAST } else { master.station().address };
     let end = master.now() + patience;
@@ -192,7 +196,7 @@ fn catch_default_window(master: &mut Master<'_>, patience: Duration, broadcast: 
 }
 
 /// Sends one request without repetition. After a broken reply it asks once more: a device is there.
-fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<Found>, Error> {
+fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {
         match master.attempt(&Request::ReadTypeLabel)? {
@@ -200,13 +204,13 @@ fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Resul
                 let sender = answered.sender;
                 return Ok(match answered.answer {
                     Answer::Reply { reply: Reply::TypeLabel(label), .. } => {
-                        Some(Found { address: sender, format, label })
+                        Some(FoundEncoder { address: sender, format, label })
                     }
                     _ => None,
                 });
             }
-            Err(Trouble::Silence { .. }) => return Ok(None),
-            Err(Trouble::Damage(_)) => {}
+            Err(ExchangeFailure::Silence { .. }) => return Ok(None),
+            Err(ExchangeFailure::Damage(_)) => {}
         }
     }
     Ok(None)

@@ -14,7 +14,7 @@ use crate::devices::hiperface::protocol::{Answer, Command, Reply, Request};
 use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
-pub(super) use exchange::{Answered, Trouble};
+pub(super) use exchange::{ExchangeFailure, ReceivedAnswer};
 
 /// The host's side of a HIPERFACE line.
 pub struct Master<'a> {
@@ -138,7 +138,7 @@ impl<'a> Master<'a> {
     ///
     /// # Errors
     /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five tries.
-    pub(super) fn tell(
+    pub(super) fn send_until_done(
         &mut self,
         request: &Request,
         mut is_done: impl FnMut(&mut Self) -> Result<bool, Error>,
@@ -181,16 +181,21 @@ impl<'a> Master<'a> {
     }
 
     /// Prepares the line for the next attempt; returns an error when there is to be none.
-    pub(super) fn may_try_again(&mut self, request: &Request, tries: u32, trouble: Trouble) -> Result<(), Error> {
+    pub(super) fn may_try_again(
+        &mut self,
+        request: &Request,
+        tries: u32,
+        trouble: ExchangeFailure,
+    ) -> Result<(), Error> {
         let quality = &mut self.station.line.quality;
         match &trouble {
-            Trouble::Silence { .. } => quality.silent += 1,
-            Trouble::Damage(Damage::Late) => quality.late += 1,
-            Trouble::Damage(_) => quality.damaged += 1,
+            ExchangeFailure::Silence { .. } => quality.silent += 1,
+            ExchangeFailure::Damage(Damage::Late) => quality.late += 1,
+            ExchangeFailure::Damage(_) => quality.damaged += 1,
         }
         let longest = self.station.timing().worst_case(request) + self.station.line.margin;
         if self.line.may_ask_again(&mut self.station.line, tries, longest) {
-            if matches!(trouble, Trouble::Silence { .. }) {
+            if matches!(trouble, ExchangeFailure::Silence { .. }) {
                 let quiet = self.quiet();
                 self.line.hear_late(&mut self.station.line, tries, quiet)?;
             }
@@ -198,15 +203,15 @@ impl<'a> Master<'a> {
         }
         let command = request.command();
         Err(match trouble {
-            Trouble::Silence { echo_heard } => {
+            ExchangeFailure::Silence { echo_heard } => {
                 Error::NoReply { address: self.station.address, command, tries, echo_heard }
             }
-            Trouble::Damage(cause) => Error::Damaged { command, tries, cause },
+            ExchangeFailure::Damage(cause) => Error::Damaged { command, tries, cause },
         })
     }
 
     /// Reads the codes that an answer announces, and tells a refusal from a reply.
-    pub(super) fn settle(&mut self, request: &Request, answered: Answered) -> Result<Timed, Error> {
+    pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<Timed, Error> {
         self.station.line.recovered();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
         if *pending && request.command() != Command::ReadStatus {
@@ -221,7 +226,7 @@ impl<'a> Master<'a> {
     /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes that a reply announces are
     /// left to the next exchange, which announces them again: no request to end comes between a change and its being
     /// counted, and after 55h and 67h the encoder no longer answers as it was asked.
-    pub(super) fn acknowledge(&mut self, request: &Request, answered: Answered) -> Result<(), Error> {
+    pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.recovered();
             return Ok(());

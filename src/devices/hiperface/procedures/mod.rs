@@ -11,7 +11,7 @@ mod identify;
 mod master;
 mod position;
 mod reset;
-mod rest;
+mod rest_reading;
 mod save;
 mod station;
 mod survey;
@@ -27,7 +27,7 @@ pub use position::{
     read_counter, read_position, read_sample, read_watched,
 };
 pub use reset::{change_line_for_now, reset};
-pub use rest::{Rest, Signals, read_at_rest};
+pub use rest_reading::{Rest, Signals, read_at_rest};
 pub use save::{SaveOptions, profile_of, save};
 pub use station::{AccessCodes, Codes, LinkParameters, MOST_PERIODS, Station};
 

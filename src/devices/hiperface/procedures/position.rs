@@ -79,7 +79,7 @@ pub struct WatchedReading {
     /// and of a refusal, when it was understood.
     pub at: Moment,
     /// The watched value.
-    pub what: Watch,
+    pub watch: Watch,
     /// The value, or the encoder's refusal.
     pub value: Result<i64, Error>,
     /// Codes that came with it.
@@ -114,7 +114,7 @@ pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReadi
         Err(error) => return Err(error),
     };
     let codes = master.station().codes_met.get(met_before..).unwrap_or_default().to_vec();
-    Ok(WatchedReading { at, what, value, codes })
+    Ok(WatchedReading { at, watch: what, value, codes })
 }
 
 /// Reads the position once, as [`read_position`]; that the encoder has none at the moment is an answer too.

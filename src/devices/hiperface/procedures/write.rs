@@ -8,7 +8,7 @@ use super::{
 };
 use crate::bits::hex_compact;
 use crate::devices::hiperface::procedures::identify::{read_serial, read_type_label};
-use crate::devices::hiperface::procedures::master::Trouble;
+use crate::devices::hiperface::procedures::master::ExchangeFailure;
 use crate::devices::hiperface::procedures::position::{distance, range_of};
 use crate::devices::hiperface::profile::{Base, FieldImage, FieldRange, HiperfacePlan, Item, Op, PlanItem, Scalar};
 use crate::devices::hiperface::protocol::{
@@ -164,17 +164,18 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
             let guarded_by = from.unwrap_or(*to).code();
             let code = master.station().codes.get(guarded_by);
             let request = Request::DefineField { field: *field, status: *to, code };
-            master.tell(&request, |master| has_status(master, *field, *to))
+            master.send_until_done(&request, |master| has_status(master, *field, *to))
         }
         Op::Store { field, address, status, new, .. } => {
             let code = master.station().codes.get(status.code());
             let request = Request::StoreData { field: *field, address: *address, code, data: new.clone() };
             let start = usize::from(*address);
-            master.tell(&request, |master| Ok(read_range(master, *field, start, new.len(), code)? == *new))
+            master.send_until_done(&request, |master| Ok(read_range(master, *field, start, new.len(), code)? == *new))
         }
         Op::ChangeCode { number, old, new } => {
             let request = Request::ChangeCode { number: *number, old: *old, new: *new };
-            let sent = master.tell(&request, |master| opens(master, &confirmed.plan().base, *number, *new))?;
+            let sent =
+                master.send_until_done(&request, |master| opens(master, &confirmed.plan().base, *number, *new))?;
             master.station().codes.set(*number, *new);
             Ok(sent)
         }
@@ -185,7 +186,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
                 Request::SetPosition { position: *to, code0 }
             };
             let telling = distance(*from, *to, range) > 1;
-            master.tell(&request, |master| {
+            master.send_until_done(&request, |master| {
                 if !telling {
                     return Err(Error::PositionUnchanged);
                 }
@@ -195,14 +196,14 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
         Op::SetAddress { to, .. } => set_address(master, *to),
         Op::Configure { to, .. } => {
             let request = Request::ConfigureLine { settings: *to, code0 };
-            master.tell(&request, |master| Ok(read_type_label(master)?.settings == *to))
+            master.send_until_done(&request, |master| Ok(read_type_label(master)?.settings == *to))
         }
         Op::ClearCounter { .. } => {
-            master.tell(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
+            master.send_until_done(&Request::ClearCounter { code0 }, |master| Ok(read_counter(master)? == 0))
         }
         Op::IncrementCounter { from } => {
             let next = next_count(*from);
-            match master.tell(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
+            match master.send_until_done(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
                 // Some types tell the overflow in this way (manual, "Zähler erhöhen"): it was carried out.
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
                     master.station().meet_codes(codes);
@@ -223,7 +224,7 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     let before = master.station().address;
     let request = Request::SetAddress { new: to, code0 };
-    let sent = master.tell(&request, |master| {
+    let sent = master.send_until_done(&request, |master| {
         master.station().address = to.byte();
         let moved = read_type_label(master).is_ok();
         master.station().address = before;
@@ -336,7 +337,7 @@ pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<()
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
     master.station().address = before;
-    match answers?.iter().all(|answer| matches!(answer, Err(Trouble::Silence { .. }))) {
+    match answers?.iter().all(|answer| matches!(answer, Err(ExchangeFailure::Silence { .. }))) {
         true => Ok(()),
         false => Err(Error::AddressTaken { address: address.byte() }),
     }

@@ -77,19 +77,19 @@ pub enum Arguments {
 /// When the bytes are no frame.
 pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact>, FrameError> {
     let frame = Frame::parse(bytes)?;
-    let mut said = vec![FrameFact::Heading { address: frame.address, command: frame.command }];
+    let mut facts = vec![FrameFact::Heading { address: frame.address, command: frame.command }];
     if let Some(answer) = request.and_then(|request| request.parse_reply(frame.address, bytes).ok()) {
-        said.extend(answered(answer));
-        return Ok(said);
+        facts.extend(answered(answer));
+        return Ok(facts);
     }
     match Request::parse(&frame) {
-        Ok(request) => said.push(FrameFact::Request(arguments(request))),
+        Ok(request) => facts.push(FrameFact::Request(arguments(request))),
         Err(error) => match guess_reply(&frame, bytes) {
-            Some(answer) => said.extend(answered(answer)),
-            None => said.push(FrameFact::NoRequest(error)),
+            Some(answer) => facts.extend(answered(answer)),
+            None => facts.push(FrameFact::NoRequest(error)),
         },
     }
-    Ok(said)
+    Ok(facts)
 }
 
 /// A reply is recognised without its request wherever its length tells it from one.

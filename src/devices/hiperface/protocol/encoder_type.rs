@@ -28,14 +28,14 @@ pub struct EncoderTypes(Vec<EncoderType>);
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeTableError {
     /// The text is not the RON expected.
-    #[error("line {line}, column {column}: {what}")]
+    #[error("line {line}, column {column}: {problem}")]
     Syntax {
         /// Line, counted from 1.
         line: usize,
         /// Column, counted from 1.
         column: usize,
         /// Message of the parser.
-        what: String,
+        problem: String,
     },
     /// A number is zero or too large.
     #[error("type {code:02X}h: {quantity} must be between {} and {}", range.start(), range.end())]
@@ -87,7 +87,7 @@ impl EncoderTypes {
         let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {
             line: error.span.start.line,
             column: error.span.start.col,
-            what: error.code.to_string(),
+            problem: error.code.to_string(),
         })?;
         file.types.into_iter().map(Row::check).collect::<Result<_, _>>().map(EncoderTypes)
     }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use fastrand::Rng;
 
 use super::config::Config;
-use super::encoder::{Encoder, Heard};
+use super::encoder::{Encoder, ReceivedCharacter};
 use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::Faults;
 use crate::sim::line::{Character, Queue, VirtualLine, Wires};
@@ -129,7 +129,7 @@ impl Bus {
             let byte = if clean { byte } else { garbage(&mut self.wires.rng) };
             // Without a parity bit a flipped bit is not detected.
             let intact = clean && (!flipped || format.parity == Parity::None);
-            encoder.hear(Heard { start, end, byte, intact });
+            encoder.hear(ReceivedCharacter { start, end, byte, intact });
         }
     }
 

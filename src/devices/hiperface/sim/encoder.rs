@@ -54,7 +54,7 @@ impl Pace {
 
 /// A character at an encoder's receiver.
 #[derive(Clone, Copy)]
-pub(super) struct Heard {
+pub(super) struct ReceivedCharacter {
     pub(super) start: Moment,
     pub(super) end: Moment,
     pub(super) byte: u8,
@@ -262,7 +262,7 @@ impl Encoder {
     }
 
     /// A character begins at its receiver; everything due before has been [done](Self::act).
-    pub(super) fn hear(&mut self, heard: Heard) {
+    pub(super) fn hear(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.settings_at(heard.start) else { return };
         let Some(timing) = Timing::of_settings(settings) else { return };
         let in_lost_frame = self.lost.is_some_and(|end| heard.start < end + timing.timeout);

@@ -48,12 +48,12 @@ pub struct Commutation {
     /// The last position read: the shaft is still there, as far as is known.
     last: Option<Slot>,
     /// The reading that is under way.
-    asked: Option<Asked>,
+    asked: Option<PendingReading>,
 }
 
 /// A reading that is under way: what it is for, and how it was asked for, whatever is chosen or typed meanwhile.
 #[derive(Debug)]
-struct Asked {
+struct PendingReading {
     slot: Slot,
     source: Source,
     /// As typed.
@@ -100,13 +100,13 @@ impl Commutation {
     }
 
     /// Returns the position that is being read.
-    pub fn asked(&self) -> Option<Slot> {
+    pub fn pending_slot(&self) -> Option<Slot> {
         self.asked.as_ref().map(|asked| asked.slot)
     }
 
     /// The encoder is asked for a position at rest.
     fn ask(&mut self, slot: Slot) {
-        self.asked = Some(Asked { slot, source: self.form.source, phase: self.form.phase.clone() });
+        self.asked = Some(PendingReading { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
 
     fn note(&mut self, slot: Slot, reading: RestReading) {
@@ -157,7 +157,7 @@ impl Commutation {
     }
 }
 
-impl Asked {
+impl PendingReading {
     fn reading(&self, rest: Rest, geometry: Option<Geometry>) -> Result<RestReading, Text> {
         if !rest.valid {
             return Err(Text::new("commutation.invalid"));
@@ -189,14 +189,17 @@ fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f
     // An unknown range does not wrap.
     let periods = geometry.and_then(Geometry::range).map_or(1 << 32, |range| range / steps);
     let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(periods) };
-    let told = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
-    if told.verdict == Verdict::Fault {
-        let apart = told.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
+    let synchronised = synchroniser.synchronise(raw.into(), phase).map_err(|_| TEXTS.text("commutation.half_apart"))?;
+    if synchronised.verdict == Verdict::Fault {
+        let apart = synchronised.residual_periods.abs() * f64::from(STEPS_PER_PERIOD);
         return Err(TEXTS.text("commutation.far_apart").with_number("steps", apart, 1));
     }
-    let kind =
-        Kind::Fine { residual_periods: told.residual_periods, verdict: told.verdict, resolution_periods: resolution };
-    Ok(RestReading { fine_periods: told.periods(), kind, raw: Some(raw) })
+    let kind = Kind::Fine {
+        residual_periods: synchronised.residual_periods,
+        verdict: synchronised.verdict,
+        resolution_periods: resolution,
+    };
+    Ok(RestReading { fine_periods: synchronised.periods(), kind, raw: Some(raw) })
 }
 
 #[cfg(test)]
@@ -211,7 +214,7 @@ mod tests {
     }
 
     fn read(source: Source, phase: &str, rest: Rest) -> Result<RestReading, &'static str> {
-        let asked = Asked { slot: Slot::OneSide, source, phase: phase.to_owned() };
+        let asked = PendingReading { slot: Slot::OneSide, source, phase: phase.to_owned() };
         asked.reading(rest, SKM36).map_err(|text| text.id())
     }
 

@@ -159,7 +159,7 @@ impl Encoder {
         self.unreadable = fields.iter().map(|own| (own.number, why(own))).collect();
         if !self.unreadable.is_empty() && self.unreadable != before {
             let texts = self.unreadable.values().cloned().collect();
-            services.tell(Severity::Warning, texts, Some(&self.session.name()));
+            services.notify(Severity::Warning, texts, Some(&self.session.name()));
         }
     }
 
@@ -189,7 +189,7 @@ impl Encoder {
         if severity == Severity::Warning {
             self.access_codes.retain(|(own, _)| *own != number);
         }
-        services.tell(severity, vec![text.with("number", number)], Some(&self.session.name()));
+        services.notify(severity, vec![text.with("number", number)], Some(&self.session.name()));
     }
 
     /// Returns whether this is another encoder than the one read before.

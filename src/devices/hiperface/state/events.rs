@@ -64,7 +64,7 @@ impl Kind for Hiperface {
         explained::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
 }
@@ -87,7 +87,7 @@ impl Encoder {
 
     fn announced(&mut self, codes: Vec<StatusCode>, services: &mut Services) {
         let texts = codes.iter().map(|code| explained::status(*code)).collect();
-        services.tell(Severity::Warning, texts, Some(&self.session.name()));
+        services.notify(Severity::Warning, texts, Some(&self.session.name()));
         self.codes.get_or_insert_default().extend(codes);
     }
 
@@ -184,7 +184,7 @@ impl SessionEvents for Encoder {
             DeviceMessage::Codes(codes) => self.announced(codes, services),
             DeviceMessage::CodesUnheard(count) => {
                 let text = explained::codes_unheard(count);
-                services.tell(Severity::Warning, vec![text], Some(&self.session.name()));
+                services.notify(Severity::Warning, vec![text], Some(&self.session.name()));
             }
             DeviceMessage::Line(quality) => self.line_quality = quality,
             DeviceMessage::Found(_) => {}
@@ -218,12 +218,12 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::Reset(codes) => {
                 self.codes = Some(codes);
                 self.follow_settings();
-                services.tell(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
+                services.notify(Severity::Good, vec![Text::new("session.restarted")], Some(&self.session.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::Configured => {
                 self.follow_settings();
-                services.tell(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
+                services.notify(Severity::Good, vec![Text::new("session.configured")], Some(&self.session.name()));
                 self.submit(HiperfaceJob::Survey, services);
             }
             HiperfaceOutput::CodeNoted => self.give_codes(services),
@@ -289,7 +289,7 @@ impl SessionEvents for Encoder {
             return;
         }
         self.session.save_to = None;
-        let gone = Hiperface::loss(error);
+        let gone = Hiperface::connection_error(error);
         self.follow_what_was_done(error, services);
         let silent = gone.is_none() && self.is_silence(error);
         let garbled = matches!(error, JobError::Device(Error::Damaged { .. } | Error::NeverSilent));
@@ -302,11 +302,11 @@ impl SessionEvents for Encoder {
                 if is_shown {
                     services.note(Severity::Error, texts, Some(&self.session.name()));
                 }
-                self.lose(why, services);
+                self.connection_lost(why, services);
             }
             None if silent => self.session.fall_silent(texts, services),
             None => {
-                self.session.say(Severity::Error, texts, is_shown || stands_there, services);
+                self.session.report(Severity::Error, texts, is_shown || stands_there, services);
                 if error.has_begun() {
                     self.submit(HiperfaceJob::Survey, services);
                 }

@@ -44,7 +44,7 @@ impl DeviceType for Encoder {
         let mut encoder = Encoder::with(session);
         if let Some((profile, tables)) = profile {
             let types = tables.unwrap_or_else(|error| {
-                services.tell(Severity::Warning, vec![words::store(&error)], None);
+                services.notify(Severity::Warning, vec![words::store(&error)], None);
                 EncoderTypes::built_in()
             });
             encoder.identify(identity_of(profile, &types));

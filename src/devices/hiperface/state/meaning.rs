@@ -30,8 +30,8 @@ impl Meaning {
     fn sent(&mut self, bytes: &[u8]) -> Explained {
         let frame = Frame::parse(bytes).ok();
         self.request = frame.and_then(|frame| Some((frame.address, Request::parse(&frame).ok()?)));
-        let said = describe(bytes, None).unwrap_or_default();
-        said.iter().map(words::frame).collect::<Vec<Text>>().into()
+        let facts = describe(bytes, None).unwrap_or_default();
+        facts.iter().map(words::frame).collect::<Vec<Text>>().into()
     }
 
     fn received(&mut self, bytes: &[u8]) -> Explained {
@@ -41,13 +41,13 @@ impl Meaning {
             Some(Ok(answer)) => Some(answer),
             None => None,
         };
-        let said = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
-            Ok(said) => said,
+        let facts = match describe(bytes, asked.as_ref().map(|(_, request)| request)) {
+            Ok(facts) => facts,
             Err(error) => return Explained::broken(words::damage(&Damage::Reply(error.into()))),
         };
         // The heading repeats the request's; of a reply only what it gives is new.
-        let known = |said: &FrameFact| asked.is_some() && matches!(said, FrameFact::Heading { .. });
-        let meaning = said.iter().filter(|said| !known(said)).map(words::frame).collect();
+        let known = |facts: &FrameFact| asked.is_some() && matches!(facts, FrameFact::Heading { .. });
+        let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
         let fault = answer.filter(reports).map(|_| TraceFault::Reported);
         Explained { meaning, fault }
     }

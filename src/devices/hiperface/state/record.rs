@@ -28,7 +28,7 @@ impl Record {
     }
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64, geometry: Option<Geometry>) {
-        self.track.lose(dropped);
+        self.track.note_dropped(dropped);
         let meaning = meaning(geometry);
         for sample in samples {
             match sample {
@@ -46,14 +46,14 @@ impl Record {
                     self.track.add(&[PositionSample { at, position: None, is_bad: true, is_warned: false }], &meaning);
                     self.refused = true;
                 }
-                Sample::Watched(reading) => self.track.add_watched(&reading.what, &watching(&reading)),
+                Sample::Watched(reading) => self.track.add_watched(&reading.watch, &watching(&reading)),
             }
         }
     }
 
     /// Records these values too, and no others beside the position.
-    pub(super) fn watch(&mut self, wished: &[Watch]) {
-        self.track.watch(wished);
+    pub(super) fn watch(&mut self, watched: &[Watch]) {
+        self.track.watch(watched);
     }
 
     /// Returns the values recorded with the position.

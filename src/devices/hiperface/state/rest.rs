@@ -12,7 +12,7 @@ use crate::devices::hiperface::protocol::Geometry;
 #[derive(Debug, Default)]
 pub(super) struct RestAsked {
     is_under_way: bool,
-    told: Option<Result<Rest, Text>>,
+    result: Option<Result<Rest, Text>>,
 }
 
 impl Encoder {
@@ -28,7 +28,7 @@ impl Encoder {
     /// The shaft was read at rest.
     pub(super) fn take_rest(&mut self, rest: Rest) {
         if std::mem::take(&mut self.rest.is_under_way) {
-            self.rest.told = Some(Ok(rest));
+            self.rest.result = Some(Ok(rest));
             return;
         }
         let geometry = self.geometry();
@@ -38,7 +38,7 @@ impl Encoder {
     /// A job has failed; true where it is such a reading, and the reason stands where it was asked for.
     pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
-            self.rest.told = Some(Err(why.clone()));
+            self.rest.result = Some(Err(why.clone()));
             return true;
         }
         self.commutation.failed(why)
@@ -70,7 +70,7 @@ impl SineCosineSource for Encoder {
     }
 
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>> {
-        self.rest.told.take().map(|told| told.map(SineCosineReading::from))
+        self.rest.result.take().map(|result| result.map(SineCosineReading::from))
     }
 }
 

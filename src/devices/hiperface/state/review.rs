@@ -57,7 +57,7 @@ impl Reviewed for Hiperface {
 
     fn questions(prepared: &Prepared) -> Vec<Question> {
         let question = |own: &UnknownField| Question {
-            what: words::unknown_field(own),
+            title: words::unknown_field(own),
             no: TEXTS.text("review.leave_field").with("field", own.field),
             yes: Text::new("review.copy_field").with("field", own.field),
             permit: Permit::Copy(own.field),

@@ -9,13 +9,13 @@ use crate::app::connect::form::Finder;
 use crate::app::live_session::LiveSession;
 use crate::app::services::Services;
 use crate::app::session::Kind as _;
-use crate::app::shutdown::Leaver;
+use crate::app::shutdown::ClosingSessionInfo;
 use crate::app::studio::SessionId;
 use crate::app::{DeviceModel, Text, explain};
 use crate::devices::hiperface::jobs::{
     DeviceMessage, Hiperface, HiperfaceJob, HiperfaceOutput, JobStep, may_have_other_master,
 };
-use crate::devices::hiperface::procedures::find::{FindOptions, Findings, Found};
+use crate::devices::hiperface::procedures::find::{FindOptions, Findings, FoundEncoder};
 use crate::devices::hiperface::state::explain as words;
 use crate::devices::hiperface::state::{Encoder, LinkForm, TEXTS};
 use crate::link::LinkUrl;
@@ -32,7 +32,7 @@ pub struct Search {
     /// Ends when its link is open or cannot be opened.
     pub(crate) over: crossbeam_channel::Receiver<()>,
     /// All that answered so far.
-    pub found: Vec<Found>,
+    pub found: Vec<FoundEncoder>,
     /// The end of the search; `None` while it runs.
     pub end: Option<Text>,
 }
@@ -48,7 +48,7 @@ impl Search {
     }
 
     /// The link of an encoder that was found.
-    pub(crate) fn link_to(&self, found: &Found) -> LinkUrl {
+    pub(crate) fn link_to(&self, found: &FoundEncoder) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());
         url.query.set("parity", found.format.parity.word());
@@ -211,7 +211,7 @@ impl Finder for SearchFinder {
         let search = self.search.take()?;
         if let Some(line) = search.line {
             let (session, about) = (SessionId(search.number), search.url.to_string());
-            let who = Leaver { session, about, url: search.url, write: None };
+            let who = ClosingSessionInfo { session, about, url: search.url, write: None };
             services.leave(line.into_worker(), who, None);
         }
         Some(search.over)

@@ -6,7 +6,7 @@ use super::review::Review;
 use super::rules;
 use crate::app::review::Permit;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, Known, Saved, SessionEvents, WithMemory, without_edits};
+use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, SessionEvents, WithMemory, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::hiperface::jobs::{Change, Committed, Hiperface, HiperfaceJob, Prepared};
 use crate::devices::hiperface::procedures::{SaveOptions, profile_of};
@@ -101,7 +101,7 @@ impl Saved for Encoder {
         Some(Body::new(self.wanted_profile()?))
     }
 
-    fn known_body(&self) -> Option<Known> {
+    fn known_body(&self) -> Option<KnownProfile> {
         let identity = self.identity.as_ref()?;
         let fields = self.staged.device().to_vec();
         let locked = fields.iter().filter(|own| own.bytes.is_none() && !self.unreadable.contains_key(&own.number));

@@ -163,7 +163,7 @@ fn search(ui: &mut Ui, theme: &Theme, dialog: &Dialog, view: &mut SearchView, ac
             if let Some(progress) = search.and_then(Search::progress) {
                 let part = progress.done as f32 / progress.total.max(1) as f32;
                 ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(140.0));
-                ui.label(theme.mono(theme.words(&words::step_text(&progress.what))).color(theme.palette.muted));
+                ui.label(theme.mono(theme.words(&words::step_text(&progress.step))).color(theme.palette.muted));
             }
         });
         if let Some(search) = search {

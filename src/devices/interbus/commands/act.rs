@@ -53,13 +53,13 @@ fn preset(runner: &mut Runner) -> Result<u32> {
 
 fn check_device(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.say(output);
+    Disturbs::Reading.announce(output);
     result_of!(runner.run(InterbusJob::Check)?, InterbusOutput::Check(lines) => check::show(output, &words::check(&lines)))
 }
 
 fn lead_back(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::LeadingBack.say(output);
+    Disturbs::LeadingBack.announce(output);
     let now = result_of!(runner.run(InterbusJob::LeadBack)?, InterbusOutput::LedBack(now) => now);
     let reading = result_of!(runner.run(InterbusJob::Position)?, InterbusOutput::Position(reading) => reading);
     let (is, word) = (words::startup(now).terminal(), format!("0x{:08X}", reading.word));
@@ -76,7 +76,7 @@ fn lead_back(common: &Common, output: &Output) -> Result {
 fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {
     require_consent(&act.consent)?;
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.say(output);
+    Disturbs::Reading.announce(output);
     let change = change(&mut runner)?;
     let prepared = prepare(&mut runner, output, change)?;
     let operations = operations(&prepared.plan);

@@ -3,7 +3,7 @@
 use serde_json::{Map, Value as Json, json};
 
 use super::args::WordOptions;
-use super::meaning::{self, Known, WordMeaning};
+use super::meaning::{self, WordContext, WordMeaning};
 use crate::cli::args::{Decode, Direction};
 use crate::cli::decode::{Explained, show};
 use crate::cli::number::parse_number;
@@ -14,7 +14,7 @@ use crate::devices::interbus::protocol::{KIND, READ_OUTS, ReadOut, Single, Windo
 pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     let options: WordOptions = arguments.own.read()?;
     let direction = options.way.direction;
-    let known = Known {
+    let known = WordContext {
         mode: options.mode.map(Into::into),
         read_out: options.read_out.as_deref().map(read_out).transpose()?,
         shift: options.shift.and_then(WindowShift::new),
@@ -64,20 +64,20 @@ fn read_out(text: &str) -> Result<ReadOut> {
     })
 }
 
-fn explain(word: Captured, direction: Option<Direction>, known: &Known) -> Explained {
-    let (shown, said) = match word {
+fn explain(word: Captured, direction: Option<Direction>, known: &WordContext) -> Explained {
+    let (shown, meanings) = match word {
         Captured::K1(word) => (format!("{word:04X}"), Ok(vec![meaning::of_k1(Single::parse_k1(word))])),
         Captured::Long(word) => (format!("{word:08X}"), long(word, direction, known)),
     };
     let mut more = Map::from_iter([("device".to_owned(), json!(KIND))]);
-    if let Ok(said) = &said {
-        more.insert("readings".to_owned(), said.iter().map(WordMeaning::json).collect::<Json>());
+    if let Ok(meanings) = &meanings {
+        more.insert("readings".to_owned(), meanings.iter().map(WordMeaning::json).collect::<Json>());
     }
-    let meaning = said.map(|said| said.iter().map(WordMeaning::line).collect());
+    let meaning = meanings.map(|meanings| meanings.iter().map(WordMeaning::line).collect());
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-fn long(word: u32, direction: Option<Direction>, known: &Known) -> std::result::Result<Vec<WordMeaning>, String> {
+fn long(word: u32, direction: Option<Direction>, known: &WordContext) -> std::result::Result<Vec<WordMeaning>, String> {
     match direction {
         Some(Direction::In) => Ok(meaning::of_in(word, known)),
         Some(Direction::Out) => meaning::of_out(word, known),

@@ -16,7 +16,7 @@ use crate::result_of;
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.say(output);
+    Disturbs::Reading.announce(output);
     let identity = identity(&mut runner)?;
     let json = json!({
         "device": KIND,
@@ -66,7 +66,7 @@ pub(super) fn mode(mode: StartupMode) -> String {
 
 pub(super) fn status(common: &Common, output: &Output) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.say(output);
+    Disturbs::Reading.announce(output);
     let status = result_of!(runner.run(InterbusJob::Status)?, InterbusOutput::Status(status) => *status);
     let errors: Vec<Json> = status
         .error

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{
 };
 
 /// Known facts about a word besides its digits.
-pub(super) struct Known {
+pub(super) struct WordContext {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
     pub(super) shift: Option<WindowShift>,
@@ -49,13 +49,13 @@ pub(super) fn of_k1(word: Single) -> WordMeaning {
 }
 
 /// Returns the request of an OUT word, or why it must not be sent.
-pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, String> {
+pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>, String> {
     let readings = Command::readings(word);
     if let [Command::Unknown(_)] = readings.as_slice() {
         return Err("nothing that an encoder is asked in any mode".to_owned());
     }
-    let said = |command: Command, modes: Vec<Mode>| {
-        let (words, value) = asked(command);
+    let meaning = |command: Command, modes: Vec<Mode>| {
+        let (words, value) = command_words(command);
         WordMeaning { direction: "OUT", modes, words, value, legal: true }
     };
     let legal = |command: Command| Mode::ALL.into_iter().filter(move |mode| command.is_legal_in(*mode));
@@ -65,18 +65,18 @@ pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, Strin
             .map(|command| {
                 let modes: Vec<Mode> = legal(command).collect();
                 let everywhere = modes.len() == Mode::ALL.len();
-                said(command, if everywhere { Vec::new() } else { modes })
+                meaning(command, if everywhere { Vec::new() } else { modes })
             })
             .collect()),
         Some(mode) => match Command::in_mode(word, mode) {
-            Ok(command) => Ok(vec![said(command, vec![mode])]),
+            Ok(command) => Ok(vec![meaning(command, vec![mode])]),
             Err(refused) => Err(format!("not legal in {mode}: {}", elsewhere(refused.command))),
         },
     }
 }
 
 /// An OUT word that an encoder in the known mode must not get, where it means something in another.
-pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
+pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
         .filter(|refused| !matches!(refused.command, Command::Unknown(_)))
@@ -84,7 +84,7 @@ pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
             direction: "OUT",
             modes: vec![refused.mode],
             words: format!("not legal, {}", elsewhere(refused.command)),
-            value: asked(refused.command).1,
+            value: command_words(refused.command).1,
             legal: false,
         })
         .into_iter()
@@ -94,13 +94,13 @@ pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
 /// Returns the modes in which a command is legal.
 fn elsewhere(command: Command) -> String {
     let modes: Vec<&str> = Mode::ALL.into_iter().filter(|mode| command.is_legal_in(*mode)).map(Mode::name).collect();
-    format!("\"{}\" is for {} mode", asked(command).0, modes.join(" or "))
+    format!("\"{}\" is for {} mode", command_words(command).0, modes.join(" or "))
 }
 
 /// Returns the meaning of an IN word in the known mode, or in each mode in which it may occur.
-pub(super) fn of_in(word: u32, known: &Known) -> Vec<WordMeaning> {
+pub(super) fn of_in(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let reply = Reply::parse(word);
-    let said = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
+    let meaning = |modes: &[Mode], words: String, value: Option<u32>| WordMeaning {
         direction: "IN",
         modes: modes.iter().copied().filter(|mode| known.mode.is_none_or(|known| known == *mode)).collect(),
         words,
@@ -113,20 +113,20 @@ pub(super) fn of_in(word: u32, known: &Known) -> Vec<WordMeaning> {
             let stray = stray(bits.into(), "in bits 30 to 25");
             let number = value.get();
             vec![
-                said(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
-                said(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
-                said(&[Cam], outputs(word, known.shift), None),
+                meaning(&[Position, Parameterisation, ReadOut], format!("position {number}{stray}"), Some(number)),
+                meaning(&[Velocity], format!("speed {} rpm{stray}", value.signed()), Some(number)),
+                meaning(&[Cam], outputs(word, known.shift), None),
             ]
         }
         Reply::Busy { .. } | Reply::Echo { .. } => vec![
-            said(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
-            said(&[Cam], echo(reply, Cam), None),
+            meaning(&[Position, Parameterisation, ReadOut, Velocity], echo(reply, Parameterisation), None),
+            meaning(&[Cam], echo(reply, Cam), None),
         ],
-        Reply::ReadOut(value) => vec![said(&Mode::ALL, read_out(value, known.read_out), Some(value.get()))],
-        Reply::UnknownReadOut(_) => vec![said(&Mode::ALL, "unknown parameter in a read-out".to_owned(), None)],
+        Reply::ReadOut(value) => vec![meaning(&Mode::ALL, read_out(value, known.read_out), Some(value.get()))],
+        Reply::UnknownReadOut(_) => vec![meaning(&Mode::ALL, "unknown parameter in a read-out".to_owned(), None)],
         Reply::Unknown { code, data } => {
             let words = format!("a read-out word with code {}, which the manual does not have", code.get());
-            vec![said(&Mode::ALL, words, Some(data.get()))]
+            vec![meaning(&Mode::ALL, words, Some(data.get()))]
         }
         Reply::Error(error) => {
             let words = format!(
@@ -136,13 +136,13 @@ pub(super) fn of_in(word: u32, known: &Known) -> Vec<WordMeaning> {
                 error.data.get(),
                 error.remedy()
             );
-            vec![said(&Mode::ALL, words, Some(error.data.get()))]
+            vec![meaning(&Mode::ALL, words, Some(error.data.get()))]
         }
     };
-    all.retain(|said| !said.modes.is_empty());
-    for said in &mut all {
-        if said.modes.len() == Mode::ALL.len() {
-            said.modes.clear();
+    all.retain(|meaning_of_mode| !meaning_of_mode.modes.is_empty());
+    for meaning_of_mode in &mut all {
+        if meaning_of_mode.modes.len() == Mode::ALL.len() {
+            meaning_of_mode.modes.clear();
         }
     }
     all
@@ -153,7 +153,7 @@ fn stray(bits: u32, place: &str) -> String {
 }
 
 /// A command, and the number in it.
-fn asked(command: Command) -> (String, Option<u32>) {
+fn command_words(command: Command) -> (String, Option<u32>) {
     let with = |words: String, value: u32| (words, Some(value));
     match command {
         Command::Set(Parameter::Default, _) => {
@@ -229,10 +229,10 @@ fn echo(reply: Reply, mode: Mode) -> String {
     let with = if manufacturer { ", manufacturer bit" } else { "" };
     match (reply.echoed(mode), code) {
         (Some(command), 0) if !matches!(command, Command::CamStart(..) | Command::CamStop(..)) => {
-            format!("echo of \"{}\"", asked(command).0)
+            format!("echo of \"{}\"", command_words(command).0)
         }
-        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", asked(command).0),
-        (Some(command), _) => format!("echo of \"{}\"", asked(command).0),
+        (Some(command), 0) => format!("busy{with}, or echo of \"{}\"", command_words(command).0),
+        (Some(command), _) => format!("echo of \"{}\"", command_words(command).0),
         (None, 0) if data == Value::default() => format!("busy{with}"),
         (None, 0) => format!("busy{with}, data {}", data.get()),
         (None, code) => format!("echo of code {code}{with}, data {}", data.get()),

@@ -139,7 +139,7 @@ impl Disturbs {
     /// Announces the disturbance before it happens. Switching live outputs needs an answer on a terminal, unless a
     /// write was consented to or the encoder is virtual; without a terminal it goes on.
     fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
-        self.say(output);
+        self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);
         let consented = consent.is_some_and(|consent| consent.yes);
         if !matches!(self, Disturbs::Programs) || is_virtual || consented || !can_ask() {
@@ -152,7 +152,7 @@ impl Disturbs {
     }
 
     /// Announces the disturbance before it happens.
-    fn say(self, output: &Output) {
+    fn announce(self, output: &Output) {
         let id = match self {
             Disturbs::Reading => "ib_disturbs.reading",
             Disturbs::Programs => "ib_disturbs.programs",

@@ -50,16 +50,16 @@ pub(super) fn commit(
     }
     let wear = prepared.wear();
     check_wear::<Interbus>(consent, &prepared)?;
-    let said = words::wear(&prepared).map(|text| text.terminal());
-    if let Some(said) = &said {
-        output.remark(said);
+    let wear_text = words::wear(&prepared).map(|text| text.terminal());
+    if let Some(wear_text) = &wear_text {
+        output.remark(wear_text);
     }
     let stop = TEXTS.text("ib_disturbs.writing").terminal();
     let text = format!("{}{stop}", shown(&prepared).text);
     let mut texts = vec![text.as_str()];
-    if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(said)) = (wear, &said) {
+    if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(wear_text)) = (wear, &wear_text) {
         // More than the maker names: once more.
-        texts.push(said);
+        texts.push(wear_text);
     }
     let agreed = agreed(output, consent, prepared, &texts)?;
     let committed = result_of!(runner.run(InterbusJob::Commit(Box::new(agreed)))?, InterbusOutput::Committed(committed) => *committed);

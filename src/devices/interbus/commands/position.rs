@@ -17,7 +17,7 @@ use crate::result_of;
 /// Reads positions. The encoder is identified once, since a position needs its gear; then only the IN word is read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
-    Disturbs::Reading.say(output);
+    Disturbs::Reading.announce(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
         // The window determines the visible bits of the position; no other program is selected for that.

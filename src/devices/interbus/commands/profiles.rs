@@ -7,7 +7,7 @@ use super::plan::{commit, prepare, shown};
 use super::run::{Runner, programs, survey};
 use crate::cli::args::{Common, Restore, Save};
 use crate::cli::output::{Output, count};
-use crate::cli::profiles::{Unrestored, keep, restore_options, say_mounting_left, to_restore, write_restore};
+use crate::cli::profiles::{Unrestored, restore_options, save_profile, say_mounting_left, to_restore, write_restore};
 use crate::cli::runner::unexpected;
 use crate::cli::{Done, Result};
 use crate::devices::interbus::jobs::{Change, InterbusJob, InterbusOutput};
@@ -18,7 +18,7 @@ use crate::profile::Body;
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let profile = saved(common, output)?;
     let programs = profile.image.known().count();
-    keep(&save.file, Body::new(profile))?;
+    save_profile(&save.file, Body::new(profile))?;
     let json = json!({"file": save.file, "programs": programs});
     output.show(&json, &format!("{}: {}\n", save.file.display(), count(programs, "cam program")))?;
     Ok(Done::Well)

@@ -9,20 +9,20 @@ use crate::devices::interbus::profile::{Base, Image, InterbusPlan, InterbusProfi
 use crate::profile::Body;
 use crate::store::DeviceKey;
 use crate::worker::commit::{Planned, backup_of, write_plan};
-use crate::worker::{SessionContext, Tell};
+use crate::worker::{JobReport, SessionContext};
 
 pub(super) fn commit(
     encoder: &mut Interbus,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     commit: &Commit,
     tell: ProgressSink<'_>,
 ) -> Result<Committed, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
+    let master = encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
     let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
     write_plan(&store, is_virtual, commit, &mut write, &mut |at| {
-        (tell.borrow_mut())(Tell::Progress(at.map(|op| JobStep::Operation(op.item()))));
+        (tell.borrow_mut())(JobReport::Progress(at.map(|op| JobStep::Operation(op.item()))));
     })
 }
 

@@ -63,7 +63,7 @@ impl Journal for Notes {
     }
 
     fn leaves(&mut self, serial_number: &str, excursion: &Excursion) {
-        warn(self.excursions().keep(KIND, &self.name(serial_number), &emit(excursion)));
+        warn(self.excursions().save(KIND, &self.name(serial_number), &emit(excursion)));
     }
 
     fn is_back(&mut self, serial_number: &str) {

@@ -27,7 +27,7 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Device, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
 /// An INTERBUS encoder behind its gateway.
 pub struct Interbus {
@@ -44,13 +44,13 @@ impl fmt::Debug for Interbus {
 }
 
 /// Receives the reports of a job.
-type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
+type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
     /// The host's side of the process data; each step of the handshake is told.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext, told: impl FnMut(Handshake) + 'a) -> Master<'a> {
-        let notes = Notes::of(desk.store.clone(), desk.is_virtual);
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station).telling(told).noting(notes)
+    fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
+        let notes = Notes::of(context.store.clone(), context.is_virtual);
+        Master::new(context.ctx(&mut *self.wire), &mut self.station).telling(on_step).noting(notes)
     }
 }
 
@@ -90,57 +90,61 @@ impl Device for Interbus {
 
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: InterbusJob,
         tell: ProgressSink<'_>,
     ) -> Result<InterbusOutput, JobError> {
         use InterbusOutput as Out;
         match job {
-            InterbusJob::Prepare(change) => Ok(Out::Prepared(Box::new(prepare::prepare(self, desk, &change, tell)?))),
-            InterbusJob::Commit(commit) => Ok(Out::Committed(Box::new(commit::commit(self, desk, &commit, tell)?))),
-            InterbusJob::Hello => self.ask(desk, tell, |master, _| Ok(Out::Hello(master.reading()?))),
-            InterbusJob::Position => self.ask(desk, tell, |master, _| Ok(Out::Position(master.reading()?))),
-            InterbusJob::Survey => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
-                Ok(Out::Surveyed(Box::new(survey(master, told)?)))
+            InterbusJob::Prepare(change) => {
+                Ok(Out::Prepared(Box::new(prepare::prepare(self, context, &change, tell)?)))
+            }
+            InterbusJob::Commit(commit) => Ok(Out::Committed(Box::new(commit::commit(self, context, &commit, tell)?))),
+            InterbusJob::Hello => self.ask(context, tell, |master, _| Ok(Out::Hello(master.reading()?))),
+            InterbusJob::Position => self.ask(context, tell, |master, _| Ok(Out::Position(master.reading()?))),
+            InterbusJob::Survey => self.ask(context, tell, |master, steps| {
+                let report = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
+                Ok(Out::Surveyed(Box::new(survey(master, report)?)))
             }),
-            InterbusJob::Programs(wanted) => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| steps(done, total, JobStep::Program(what));
-                let (programs, shift) = read_programs(master, &wanted, told)?;
+            InterbusJob::Programs(wanted) => self.ask(context, tell, |master, steps| {
+                let report = &mut |done, total, what| steps(done, total, JobStep::Program(what));
+                let (programs, shift) = read_programs(master, &wanted, report)?;
                 Ok(Out::Programs(programs, shift))
             }),
-            InterbusJob::Identify => self.ask(desk, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?)))),
-            InterbusJob::Status => self.ask(desk, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?)))),
+            InterbusJob::Identify => {
+                self.ask(context, tell, |master, _| Ok(Out::Identity(Box::new(identify(master)?))))
+            }
+            InterbusJob::Status => self.ask(context, tell, |master, _| Ok(Out::Status(Box::new(read_status(master)?)))),
             InterbusJob::Check => {
-                let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+                let (store, is_virtual) = (context.store.clone(), context.is_virtual);
                 let wear = |identity: &Identity| Limits {
                     seen: cycles_seen(&store, &device_key(identity, is_virtual)),
                     warning: WEAR_WARNING,
                     limit: WEAR_LIMIT,
                 };
-                self.ask(desk, tell, |master, steps| {
-                    let told = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
-                    Ok(Out::Check(check_device(master, wear, told)?))
+                self.ask(context, tell, |master, steps| {
+                    let report = &mut |done, total, what| steps(done, total, JobStep::ReadOut(what));
+                    Ok(Out::Check(check_device(master, wear, report)?))
                 })
             }
-            InterbusJob::Read(item) => self.ask(desk, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
+            InterbusJob::Read(item) => self.ask(context, tell, |master, _| Ok(Out::Item(read_item(master, item)?))),
             InterbusJob::ReadOut(what) => {
-                self.ask(desk, tell, |master, _| Ok(Out::ReadOut(what, read_one(master, what)?)))
+                self.ask(context, tell, |master, _| Ok(Out::ReadOut(what, read_one(master, what)?)))
             }
-            InterbusJob::Select(mode) => self.ask(desk, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
-            InterbusJob::Save { programs } => self.ask(desk, tell, |master, steps| {
-                let told = &mut |done, total, what| match what {
+            InterbusJob::Select(mode) => self.ask(context, tell, |master, _| Ok(Out::Selected(select(master, mode)?))),
+            InterbusJob::Save { programs } => self.ask(context, tell, |master, steps| {
+                let report = &mut |done, total, what| match what {
                     SaveStep::ReadOut(what) => steps(done, total, JobStep::ReadOut(what)),
                     SaveStep::Program(what) => steps(done, total, JobStep::Program(what)),
                 };
-                Ok(Out::Saved(Box::new(save(master, programs, told)?)))
+                Ok(Out::Saved(Box::new(save(master, programs, report)?)))
             }),
-            InterbusJob::LeadBack => self.ask(desk, tell, |master, _| Ok(Out::LedBack(master.end_what_was_left()?))),
+            InterbusJob::LeadBack => self.ask(context, tell, |master, _| Ok(Out::LedBack(master.end_what_was_left()?))),
         }
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<WordReading, JobError> {
-        Ok(self.master(desk, |_| {}).reading()?)
+    fn sample(&mut self, context: &mut SessionContext) -> Result<WordReading, JobError> {
+        Ok(self.master(context, |_| {}).reading()?)
     }
 
     fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<WordReading>, JobError> {
@@ -160,13 +164,15 @@ impl Interbus {
     /// word.
     fn ask(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         tell: ProgressSink<'_>,
         ask: impl FnOnce(&mut Master<'_>, Steps<'_>) -> Result<InterbusOutput, Error>,
     ) -> Result<InterbusOutput, JobError> {
         let tell = std::cell::RefCell::new(tell);
-        let mut master = self.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
-        let mut steps = |done, total, what| (tell.borrow_mut())(Tell::Progress(Progress { done, total, what }));
+        let mut master =
+            self.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+        let mut steps =
+            |done, total, what| (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: what }));
         Ok(ask(&mut master, &mut steps)?)
     }
 }

@@ -8,22 +8,23 @@ use crate::devices::interbus::profile::{
 };
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::worker::commit::cycles_seen;
-use crate::worker::{Progress, SessionContext, Tell};
+use crate::worker::{JobReport, Progress, SessionContext};
 
 pub(super) fn prepare(
     encoder: &mut Interbus,
-    desk: &mut SessionContext,
+    context: &mut SessionContext,
     change: &Change,
     tell: ProgressSink<'_>,
 ) -> Result<Prepared, JobError> {
-    let (store, is_virtual) = (desk.store.clone(), desk.is_virtual);
+    let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let tell = std::cell::RefCell::new(tell);
-    let mut master = encoder.master(desk, |step| (tell.borrow_mut())(Tell::Remark(DeviceMessage::Handshake(step))));
-    let told = &mut |done, total, program| {
-        (tell.borrow_mut())(Tell::Progress(Progress { done, total, what: JobStep::Program(program) }));
+    let mut master =
+        encoder.master(context, |step| (tell.borrow_mut())(JobReport::Remark(DeviceMessage::Handshake(step))));
+    let report = &mut |done, total, program| {
+        (tell.borrow_mut())(JobReport::Progress(Progress { done, total, step: JobStep::Program(program) }));
     };
     let identity = identify(&mut master)?;
-    let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, told);
+    let mut state = |programs: &[ProgramNumber]| read_state(&mut master, &identity, programs, report);
     let device;
     let plan = match change {
         Change::Restore { profile, options } => {

@@ -38,7 +38,7 @@ pub enum CheckFinding {
     /// The IN word was read so often, within so long a reply each.
     Replies {
         /// Number of requests.
-        asked: u32,
+        requested: u32,
         /// The longest, in milliseconds.
         slowest_ms: u64,
     },
@@ -80,7 +80,7 @@ pub enum CheckFinding {
     /// Values read out.
     ReadOuts {
         /// Number of values.
-        asked: u64,
+        requested: u64,
         /// Milliseconds for each.
         each_ms: u64,
     },
@@ -109,7 +109,7 @@ const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 pub fn check(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> Wear,
-    told: &mut dyn FnMut(u64, u64, ReadOut),
+    progress: &mut dyn FnMut(u64, u64, ReadOut),
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {
@@ -117,13 +117,13 @@ pub fn check(
         return Ok(lines);
     }
     let begun = master.now();
-    match master.guarded(|master| read_survey(master, told)) {
+    match master.guarded(|master| read_survey(master, progress)) {
         Ok(survey) => {
-            let asked = survey.read_outs().count() as u64;
-            let each_ms = master.now().since(begun).as_millis() as u64 / asked.max(1);
+            let requested = survey.read_outs().count() as u64;
+            let each_ms = master.now().since(begun).as_millis() as u64 / requested.max(1);
             lines.push(InterbusStepResult::of(
                 CheckStep::Handshake,
-                vec![(Verdict::Good, CheckFinding::ReadOuts { asked, each_ms })],
+                vec![(Verdict::Good, CheckFinding::ReadOuts { requested, each_ms })],
             ));
             lines.push(identity(&survey));
             lines.push(temperature(survey.temperature_tenths));
@@ -148,7 +148,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
     let slowest_ms = slowest.as_millis() as u64;
     let answers = InterbusStepResult::of(
         CheckStep::Gateway,
-        vec![(Verdict::Good, CheckFinding::Replies { asked: LOOKS, slowest_ms })],
+        vec![(Verdict::Good, CheckFinding::Replies { requested: LOOKS, slowest_ms })],
     );
     let (order, fits) = match master.suspected_order(word)? {
         Some(swapped) => ((Verdict::Bad, CheckFinding::OrderSwapped { input: word, swapped }), false),

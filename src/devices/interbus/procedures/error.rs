@@ -123,18 +123,18 @@ pub enum Damage {
         bytes: usize,
     },
     /// A reply of another unit.
-    #[error("a reply of unit {got} instead of {asked}")]
+    #[error("a reply of unit {got} instead of {requested}")]
     Unit {
         /// Requested unit.
-        asked: u8,
+        requested: u8,
         /// Unit of the reply.
         got: u8,
     },
     /// A reply to another function.
-    #[error("a reply to function {got} instead of {asked}")]
+    #[error("a reply to function {got} instead of {requested}")]
     Function {
         /// Requested function.
-        asked: u8,
+        requested: u8,
         /// Function of the reply.
         got: u8,
     },
@@ -192,16 +192,16 @@ pub enum Error {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The gateway does not answer.
-    #[error("the gateway does not answer while {asked} ({tries} tries)")]
+    #[error("the gateway does not answer while {requested} ({tries} tries)")]
     NoReply {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
     },
     /// Every reply is damaged.
-    #[error("damaged reply while {asked} ({tries} tries): {cause}")]
+    #[error("damaged reply while {requested} ({tries} tries): {cause}")]
     Damaged {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
         /// Damage of the last reply.
@@ -211,9 +211,9 @@ pub enum Error {
     #[error("the gateway's line is never silent")]
     NeverSilent,
     /// It refuses.
-    #[error("the gateway refuses {asked}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
+    #[error("the gateway refuses {requested}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception {
-        asked: RequestedItem,
+        requested: RequestedItem,
         /// Its code.
         exception: Exception,
     },

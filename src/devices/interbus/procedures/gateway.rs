@@ -12,7 +12,7 @@ use super::LinkParameters;
 use super::data::ProcessData;
 use super::error::{Damage, Exception, RequestedItem};
 use super::station::Station;
-use super::{Error, Known};
+use super::{Error, KnownState};
 use crate::bits::MaskedBytes;
 use crate::devices::interbus::protocol::WordOrder;
 use crate::link::Ctx;
@@ -66,7 +66,7 @@ type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
     /// The gateway of a station, and what is known of the encoder behind it.
-    pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut Known) {
+    pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut KnownState) {
         let Station { link, recorded, line, next, waiting, silent, known } = station;
         let (link, recorded) = (*link, *recorded);
         line.begin_job();
@@ -77,11 +77,11 @@ impl<'a> Gateway<'a> {
     }
 
     /// Asks, and again where that may help.
-    fn ask(&mut self, asked: RequestedItem) -> Result<Vec<u16>, Error> {
+    fn ask(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
             tries += 1;
-            let trouble = match self.ask_once(asked)? {
+            let trouble = match self.ask_once(requested)? {
                 Ok(registers) => {
                     *self.state.silent = false;
                     return Ok(registers);
@@ -98,17 +98,17 @@ impl<'a> Gateway<'a> {
                 ExchangeError::Silence => {
                     if *self.state.silent || tries >= SILENCES {
                         *self.state.silent = true;
-                        return Err(Error::NoReply { asked, tries });
+                        return Err(Error::NoReply { requested, tries });
                     }
                 }
                 ExchangeError::Damage(cause) => {
                     if tries >= TRIES {
-                        return Err(Error::Damaged { asked, tries, cause });
+                        return Err(Error::Damaged { requested, tries, cause });
                     }
                 }
                 ExchangeError::Exception(exception) => {
                     if !exception.passes() || tries >= TRIES {
-                        return Err(Error::Exception { asked, exception });
+                        return Err(Error::Exception { requested, exception });
                     }
                     self.line.wait(BUSY_PAUSE)?;
                 }
@@ -116,12 +116,12 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn ask_once(&mut self, asked: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
+    fn ask_once(&mut self, requested: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
         // Not 0: what answers without looking at the number has it.
         *self.state.next = number.checked_add(1).unwrap_or(1);
-        let Some((request, bytes)) = self.request(asked, number) else {
+        let Some((request, bytes)) = self.request(requested, number) else {
             return Ok(Err(ExchangeError::Damage(Damage::Registers)));
         };
         let sent_at = self.line.now();
@@ -135,7 +135,7 @@ impl<'a> Gateway<'a> {
                         let now = self.line.now();
                         self.line.show(now, MaskedBytes::clear(&frame));
                         if self.recorded || frame.get(..2) == Some(&number.to_be_bytes()[..]) {
-                            let judged = judge(&request, asked, frame);
+                            let judged = judge(&request, requested, frame);
                             if !matches!(judged, Err(ExchangeError::Damage(_))) {
                                 self.state.line.answered();
                                 self.state.line.answer_began(now);
@@ -161,8 +161,8 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn request(&self, asked: RequestedItem, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
-        request(asked, self.link.unit, number, self.link.order)
+    fn request(&self, requested: RequestedItem, number: u16) -> Option<(ModbusRequest, Vec<u8>)> {
+        request(requested, self.link.unit, number, self.link.order)
     }
 
     /// The next whole frame of what has come; an error where it is none, and all that has come is let go.
@@ -183,19 +183,19 @@ impl<'a> Gateway<'a> {
         }
     }
 
-    fn read(&mut self, asked: RequestedItem) -> Result<u32, Error> {
-        match *self.ask(asked)?.as_slice() {
+    fn read(&mut self, requested: RequestedItem) -> Result<u32, Error> {
+        match *self.ask(requested)?.as_slice() {
             [first, second] => Ok(self.link.order.word([first, second])),
-            _ => Err(Error::Damaged { asked, tries: 1, cause: Damage::Registers }),
+            _ => Err(Error::Damaged { requested, tries: 1, cause: Damage::Registers }),
         }
     }
 }
 
 /// The frame of a request.
-fn request(asked: RequestedItem, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
+fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
     let mut request = ModbusRequest::new_tcp_udp(unit, number);
     let mut bytes = Vec::new();
-    let made = match asked {
+    let made = match requested {
         RequestedItem::Input { register } => request.generate_get_inputs(register, 2, &mut bytes),
         RequestedItem::Output { register } => request.generate_get_holdings(register, 2, &mut bytes),
         RequestedItem::Write { register, word } => {
@@ -222,9 +222,9 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     if received.len() < SHORTEST || length != Ok(received.len()) {
         return broken(Damage::NoFrame { bytes: received.len() });
     }
-    let (number, unit, asked) = asked(sent, order)?;
-    let (request, _) = request(asked, unit, number, order)?;
-    match judge(&request, asked, received.to_vec()) {
+    let (number, unit, requested) = requested_item(sent, order)?;
+    let (request, _) = request(requested, unit, number, order)?;
+    match judge(&request, requested, received.to_vec()) {
         Err(ExchangeError::Damage(damage)) => broken(damage),
         Err(ExchangeError::Exception(exception)) => Some(Fault::Refused(exception)),
         Ok(_) | Err(ExchangeError::Silence) => None,
@@ -232,38 +232,38 @@ pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
 }
 
 /// Parses the request of a frame in the trace, with its number and its unit.
-fn asked(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
+fn requested_item(sent: &[u8], order: WordOrder) -> Option<(u16, u8, RequestedItem)> {
     let [number_high, number_low, _, _, _, _, unit, function, high, low, ..] = *sent else { return None };
     let register = u16::from_be_bytes([high, low]);
-    let asked = match (function, carried(true, sent, order)) {
+    let requested = match (function, carried(true, sent, order)) {
         (4, _) => RequestedItem::Input { register },
         (3, _) => RequestedItem::Output { register },
         (_, Some(Carried::Out(word))) => RequestedItem::Write { register, word },
         _ => return None,
     };
-    Some((u16::from_be_bytes([number_high, number_low]), unit, asked))
+    Some((u16::from_be_bytes([number_high, number_low]), unit, requested))
 }
 
 /// Parses a reply with the right number.
-fn judge(request: &ModbusRequest, asked: RequestedItem, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
+fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) -> Result<Vec<u16>, ExchangeError> {
     let [_, _, ..] = frame.as_slice() else { return Err(ExchangeError::Damage(Damage::Registers)) };
     // A recording has the number of its own request.
     frame.splice(..2, request.tr_id.to_be_bytes());
     let (unit, function) = (frame.get(HEADER - 1).copied(), frame.get(HEADER).copied());
     let (Some(unit), Some(function)) = (unit, function) else { return Err(ExchangeError::Damage(Damage::Registers)) };
     if unit != request.unit_id {
-        return Err(ExchangeError::Damage(Damage::Unit { asked: request.unit_id, got: unit }));
+        return Err(ExchangeError::Damage(Damage::Unit { requested: request.unit_id, got: unit }));
     }
     // The crate takes the codes 0Ah and 0Bh for others, and any other function for a refusal.
-    if function == asked.function() | REFUSED {
+    if function == requested.function() | REFUSED {
         return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }
-    if function != asked.function() {
-        return Err(ExchangeError::Damage(Damage::Function { asked: asked.function(), got: function }));
+    if function != requested.function() {
+        return Err(ExchangeError::Damage(Damage::Function { requested: requested.function(), got: function }));
     }
     let body = frame.get(HEADER + 1..).unwrap_or_default();
     let mut registers: Vec<u16> = Vec::new();
-    let fits = match asked {
+    let fits = match requested {
         RequestedItem::Input { .. } | RequestedItem::Output { .. } => {
             matches!(body, [4, _, _, _, _]) && request.parse_u16(&frame, &mut registers).is_ok()
         }

@@ -15,12 +15,12 @@ pub struct Handshake {
     pub command: Command,
     pub input: u32,
     /// Meaning of IN as the answer.
-    pub says: Says,
+    pub reply: WordReply,
 }
 
 /// The answer of an IN word to an OUT word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Says {
+pub enum WordReply {
     /// It runs: a position, a speed or cam outputs.
     Runs,
     /// It is at work.
@@ -42,19 +42,19 @@ pub(super) fn is_echo(command: Command, input: u32) -> bool {
     input == echo || matches!(command, Command::Set(..)) && input == echo | MANUFACTURER
 }
 
-impl Says {
+impl WordReply {
     /// Returns the meaning of `input` as an answer to `command`.
     pub fn of(command: Command, input: u32) -> Self {
         if is_echo(command, input) && !matches!(command, Command::Normal | Command::Run) {
-            return Says::Echoed;
+            return WordReply::Echoed;
         }
         match Reply::parse(input) {
-            Reply::Run { .. } => Says::Runs,
-            Reply::Busy { .. } => Says::Busy,
-            Reply::Echo { .. } => Says::OldEcho,
-            Reply::ReadOut(value) => Says::Value(value),
-            Reply::Error(error) => Says::Error(error),
-            Reply::UnknownReadOut(_) | Reply::Unknown { .. } => Says::Unknown,
+            Reply::Run { .. } => WordReply::Runs,
+            Reply::Busy { .. } => WordReply::Busy,
+            Reply::Echo { .. } => WordReply::OldEcho,
+            Reply::ReadOut(value) => WordReply::Value(value),
+            Reply::Error(error) => WordReply::Error(error),
+            Reply::UnknownReadOut(_) | Reply::Unknown { .. } => WordReply::Unknown,
         }
     }
 }

@@ -86,8 +86,8 @@ pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
-    master.guarded(|master| read_survey(master, told))
+pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
+    master.guarded(|master| read_survey(master, progress))
 }
 
 /// Reads how it is.
@@ -126,9 +126,9 @@ pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Err
 pub fn read_programs(
     master: &mut Master<'_>,
     wanted: &[ProgramNumber],
-    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+    progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
-    master.guarded(|master| programs(master, wanted, told))
+    master.guarded(|master| programs(master, wanted, progress))
 }
 
 /// Sends the encoder into a mode, in which it stays.
@@ -167,14 +167,17 @@ pub(super) fn read_identity(master: &mut Master<'_>, values: &mut Vec<(ReadOut, 
     Ok(identity)
 }
 
-pub(super) fn read_survey(master: &mut Master<'_>, told: &mut dyn FnMut(u64, u64, ReadOut)) -> Result<Survey, Error> {
+pub(super) fn read_survey(
+    master: &mut Master<'_>,
+    progress: &mut dyn FnMut(u64, u64, ReadOut),
+) -> Result<Survey, Error> {
     let total = READ_OUTS.len() as u64;
     let mut values = Vec::new();
-    told(0, total, ReadOut::SERIAL_NUMBER);
+    progress(0, total, ReadOut::SERIAL_NUMBER);
     let identity = read_identity(master, &mut values)?;
     for row in &READ_OUTS {
         if values.iter().all(|(read_out, _)| *read_out != row.read_out) {
-            told(values.len() as u64, total, row.read_out);
+            progress(values.len() as u64, total, row.read_out);
             values.push((row.read_out, master.read_out(row.read_out)?));
         }
     }
@@ -240,13 +243,13 @@ pub(super) fn read_image(
     master: &mut Master<'_>,
     parameters: Parameters,
     wanted: &[ProgramNumber],
-    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+    progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<Image, Error> {
     let mut image = Image::of(parameters);
     if wanted.is_empty() {
         return Ok(image);
     }
-    let (read, shift) = programs(master, wanted, told)?;
+    let (read, shift) = programs(master, wanted, progress)?;
     image.shift = Some(shift);
     for (number, program) in read {
         if let Some(place) = image.program_mut(number) {
@@ -259,14 +262,14 @@ pub(super) fn read_image(
 pub(super) fn programs(
     master: &mut Master<'_>,
     wanted: &[ProgramNumber],
-    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+    progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<(Vec<(ProgramNumber, Program)>, WindowShift), Error> {
     let selects_first = wanted.is_empty() && !matches!(master.mode(), Some(StartupMode::Cams(_)));
     master.will_read(wanted.len() + usize::from(selects_first))?;
     let total = wanted.len() as u64;
     let mut read = Vec::new();
     for (done, number) in (0..).zip(wanted) {
-        told(done, total, *number);
+        progress(done, total, *number);
         master.go(StartupMode::Cams(*number))?;
         read.push((*number, read_program(master)?));
     }

@@ -2,35 +2,35 @@
 //! What may be sent is what the encoder takes for what it is in its mode; anything else is refused here.
 
 mod acknowledge;
-mod held;
 mod modes;
 mod notes;
+mod stability;
 
 use std::time::Duration;
 
-use held::{CycleResult, Held, LEAST_PATIENCE};
 use notes::Notes;
+use stability::{CycleResult, Held, LEAST_PATIENCE};
 
 use super::data::ProcessData;
 use super::error::{Awaited, RequestedItem};
-use super::handshake::{Handshake, LeftState, Says, is_echo};
+use super::handshake::{Handshake, LeftState, WordReply, is_echo};
 use super::reading::{swapped, swapped_unexplained};
-use super::{Error, Gateway, Known, Station, WordReading};
+use super::{Error, Gateway, KnownState, Station, WordReading};
 use crate::devices::interbus::protocol::{Command, Gear, Mode, ReadOut, Reply, StartupMode, Value, WindowShift};
 use crate::link::Ctx;
 use crate::units::Moment;
 
 /// Receives each step.
-type Teller<'a> = Box<dyn FnMut(Handshake) + 'a>;
+type StepListener<'a> = Box<dyn FnMut(Handshake) + 'a>;
 
 /// The host's side of the process data of one encoder, for one job.
 pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
-    known: &'a mut Known,
+    known: &'a mut KnownState,
     patience: Duration,
     /// It is a recording that answers.
     recorded: bool,
-    tell: Option<Teller<'a>>,
+    tell: Option<StepListener<'a>>,
     /// The mode, as read in this job.
     is: Option<StartupMode>,
     /// It was sent into another mode and has not said yet that it is there.
@@ -51,7 +51,7 @@ pub struct Master<'a> {
     input: u32,
     /// When it was seen last to do what it did before this job, with nothing asked of it.
     rested: Option<Moment>,
-    told: Option<(u32, Says)>,
+    reported: Option<(u32, WordReply)>,
     /// The notes that outlast this job.
     notes: Notes<'a>,
 }
@@ -70,7 +70,7 @@ impl<'a> Master<'a> {
         Master::with(Box::new(data), &mut station.known, patience)
     }
 
-    fn with(data: Box<dyn ProcessData + 'a>, known: &'a mut Known, patience: Duration) -> Self {
+    fn with(data: Box<dyn ProcessData + 'a>, known: &'a mut KnownState, patience: Duration) -> Self {
         Master {
             data,
             known,
@@ -87,7 +87,7 @@ impl<'a> Master<'a> {
             lost: false,
             input: 0,
             rested: None,
-            told: None,
+            reported: None,
             notes: Notes::default(),
         }
     }
@@ -133,7 +133,7 @@ impl<'a> Master<'a> {
     /// The way to it.
     pub fn reading(&mut self) -> Result<WordReading, Error> {
         let word = self.data.input()?;
-        let Known { mode, gear, shift, .. } = *self.known;
+        let KnownState { mode, gear, shift, .. } = *self.known;
         Ok(WordReading { at: self.data.now(), word, mode, gear, shift })
     }
 
@@ -166,9 +166,9 @@ impl<'a> Master<'a> {
         self.ensure_legal(command)?;
         let (before, found) = (self.input, self.found_error);
         self.until(command, Awaited::Value, self.patience, |CycleResult { word, same, .. }| match Reply::parse(word) {
-            Reply::ReadOut(value) if same.stands() => Some(Ok(value)),
-            Reply::UnknownReadOut(_) if same.stands() => Some(Err(Error::UnknownReadOut { command })),
-            Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
+            Reply::ReadOut(value) if same.is_stable() => Some(Ok(value)),
+            Reply::UnknownReadOut(_) if same.is_stable() => Some(Err(Error::UnknownReadOut { command })),
+            Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
                 Some(Err(Error::Refused { sent: command, error }))
             }
             _ => None,
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
         let (mut runs, found) = (Held::new(self.recorded), self.found_error);
         self.until(command, Awaited::Run, patience, |CycleResult { now, word, same }| {
             runs.go_on(matches!(Reply::parse(word), Reply::Run { .. }), now);
-            (runs.stands() || Some(word) == found && same.stays()).then_some(Ok(()))
+            (runs.is_stable() || Some(word) == found && same.is_settled()).then_some(Ok(()))
         })
     }
 
@@ -226,7 +226,7 @@ impl<'a> Master<'a> {
         let fired = self.until(Command::Preset, Awaited::Preset, self.patience, |CycleResult { now, word, .. }| {
             sent.go_on(true, now);
             there.go_on(matches!(Reply::parse(word), Reply::Run { value, .. } if is_there(value.get())), now);
-            (sent.stays() && there.stands()).then_some(Ok(()))
+            (sent.is_settled() && there.is_stable()).then_some(Ok(()))
         });
         self.shielded(Self::normal).and(fired)
     }
@@ -241,7 +241,7 @@ impl<'a> Master<'a> {
         mut judge: impl FnMut(CycleResult) -> Option<Result<T, Error>>,
     ) -> Result<T, Error> {
         let begun = self.data.now();
-        let least = held::least_cycles(self.recorded);
+        let least = stability::least_cycles(self.recorded);
         let (mut last, mut same, mut cycles) = (None, Held::new(self.recorded), 0);
         let mut at_work = Held::new(self.recorded);
         loop {
@@ -277,14 +277,14 @@ impl<'a> Master<'a> {
                 ended?
             }
         };
-        let (out, input, says) = (command.emit(), self.input, Says::of(command, self.input));
+        let (out, input, reply) = (command.emit(), self.input, WordReply::of(command, self.input));
         // The position of a shaft that turns is not told again and again.
-        if self.told != Some((out, says))
+        if self.reported != Some((out, reply))
             && let Some(tell) = &mut self.tell
         {
-            tell(Handshake { at: self.data.now(), out, command, input, says });
+            tell(Handshake { at: self.data.now(), out, command, input, reply });
         }
-        self.told = Some((out, says));
+        self.reported = Some((out, reply));
         Ok(input)
     }
 
@@ -338,5 +338,5 @@ impl<'a> Master<'a> {
 
 /// The gateway refuses the word as such: it was not written. With any other exception it may have been.
 fn is_unwritten(error: &Error) -> bool {
-    matches!(error, Error::Exception { asked: RequestedItem::Write { .. }, exception } if !exception.passes())
+    matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

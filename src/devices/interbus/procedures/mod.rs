@@ -22,7 +22,7 @@ pub mod write;
 pub use data::ProcessData;
 pub use error::{Awaited, Damage, Error, Exception, Implausible, RequestedItem};
 pub use gateway::{Carried, Fault, Gateway, carried, fault};
-pub use handshake::{Handshake, LeftState, Says};
+pub use handshake::{Handshake, LeftState, WordReply};
 pub use identify::{Identity, Status, Survey, identify, read_one, read_programs, read_status, select, survey};
 pub use journal::{Excursion, Journal};
 pub use master::Master;
@@ -30,4 +30,4 @@ pub use reading::{TurnPosition, WordReading};
 pub use save::{SaveStep, read_item, read_state, save};
 pub use station::{LinkParameters, Station};
 
-use station::Known;
+use station::KnownState;

@@ -35,12 +35,13 @@ impl Survey {
 pub fn save(
     master: &mut Master<'_>,
     with_programs: bool,
-    told: &mut dyn FnMut(u64, u64, SaveStep),
+    progress: &mut dyn FnMut(u64, u64, SaveStep),
 ) -> Result<InterbusProfile, Error> {
     master.guarded(|master| {
-        let survey = read_survey(master, &mut |done, total, read_out| told(done, total, SaveStep::ReadOut(read_out)))?;
+        let survey =
+            read_survey(master, &mut |done, total, read_out| progress(done, total, SaveStep::ReadOut(read_out)))?;
         let wanted: Vec<ProgramNumber> = if with_programs { ProgramNumber::all().collect() } else { Vec::new() };
-        let of_program = &mut |done, total, program| told(done, total, SaveStep::Program(program));
+        let of_program = &mut |done, total, program| progress(done, total, SaveStep::Program(program));
         let image = read_image(master, survey.parameters, &wanted, of_program)?;
         Ok(InterbusProfile::of(survey.identity.profile(), image, survey.recorded()))
     })
@@ -63,12 +64,12 @@ pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
     programs: &[ProgramNumber],
-    told: &mut dyn FnMut(u64, u64, ProgramNumber),
+    progress: &mut dyn FnMut(u64, u64, ProgramNumber),
 ) -> Result<DeviceState, Error> {
     identity.gear()?;
     master.guarded(|master| {
         let parameters = read_other_parameters(master, identity)?;
-        let image = read_image(master, parameters, programs, told)?;
+        let image = read_image(master, parameters, programs, progress)?;
         Ok(DeviceState { identity: identity.profile(), image })
     })
 }

@@ -43,12 +43,12 @@ pub struct Station {
     pub(super) waiting: Vec<u8>,
     /// The gateway was silent when it was asked last.
     pub(super) silent: bool,
-    pub(super) known: Known,
+    pub(super) known: KnownState,
 }
 
 /// The known state of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Known {
+pub(super) struct KnownState {
     /// Its mode, as it said last.
     pub(super) mode: Option<StartupMode>,
     pub(super) gear: Option<Gear>,
@@ -71,7 +71,7 @@ impl Station {
             next: 1,
             waiting: Vec::new(),
             silent: false,
-            known: Known::default(),
+            known: KnownState::default(),
         }
     }
 

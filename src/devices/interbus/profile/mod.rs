@@ -30,6 +30,6 @@ pub use restore::{
 };
 pub use scale::{Outside, Placed, Scale, ScaleError, Unit};
 pub use table::{
-    CamTable, Column, Filled, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableRow, Wrong,
-    emit_table,
+    CamTable, Column, Filled, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableProblemKind,
+    TableRow, emit_table,
 };

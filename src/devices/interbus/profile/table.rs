@@ -63,7 +63,7 @@ pub struct TableRow {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableEdge {
     /// As it stands in the table, in units.
-    pub asked: f64,
+    pub requested: f64,
     /// On the encoder.
     pub step: u32,
     /// Rounding error, in units.
@@ -72,19 +72,19 @@ pub struct TableEdge {
 
 /// Something that could not be taken.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("line {line}, column {column}: {what}")]
+#[error("line {line}, column {column}: {kind}")]
 pub struct TableProblem {
     /// The line, counted from 1.
     pub line: u64,
     /// The column, counted from 1.
     pub column: u64,
     /// The problem.
-    pub what: Wrong,
+    pub kind: TableProblemKind,
 }
 
 /// A problem in a line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Wrong {
+pub enum TableProblemKind {
     /// There is nothing in the table.
     #[error("the table has no rows")]
     Empty,
@@ -254,6 +254,6 @@ impl TableRow {
 impl TableEdge {
     /// Returns whether the edge is not where it was requested.
     pub fn is_off(self) -> bool {
-        self.off.abs() > 1e-9 * self.asked.abs().max(1.0)
+        self.off.abs() > 1e-9 * self.requested.abs().max(1.0)
     }
 }

@@ -206,13 +206,13 @@ fn read_program(
         }
         program.set_cam(cam, Some(Cam { start: value(&mut entries, "start")?, stop: value(&mut entries, "stop")? }));
         names.set_cam(at, cam, entries.optional("name", Expected::Text)?.unwrap_or_default());
-        keep(&mut unknown.cams, (at, cam), entries.rest()?);
+        add_unknown(&mut unknown.cams, (at, cam), entries.rest()?);
     }
-    keep(&mut unknown.programs, at, entries.rest()?);
+    add_unknown(&mut unknown.programs, at, entries.rest()?);
     Ok((at, program))
 }
 
-fn keep<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place: K, unknown: Unknown) {
+fn add_unknown<K: Ord>(kept: &mut std::collections::BTreeMap<K, Unknown>, place: K, unknown: Unknown) {
     if !unknown.is_empty() {
         kept.insert(place, unknown);
     }

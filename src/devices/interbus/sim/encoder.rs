@@ -35,7 +35,7 @@ pub struct Encoder {
     /// Steps of the disc between the shaft's place and the position's zero.
     offset: i64,
     mode: StartupMode,
-    doing: Activity,
+    activity: Activity,
     /// The present settings; a store makes them permanent.
     memory: Memory,
     eeprom: Eeprom,
@@ -44,7 +44,7 @@ pub struct Encoder {
     power: bool,
     /// The OUT word of its master; it stays until the master changes it.
     out: u32,
-    says: Says,
+    content: InWordContent,
     /// The IN word that is still read after a new OUT word.
     old: Old,
     busy_until: Moment,
@@ -74,7 +74,7 @@ enum Activity {
 
 /// The content of the IN word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Says {
+enum InWordContent {
     /// Position, speed or cam output, as they are at the moment.
     Live,
     Word(u32),
@@ -138,13 +138,13 @@ impl Encoder {
             shaft: Shaft::new(config.position, config.rpm),
             offset: 0,
             mode: config.mode,
-            doing: Activity::Running,
+            activity: Activity::Running,
             eeprom: Eeprom::new(memory.clone(), config.stores, config.faults.die_in_store()),
             memory,
             unstored: None,
             power: true,
             out: 0,
-            says: Says::Live,
+            content: InWordContent::Live,
             old: Old::default(),
             busy_until: Moment::START,
             busy: config.busy,
@@ -170,7 +170,7 @@ impl Encoder {
     }
 
     /// Returns the settings that survive a loss of power.
-    pub const fn kept(&self) -> &Memory {
+    pub const fn stored(&self) -> &Memory {
         &self.eeprom.kept
     }
 
@@ -186,7 +186,7 @@ impl Encoder {
 
     /// Returns the mode in which it interprets a word.
     pub const fn mode(&self) -> Mode {
-        match (self.mode, self.doing) {
+        match (self.mode, self.activity) {
             (StartupMode::Cams(_), _) => Mode::Cam,
             (_, Activity::Setting) => Mode::Parameterisation,
             (_, Activity::ReadingOut) => Mode::ReadOut,
@@ -219,8 +219,8 @@ impl Encoder {
     pub fn disconnect(&mut self) {
         self.power = false;
         self.memory = self.eeprom.kept.clone();
-        (self.doing, self.unstored) = (Activity::Running, None);
-        (self.says, self.old) = (Says::Live, Old::default());
+        (self.activity, self.unstored) = (Activity::Running, None);
+        (self.content, self.old) = (InWordContent::Live, Old::default());
     }
 
     /// Gives the power back to an encoder that has lost it. What its master still says it takes as something new.
@@ -259,7 +259,7 @@ impl Encoder {
 
     fn obey(&mut self, now: Moment, command: Command, before: u32) {
         match command {
-            Command::Normal if self.doing == Activity::ReadingOut => self.end_read_out(),
+            Command::Normal if self.activity == Activity::ReadingOut => self.end_read_out(),
             // Only an edge of bit 31 has an effect.
             Command::Run if before >> 31 == 0 => self.run(),
             Command::Normal | Command::Run | Command::Unknown(_) => {}
@@ -275,7 +275,7 @@ impl Encoder {
             }
             Command::Velocity(on) => {
                 self.mode = if on { StartupMode::Velocity } else { StartupMode::K3 };
-                self.says = Says::Live;
+                self.content = InWordContent::Live;
             }
             Command::ReadOut(read_out) => self.read_out(now, read_out),
             Command::Cams(program) => self.select(now, program),
@@ -307,12 +307,12 @@ impl Encoder {
 
     /// Ends a setting: the IN word is its echo, or an error.
     fn set(&mut self, now: Moment, taken: Result<Stored, Fault>) {
-        let says = match taken {
+        let word = match taken {
             Ok(_) => self.out | ECHO,
             Err(fault) => fault.word(),
         };
         self.unstored = taken.ok().or(self.unstored);
-        self.turn_to(Activity::Setting, Says::Word(says));
+        self.turn_to(Activity::Setting, InWordContent::Word(word));
         self.busy_until = now + self.busy;
     }
 
@@ -339,7 +339,7 @@ impl Encoder {
     /// The edge of run: back to position, speed or cam output.
     fn run(&mut self) {
         self.store();
-        self.turn_to(Activity::Running, Says::Live);
+        self.turn_to(Activity::Running, InWordContent::Live);
     }
 
     /// Keeps what was set, if anything was.
@@ -355,17 +355,17 @@ impl Encoder {
     /// Returns the IN word at `now`.
     fn shown(&self, now: Moment) -> u32 {
         let old = &self.old;
-        match self.says {
+        match self.content {
             _ if old.cycles > 0 && now < old.until => old.word,
             _ if now < self.busy_until => BUSY,
-            Says::Word(word) => word,
-            Says::Live => self.live(now),
+            InWordContent::Word(word) => word,
+            InWordContent::Live => self.live(now),
         }
     }
 
     /// Changes the activity from now on, without busy words.
-    const fn turn_to(&mut self, doing: Activity, says: Says) {
-        (self.doing, self.says, self.busy_until) = (doing, says, Moment::START);
+    const fn turn_to(&mut self, activity: Activity, content: InWordContent) {
+        (self.activity, self.content, self.busy_until) = (activity, content, Moment::START);
     }
 
     fn settle(&mut self, now: Moment) {
@@ -383,10 +383,10 @@ impl Encoder {
         }
         self.mode = program.map_or(StartupMode::K3, StartupMode::Cams);
         if program.is_some() && self.acknowledges_selection {
-            self.turn_to(Activity::Setting, Says::Word(self.out | ECHO));
+            self.turn_to(Activity::Setting, InWordContent::Word(self.out | ECHO));
             self.busy_until = now + self.busy;
         } else {
-            self.turn_to(Activity::Running, Says::Live);
+            self.turn_to(Activity::Running, InWordContent::Live);
         }
     }
 }

@@ -84,9 +84,9 @@ impl Gateway {
 }
 
 /// The registers as they are at a moment.
-struct At<'a>(&'a mut Shared);
+struct GatewayRegisters<'a>(&'a mut Shared);
 
-impl Registers for At<'_> {
+impl Registers for GatewayRegisters<'_> {
     fn inputs(&mut self, first: u16, count: u16) -> Result<Vec<u16>, Exception> {
         self.0.map.inputs(&mut self.0.encoders, self.0.now, first, count)
     }
@@ -113,7 +113,7 @@ impl Shared {
             frame::refuse(request, Exception::NoAnswer)
         } else {
             let unit = self.unit;
-            frame::answer(request, unit, &mut At(self))
+            frame::answer(request, unit, &mut GatewayRegisters(self))
         };
         self.carry(reply)
     }

@@ -93,8 +93,8 @@ impl Map {
         for (encoder, own) in encoders.iter_mut().zip((0..).step_by(REGISTERS)) {
             if own < places.end && own + REGISTERS > places.start {
                 let halves = self.order.registers(word(encoder)?);
-                let asked = halves.into_iter().zip(own..).filter(|(_, place)| places.contains(place));
-                registers.extend(asked.map(|(half, _)| half));
+                let requested = halves.into_iter().zip(own..).filter(|(_, place)| places.contains(place));
+                registers.extend(requested.map(|(half, _)| half));
             }
         }
         Ok(registers)

@@ -15,7 +15,7 @@ pub use grid::{Tick, next_line, rounded, ticks};
 pub use moving::{Hold, drawn, moved, pulled};
 pub use snap::{Snap, snap};
 
-use super::staged::{Mark, Staged, Wanted};
+use super::staged::{EditedValues, Mark, Staged};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
@@ -81,7 +81,7 @@ impl Chart {
     }
 
     /// The same of something that is only tried.
-    pub fn wanted(staged: &Staged, wanted: &Wanted, program: ProgramNumber) -> Self {
+    pub fn wanted(staged: &Staged, wanted: &EditedValues, program: ProgramNumber) -> Self {
         let marks = wanted.marks();
         let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.is_about(program, cam));
         let lane = |cam| Lane {

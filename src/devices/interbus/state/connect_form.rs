@@ -12,7 +12,7 @@ use crate::parameter::{Entry, Parameters as _};
 
 /// The way to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum InterbusWay {
+pub enum InterbusLinkKind {
     /// The virtual encoder in this program, behind a virtual gateway.
     #[default]
     Virtual,
@@ -26,7 +26,7 @@ pub enum InterbusWay {
 /// for what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
-    pub way: InterbusWay,
+    pub kind: InterbusLinkKind,
     /// Name or address of the gateway.
     pub host: String,
     /// Its TCP port; empty: 502.
@@ -60,15 +60,15 @@ impl FormModel for InterbusForm {
 
     fn from_url(url: &LinkUrl) -> Self {
         let way = match url.scheme {
-            Scheme::Sim => InterbusWay::Virtual,
-            Scheme::Replay => InterbusWay::Replay,
-            Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Enip => InterbusWay::Gateway,
+            Scheme::Sim => InterbusLinkKind::Virtual,
+            Scheme::Replay => InterbusLinkKind::Replay,
+            Scheme::Modbus | Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Enip => InterbusLinkKind::Gateway,
         };
-        let mut form = InterbusForm { way, ..InterbusForm::default() };
-        match form.way {
-            InterbusWay::Replay => form.file = url.target.clone(),
-            InterbusWay::Gateway => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
-            InterbusWay::Virtual => {}
+        let mut form = InterbusForm { kind: way, ..InterbusForm::default() };
+        match form.kind {
+            InterbusLinkKind::Replay => form.file = url.target.clone(),
+            InterbusLinkKind::Gateway => (form.host, form.tcp_port) = parted_from_usual(&url.target, PORT),
+            InterbusLinkKind::Virtual => {}
         }
         form.rest = without_entry(&url.query, |name, value| form.take(name, value));
         form
@@ -90,7 +90,7 @@ impl FormModel for InterbusForm {
 impl InterbusForm {
     /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
-        let own = if self.way == InterbusWay::Virtual { Config::entries() } else { Vec::new() };
+        let own = if self.kind == InterbusLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
@@ -112,17 +112,17 @@ impl InterbusForm {
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
-        Ok(match self.way {
-            InterbusWay::Virtual => (Scheme::Sim, String::new()),
-            InterbusWay::Gateway => {
+        Ok(match self.kind {
+            InterbusLinkKind::Virtual => (Scheme::Sim, String::new()),
+            InterbusLinkKind::Gateway => {
                 (Scheme::Modbus, host_and_usual_port(&self.host, "form.gateway_missing", &self.tcp_port, PORT)?)
             }
-            InterbusWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+            InterbusLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
     fn parameters(&self) -> Parameters {
-        let is_virtual = self.way == InterbusWay::Virtual;
+        let is_virtual = self.kind == InterbusLinkKind::Virtual;
         let mut parameters = Parameters::default();
         parameters.typed(&self.entries(), &self.typed);
         if self.low_first {
@@ -160,8 +160,8 @@ mod tests {
             change(&mut form);
             form.url().unwrap_err().id()
         };
-        assert_eq!(refused(|form| form.way = InterbusWay::Gateway), "form.gateway_missing");
-        assert_eq!(refused(|form| form.way = InterbusWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.kind = InterbusLinkKind::Gateway), "form.gateway_missing");
+        assert_eq!(refused(|form| form.kind = InterbusLinkKind::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.typed.set("rpm", "fast")), "form.rpm");
         assert_eq!(refused(|form| form.typed.set("fault", "drop:2")), "form.fault");
         assert_eq!(refused(|form| form.typed.set("unit", "300")), "form.parameter");
@@ -171,7 +171,7 @@ mod tests {
     #[test]
     fn another_way_takes_along_only_what_it_has() {
         let mut form = InterbusForm::from_url(&"sim:?rpm=60&busy=5&unit=7".parse().unwrap());
-        (form.way, form.host) = (InterbusWay::Gateway, "gate".to_owned());
+        (form.kind, form.host) = (InterbusLinkKind::Gateway, "gate".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "modbus:gate:502?unit=7");
     }
 }

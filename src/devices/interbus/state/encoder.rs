@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, VecDeque};
 
 use super::preview::Preview;
 use super::record::Record;
-use super::staged::{Mark, Staged, ValueId, Wanted};
+use super::staged::{EditedValues, Mark, Staged, ValueId};
 use super::table::Import;
 use super::trace::Meaning;
 use super::{cams, words};
@@ -20,7 +20,7 @@ use crate::devices::interbus::protocol::{Mode, ProgramNumber, ReadOut, StartupMo
 use crate::devices::interbus::state::TEXTS;
 use crate::sim::Motor;
 
-use super::said::Known;
+use super::word_meaning::WordContext;
 
 /// Steps of the handshake that are shown.
 const STEPS: usize = 200;
@@ -84,7 +84,7 @@ impl Encoder {
 
     /// Returns the problems of the edited values.
     pub fn marks(&self) -> Vec<Mark> {
-        self.staged.wanted().map(Wanted::marks).unwrap_or_default()
+        self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
     }
 
     /// The same for the eye, on every page but where a program is shown with its own.
@@ -128,13 +128,13 @@ impl Encoder {
     }
 
     /// Returns what is needed to read its IN words.
-    pub fn known(&self) -> Known {
+    pub fn known(&self) -> WordContext {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => Mode::Velocity,
             Some(StartupMode::Cams(_)) => Mode::Cam,
             _ => Mode::Position,
         };
-        Known { mode, read_out: None, shift: self.shift() }
+        WordContext { mode, read_out: None, shift: self.shift() }
     }
 
     /// The shift of the window that the encoder has.
@@ -169,7 +169,7 @@ impl Encoder {
 
     /// Steps of the measuring range, as it is wanted.
     pub fn range(&self) -> u32 {
-        self.staged.wanted().map_or(0, Wanted::range)
+        self.staged.wanted().map_or(0, EditedValues::range)
     }
 
     pub fn read_out(&self, what: ReadOut) -> Option<Value> {

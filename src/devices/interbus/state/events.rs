@@ -59,7 +59,7 @@ impl Kind for Interbus {
         words::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         words::loss(error)
     }
 }
@@ -152,7 +152,7 @@ impl SessionEvents for Encoder {
     /// Submits a job; one that replaces the position or switches outputs only if the machine stands still.
     fn try_submit(&mut self, job: InterbusJob, services: &mut Services) -> bool {
         if job::disturbs(&job) && !self.is_stopped() {
-            services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
+            services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
             return false;
         }
         if job::disturbs(&job) && self.session.is_ready() {

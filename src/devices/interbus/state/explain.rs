@@ -56,18 +56,18 @@ fn lost(error: &Error) -> Option<&LinkError> {
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
-        Error::NoReply { asked, tries } => {
-            TEXTS.text("interbus.no_reply").with_text("asked", gateway::asked(*asked)).with("tries", tries)
+        Error::NoReply { requested, tries } => {
+            TEXTS.text("interbus.no_reply").with_text("asked", gateway::item_text(*requested)).with("tries", tries)
         }
-        Error::Damaged { asked, tries, cause } => TEXTS
+        Error::Damaged { requested, tries, cause } => TEXTS
             .text("interbus.damaged")
-            .with_text("asked", gateway::asked(*asked))
+            .with_text("asked", gateway::item_text(*requested))
             .with("tries", tries)
             .with_text("why", gateway::damage(*cause)),
         Error::NeverSilent => TEXTS.text("interbus.never_silent"),
-        Error::Exception { asked, exception } => TEXTS
+        Error::Exception { requested, exception } => TEXTS
             .text("interbus.exception")
-            .with_text("asked", gateway::asked(*asked))
+            .with_text("asked", gateway::item_text(*requested))
             .with("code", format!("0x{:02X}", exception.code()))
             .with_text("name", gateway::exception_name(*exception))
             .with_text("cause", gateway::exception(*exception)),

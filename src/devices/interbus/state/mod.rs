@@ -19,18 +19,18 @@ mod record;
 #[cfg(test)]
 mod recorded;
 mod review;
-pub mod said;
 pub mod staged;
 mod table;
 mod texts;
 mod trace;
+pub mod word_meaning;
 pub mod words;
 mod write;
 
 pub use texts::TEXTS;
 
 pub use action::InterbusAction;
-pub use connect_form::{InterbusForm, InterbusWay};
+pub use connect_form::{InterbusForm, InterbusLinkKind};
 pub use encoder::Encoder;
 pub use preview::{Differing, Preview};
 pub use record::Record;
@@ -39,7 +39,7 @@ use std::path::PathBuf;
 
 use crate::store::FileError;
 
-pub use staged::{Edit, EditError, Mark, Staged, ValueId, Wanted};
+pub use staged::{Edit, EditError, EditedValues, Mark, Staged, ValueId};
 pub use table::Import;
 
 /// The results of tasks.

@@ -35,7 +35,7 @@ impl DeviceModel for Encoder {
             Done::Written(path, Ok(())) => {
                 services.log.settle_file(&path);
                 let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
             Done::Read(_, Err(error)) | Done::Written(_, Err(error)) => {
                 self.session.refuse(explain::file(&error), services)
@@ -69,7 +69,7 @@ impl DeviceModel for Encoder {
     fn ask_where_to_save(&mut self, services: &mut Services) {
         // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
         if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
-            services.tell(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
+            services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {
             self.session.ask_where_to_save(services);
         }

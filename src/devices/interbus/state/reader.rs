@@ -1,13 +1,13 @@
 //! The reader of typed words, from a controller's monitor or a note: the meaning of each, without a device.
 
-use super::said::{self, Known};
+use super::word_meaning::{self, WordContext};
 use crate::app::Text;
 use crate::devices::interbus::protocol::{Mode, ReadOut, Single, WindowShift};
 use crate::devices::interbus::state::TEXTS;
 
 /// The direction of a word, and the class of encoders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Way {
+pub enum WordSource {
     /// From a K3 encoder.
     #[default]
     In,
@@ -19,28 +19,28 @@ pub enum Way {
     K2,
 }
 
-impl Way {
+impl WordSource {
     /// All of them.
-    pub const ALL: [Way; 4] = [Way::In, Way::Out, Way::K1, Way::K2];
+    pub const ALL: [WordSource; 4] = [WordSource::In, WordSource::Out, WordSource::K1, WordSource::K2];
 
     pub const fn word(self) -> &'static str {
         match self {
-            Way::In => "ib_reader.in",
-            Way::Out => "ib_reader.out",
-            Way::K1 => "ib_reader.k1",
-            Way::K2 => "ib_reader.k2",
+            WordSource::In => "ib_reader.in",
+            WordSource::Out => "ib_reader.out",
+            WordSource::K1 => "ib_reader.k1",
+            WordSource::K2 => "ib_reader.k2",
         }
     }
 
     /// Returns whether its meaning depends on the mode.
     pub const fn has_mode(self) -> bool {
-        matches!(self, Way::In | Way::Out)
+        matches!(self, WordSource::In | WordSource::Out)
     }
 
     const fn digits(self) -> usize {
         match self {
-            Way::K1 => 4,
-            Way::In | Way::Out | Way::K2 => 8,
+            WordSource::K1 => 4,
+            WordSource::In | WordSource::Out | WordSource::K2 => 8,
         }
     }
 }
@@ -49,7 +49,7 @@ impl Way {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reading {
     /// Direction of the words.
-    pub way: Way,
+    pub source: WordSource,
     /// In which mode the encoder is.
     pub mode: Mode,
     /// The value being read out, if any.
@@ -60,7 +60,7 @@ pub struct Reading {
 
 impl Default for Reading {
     fn default() -> Self {
-        Reading { way: Way::In, mode: Mode::Position, read_out: None, shift: WindowShift::default() }
+        Reading { source: WordSource::In, mode: Mode::Position, read_out: None, shift: WindowShift::default() }
     }
 }
 
@@ -70,7 +70,7 @@ pub struct DecodedWord {
     /// As it was typed.
     pub word: String,
     /// The meaning, or why it is not a word.
-    pub says: Result<Text, Text>,
+    pub meaning: Result<Text, Text>,
     /// A problem.
     pub warning: Option<Text>,
 }
@@ -84,26 +84,26 @@ impl Reading {
 
     fn line(&self, typed: &str) -> DecodedWord {
         let bare = typed.trim_start_matches("0x").trim_start_matches("0X").trim_end_matches(['h', 'H']);
-        let digits = self.way.digits();
+        let digits = self.source.digits();
         let number = Some(bare).filter(|own| own.len() == digits).and_then(|own| u32::from_str_radix(own, 16).ok());
         let Some(number) = number else {
             let why = TEXTS.text("ib_reader.no_word").with("word", typed).with("digits", digits);
-            return DecodedWord { word: typed.to_owned(), says: Err(why), warning: None };
+            return DecodedWord { word: typed.to_owned(), meaning: Err(why), warning: None };
         };
         let single = |own: Single| {
             let position = TEXTS.text("ib_word.position").with("position", own.position().get());
             let bits = || TEXTS.text("ib_word.stray").with("bits", format!("0x{:X}", own.stray()));
             (position, (own.stray() != 0).then(bits))
         };
-        let known = Known { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
-        let (says, warning) = match self.way {
-            Way::Out => (said::out(number, self.mode), None),
-            Way::In => (said::word_text(number, &known), said::stray(number)),
+        let known = WordContext { mode: self.mode, read_out: self.read_out, shift: Some(self.shift) };
+        let (meaning, warning) = match self.source {
+            WordSource::Out => (word_meaning::out(number, self.mode), None),
+            WordSource::In => (word_meaning::word_text(number, &known), word_meaning::stray(number)),
             // Four digits.
-            Way::K1 => single(Single::parse_k1(number as u16)),
-            Way::K2 => single(Single::parse_k2(number)),
+            WordSource::K1 => single(Single::parse_k1(number as u16)),
+            WordSource::K2 => single(Single::parse_k2(number)),
         };
-        DecodedWord { word: bare.to_ascii_uppercase(), says: Ok(says), warning }
+        DecodedWord { word: bare.to_ascii_uppercase(), meaning: Ok(meaning), warning }
     }
 }
 
@@ -116,19 +116,19 @@ mod tests {
     fn typed_words_are_read_or_told_why_not() {
         let says = |reading: Reading, text: &str| -> Vec<String> {
             let lines = reading.lines(text).into_iter();
-            lines.map(|line| line.says.unwrap_or_else(|why| why).words(Language::English)).collect()
+            lines.map(|line| line.meaning.unwrap_or_else(|why| why).words(Language::English)).collect()
         };
-        let of = |way| Reading { way, ..Reading::default() };
+        let of = |way| Reading { source: way, ..Reading::default() };
         // Reference 7.
-        assert_eq!(says(of(Way::K1), "0FFF"), ["position 4095"]);
-        assert_eq!(says(of(Way::In), "0x00123456, C0000000"), ["position 1193046", "at work"]);
-        assert_eq!(says(of(Way::Out), "080003e8h"), ["Preset value := 1000"]);
-        assert_eq!(says(of(Way::K2), "00FFFFFF"), ["position 16777215"]);
+        assert_eq!(says(of(WordSource::K1), "0FFF"), ["position 4095"]);
+        assert_eq!(says(of(WordSource::In), "0x00123456, C0000000"), ["position 1193046", "at work"]);
+        assert_eq!(says(of(WordSource::Out), "080003e8h"), ["Preset value := 1000"]);
+        assert_eq!(says(of(WordSource::K2), "00FFFFFF"), ["position 16777215"]);
         // Bits 15 to 12 of a K1 word should be 0 (reference 1).
-        assert!(of(Way::K1).lines("1FFF").iter().all(|line| line.warning.is_some()));
-        for (way, text) in [(Way::In, "123"), (Way::K1, "00000FFF"), (Way::Out, "0200000G")] {
-            assert!(of(way).lines(text).iter().all(|line| line.says.is_err()), "{text}");
+        assert!(of(WordSource::K1).lines("1FFF").iter().all(|line| line.warning.is_some()));
+        for (way, text) in [(WordSource::In, "123"), (WordSource::K1, "00000FFF"), (WordSource::Out, "0200000G")] {
+            assert!(of(way).lines(text).iter().all(|line| line.meaning.is_err()), "{text}");
         }
-        assert!(of(Way::In).lines(" \n").is_empty());
+        assert!(of(WordSource::In).lines(" \n").is_empty());
     }
 }

@@ -14,7 +14,7 @@ use crate::units::Moment;
 
 /// Data that an encoder sends instead of its position, or with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Beside {
+pub(super) enum RecordedValue {
     /// Its own speed, in velocity mode.
     Speed,
     /// The output of a cam.
@@ -24,7 +24,7 @@ pub(super) enum Beside {
 /// The recorder of an encoder, and the word that came last.
 #[derive(Debug, Default)]
 pub struct Record {
-    pub(super) track: Track<Beside>,
+    pub(super) track: Track<RecordedValue>,
     last: Option<WordReading>,
 }
 
@@ -37,7 +37,7 @@ impl Record {
 
     /// Takes new readings; `dropped` were not taken in time.
     pub(super) fn add(&mut self, readings: Vec<WordReading>, dropped: u64) {
-        self.track.lose(dropped);
+        self.track.note_dropped(dropped);
         for reading in readings {
             self.see(&reading);
             self.last = Some(reading);
@@ -53,16 +53,16 @@ impl Record {
         let at = reading.at;
         match reading.mode {
             Some(StartupMode::Velocity) => {
-                self.track.watch(&[Beside::Speed]);
-                self.beside(at, Beside::Speed, reading.rpm().map(i64::from));
+                self.track.watch(&[RecordedValue::Speed]);
+                self.add_value(at, RecordedValue::Speed, reading.rpm().map(i64::from));
             }
             Some(StartupMode::Cams(_)) => {
-                let cams: Vec<Beside> = CamNumber::all().map(Beside::Cam).collect();
+                let cams: Vec<RecordedValue> = CamNumber::all().map(RecordedValue::Cam).collect();
                 self.track.watch(&cams);
                 let output = reading.cams();
                 for cam in CamNumber::all() {
                     let on = output.map(|own| i64::from(own.outputs >> cam.get() & 1));
-                    self.beside(at, Beside::Cam(cam), on);
+                    self.add_value(at, RecordedValue::Cam(cam), on);
                 }
             }
             _ => self.track.watch(&[]),
@@ -82,7 +82,7 @@ impl Record {
         }
     }
 
-    fn beside(&mut self, at: Moment, what: Beside, value: Option<i64>) {
+    fn add_value(&mut self, at: Moment, what: RecordedValue, value: Option<i64>) {
         let value = value.map(Value::Whole);
         self.track.add_watched(&what, &Watching { at, value, is_warned: false, never: None });
     }
@@ -107,18 +107,18 @@ fn meaning(gear: Option<Gear>) -> Meaning {
     }
 }
 
-impl Watchable for Beside {
+impl Watchable for RecordedValue {
     fn is_whole(&self) -> bool {
         true
     }
 
     fn line(&self, group: GroupId) -> Series {
         match self {
-            Beside::Speed => {
+            RecordedValue::Speed => {
                 let scales = vec![Scale::new("unit.revolutions_per_minute", 1.0, 0)];
                 Series::of(group, 0, TEXTS.text("ib_live.speed"), "encoder speed".to_owned(), scales)
             }
-            Beside::Cam(cam) => {
+            RecordedValue::Cam(cam) => {
                 let name = TEXTS.text("ib_live.cam").with("cam", cam.get());
                 Series::of(group, 0, name, format!("cam {}", cam.get()), vec![Scale::new("unit.counts", 1.0, 0)])
             }

@@ -28,7 +28,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber,
 
 /// All that can be edited, as it is wanted.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Wanted {
+pub struct EditedValues {
     /// The values written to an encoder.
     pub image: Image,
     /// Names of programs and cams, which no encoder keeps. Two cams of a program with the same name are pulses on one
@@ -38,7 +38,7 @@ pub struct Wanted {
 
 /// The values that the edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Ground {
+enum BaseSource {
     /// An encoder: what was not read is not known.
     #[default]
     Encoder,
@@ -49,19 +49,19 @@ enum Ground {
 /// The base, the edited values, and the steps of undo and redo.
 #[derive(Clone, Debug, Default)]
 pub struct Staged {
-    ground: Ground,
+    base_source: BaseSource,
     /// The values of the encoder or the profile; both or none.
-    base: Option<Wanted>,
-    wanted: Option<Wanted>,
-    history: History<Wanted>,
+    base: Option<EditedValues>,
+    wanted: Option<EditedValues>,
+    history: History<EditedValues>,
     /// Edits of an earlier time whose place was not read yet.
     waiting: Vec<SavedEdit>,
 }
 
-impl Wanted {
+impl EditedValues {
     /// Creates the edits without names.
     pub fn of(image: Image) -> Self {
-        Wanted { image, names: Names::default() }
+        EditedValues { image, names: Names::default() }
     }
 
     /// Steps of the measuring range; positions are below.
@@ -87,14 +87,14 @@ impl Wanted {
 impl Staged {
     /// Creates the edits of a profile, which can also gain values that it does not have.
     pub fn of_profile(image: Image, names: Names) -> Self {
-        let base = Wanted { image, names };
-        Staged { ground: Ground::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
+        let base = EditedValues { image, names };
+        Staged { base_source: BaseSource::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
     }
 
     /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
     /// wrote it, and only what was edited here stays as it is wanted.
     pub fn saved(&mut self, image: Image, names: Names) {
-        let now = Wanted { image, names };
+        let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
             self.base = Some(now);
             return;
@@ -114,7 +114,7 @@ impl Staged {
             None => (Names::default(), read),
         };
         self.base = known;
-        self.rebase(Wanted { image, names });
+        self.rebase(EditedValues { image, names });
     }
 
     /// The parameters were read.
@@ -135,11 +135,11 @@ impl Staged {
     }
 
     const fn is_encoder(&self) -> bool {
-        matches!(self.ground, Ground::Encoder)
+        matches!(self.base_source, BaseSource::Encoder)
     }
 
     /// Takes new values of the encoder or the profile.
-    fn rebase(&mut self, now: Wanted) {
+    fn rebase(&mut self, now: EditedValues) {
         match (&self.base, &mut self.wanted) {
             (Some(before), Some(wanted)) => self.history.rebase(wanted, |own| merge::rebase(own, before, &now)),
             _ => self.wanted = Some(now.clone()),
@@ -151,11 +151,11 @@ impl Staged {
 
     /// Forgets everything: another encoder.
     pub fn clear(&mut self) {
-        *self = Staged { ground: self.ground, ..Staged::default() };
+        *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
 
     /// Returns the values of the encoder or the profile; `None` if nothing was read.
-    pub fn base(&self) -> Option<&Wanted> {
+    pub fn base(&self) -> Option<&EditedValues> {
         self.base.as_ref()
     }
 
@@ -165,7 +165,7 @@ impl Staged {
     }
 
     /// Returns the edited values; `None` if nothing was read.
-    pub fn wanted(&self) -> Option<&Wanted> {
+    pub fn wanted(&self) -> Option<&EditedValues> {
         self.wanted.as_ref()
     }
 
@@ -187,12 +187,12 @@ impl Staged {
     ///
     /// # Errors
     /// Why it cannot be.
-    pub fn tried(&self, edit: &Edit) -> Result<Wanted, EditError> {
+    pub fn tried(&self, edit: &Edit) -> Result<EditedValues, EditError> {
         let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
-        edit::edited(wanted, edit, self.ground)
+        edit::edited(wanted, edit, self.base_source)
     }
 
-    fn step(&mut self, after: Wanted) -> bool {
+    fn step(&mut self, after: EditedValues) -> bool {
         self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
     }
 }
@@ -204,7 +204,7 @@ impl PendingEdits for Staged {
 
     fn is_dirty(&self) -> bool {
         let (Some(base), Some(wanted)) = (&self.base, &self.wanted) else { return false };
-        base.image != wanted.image || self.ground == Ground::Profile && base.names != wanted.names
+        base.image != wanted.image || self.base_source == BaseSource::Profile && base.names != wanted.names
     }
 
     fn can_undo(&self) -> bool {

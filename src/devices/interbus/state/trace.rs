@@ -1,7 +1,7 @@
 //! The meaning of the frames in the trace: the words in them. It depends on the mode of the encoder, which the OUT
 //! words before have selected.
 
-use super::said::{self, Known};
+use super::word_meaning::{self, WordContext};
 use crate::app::{Explained, Text, TraceFault};
 use crate::devices::interbus::procedures::{Carried, Fault, carried, fault};
 use crate::devices::interbus::protocol::{Command, Mode, ReadOut, Reply, WindowShift, WordOrder};
@@ -19,13 +19,13 @@ pub(super) struct Meaning {
     mode: Mode,
     read_out: Option<ReadOut>,
     /// The frame of the last request.
-    asked: Vec<u8>,
+    requested: Vec<u8>,
 }
 
 impl Meaning {
     /// Creates it for a new link, which starts with a position.
     pub(super) fn new(order: WordOrder) -> Self {
-        Meaning { order, shift: None, mode: Mode::Position, read_out: None, asked: Vec::new() }
+        Meaning { order, shift: None, mode: Mode::Position, read_out: None, requested: Vec::new() }
     }
 
     /// The encoder is known to be in this mode.
@@ -37,10 +37,10 @@ impl Meaning {
     pub(super) fn of(&mut self, entry: &TraceEntry) -> Explained {
         let Some(bytes) = entry.bytes.to_bytes() else { return Explained::broken(Text::new("trace.hidden")) };
         if entry.direction == Direction::Sent {
-            self.asked.clone_from(&bytes);
+            self.requested.clone_from(&bytes);
             return self.meanings(entry.direction, &bytes).into();
         }
-        match fault(&self.asked, &bytes, self.order) {
+        match fault(&self.requested, &bytes, self.order) {
             Some(Fault::Broken(damage)) => Explained::broken(explained::damage(damage)),
             Some(Fault::Refused(exception)) => {
                 Explained { meaning: vec![explained::exception(exception)], fault: Some(TraceFault::Reported) }
@@ -64,11 +64,11 @@ impl Meaning {
             Some(Carried::Out(word)) => {
                 let command = self.command(word);
                 self.follow(command);
-                vec![word_of("ib_trace.out", word), said::asked(command)]
+                vec![word_of("ib_trace.out", word), word_meaning::command_text(command)]
             }
             Some(Carried::In(word)) => {
-                let known = Known { mode: self.mode, read_out: self.read_out, shift: self.shift };
-                vec![word_of("ib_trace.in", word), said::word_text(word, &known)]
+                let known = WordContext { mode: self.mode, read_out: self.read_out, shift: self.shift };
+                vec![word_of("ib_trace.in", word), word_meaning::word_text(word, &known)]
             }
             None => Vec::new(),
         }
@@ -86,7 +86,7 @@ impl Meaning {
             Command::Cams(Some(_)) => self.mode = Mode::Cam,
             Command::Cams(None) | Command::Velocity(false) => self.mode = Mode::Position,
             Command::Velocity(true) => self.mode = Mode::Velocity,
-            _ if said::mode_of(command) == Mode::Cam => self.mode = Mode::Cam,
+            _ if word_meaning::mode_of(command) == Mode::Cam => self.mode = Mode::Cam,
             _ => {}
         }
         self.read_out = if let Command::ReadOut(read_out) = command { Some(read_out) } else { None };

@@ -72,13 +72,13 @@ pub fn flags(flags: Flags) -> Text {
 /// Returns the meaning of a combination of LEDs, and what to do.
 pub fn lamps(row: &LedRow) -> (Text, Text) {
     use crate::devices::interbus::protocol::Lamp::{Blinking, On};
-    let (says, remedy) = match (row.leds.ba, row.leds.rbda) {
+    let (meaning, remedy) = match (row.leds.ba, row.leds.rbda) {
         (On, _) => ("ib_leds.run", "ib_leds.run_remedy"),
         (Blinking, _) => ("ib_leds.configured", "ib_leds.configured_remedy"),
         (_, On) => ("ib_leds.bus_error", "ib_leds.bus_error_remedy"),
         _ => ("ib_leds.no_run", "ib_leds.no_run_remedy"),
     };
-    (TEXTS.text(says), TEXTS.text(remedy))
+    (TEXTS.text(meaning), TEXTS.text(remedy))
 }
 
 /// Returns the name of an interface.

@@ -4,7 +4,7 @@ use super::cams::words;
 use super::encoder::Encoder;
 use super::review::Review;
 use crate::app::services::Services;
-use crate::app::session::{ApprovedPlanOf, Known, Saved, WithMemory, some, without_edits};
+use crate::app::session::{ApprovedPlanOf, KnownProfile, Saved, WithMemory, some, without_edits};
 use crate::app::{PendingEdits, Text};
 use crate::devices::interbus::jobs::{Change, Interbus, InterbusJob};
 use crate::devices::interbus::profile::{
@@ -87,7 +87,7 @@ impl Saved for Encoder {
         some(&words::marks(&self.marks()), Text::clone)
     }
 
-    fn known_body(&self) -> Option<Known> {
+    fn known_body(&self) -> Option<KnownProfile> {
         let (survey, base) = (self.survey.as_ref()?, self.staged.base()?);
         let is_missing = |number: &ProgramNumber| base.image.program(*number).is_none();
         let missing: Vec<Text> = ProgramNumber::all()

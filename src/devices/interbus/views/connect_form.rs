@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::app::connect::Connect as Dialog;
-use crate::devices::interbus::state::{InterbusForm, InterbusWay};
+use crate::devices::interbus::state::{InterbusForm, InterbusLinkKind};
 use crate::devices::interbus::views::say;
 use crate::ui::Theme;
 use crate::ui::controls::{choice, entry, paragraph};
@@ -27,18 +27,18 @@ impl TypedConnectForm for InterbusConnectForm {
         actions: &mut Vec<Action>,
     ) {
         let ways = [
-            (InterbusWay::Virtual, "connect.virtual"),
-            (InterbusWay::Gateway, "connect.gateway"),
-            (InterbusWay::Replay, "connect.replay"),
+            (InterbusLinkKind::Virtual, "connect.virtual"),
+            (InterbusLinkKind::Gateway, "connect.gateway"),
+            (InterbusLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.way, ways);
-        if form.way == InterbusWay::Gateway {
+        segments(ui, theme, &mut form.kind, ways);
+        if form.kind == InterbusLinkKind::Gateway {
             paragraph(ui, theme.caption(say(theme, "connect.gateway_words")));
         }
         ui.add_space(theme.space.between);
-        match form.way {
-            InterbusWay::Virtual => typed(ui, theme, say, InterbusForm::of_the_virtual(), &mut form.typed),
-            InterbusWay::Gateway => {
+        match form.kind {
+            InterbusLinkKind::Virtual => typed(ui, theme, say, InterbusForm::of_the_virtual(), &mut form.typed),
+            InterbusLinkKind::Gateway => {
                 place(
                     ui,
                     theme,
@@ -48,13 +48,13 @@ impl TypedConnectForm for InterbusConnectForm {
                 );
                 registers(ui, theme, form);
             }
-            InterbusWay::Replay => {
+            InterbusLinkKind::Replay => {
                 recording(ui, theme, &mut form.file, actions);
                 order(ui, theme, form);
             }
         }
-        if form.way != InterbusWay::Replay && unfolded(ui, theme, more) {
-            if form.way == InterbusWay::Virtual {
+        if form.kind != InterbusLinkKind::Replay && unfolded(ui, theme, more) {
+            if form.kind == InterbusLinkKind::Virtual {
                 registers(ui, theme, form);
             }
             let (_, rest) = InterbusForm::of_the_link();

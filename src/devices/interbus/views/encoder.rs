@@ -4,7 +4,7 @@ use egui::{RichText, Ui};
 
 use crate::app::{Action, DeviceCommand};
 use crate::devices::interbus::protocol::{ProgramNumber, ReadOutValue, Reply, StartupMode};
-use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, said, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, TEXTS, explain, word_meaning, words};
 use crate::devices::interbus::views::say;
 use crate::ui::check::lines_ui;
 use crate::ui::controls::{card, card_with, choice, empty, enabled_button, entry, paragraph, row, two_columns};
@@ -102,9 +102,9 @@ fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action
             }
             Some(reading) => {
                 row(ui, theme, &say(theme, "ib_sends.word"), theme.mono(format!("0x{:08X}", reading.word)));
-                let says = said::word_text(reading.word, &encoder.known());
-                row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&says));
-                if let Some(warning) = said::stray(reading.word) {
+                let meaning = word_meaning::word_text(reading.word, &encoder.known());
+                row(ui, theme, &say(theme, "ib_sends.says"), theme.words(&meaning));
+                if let Some(warning) = word_meaning::stray(reading.word) {
                     paragraph(ui, RichText::new(theme.words(&warning)).color(theme.palette.warn));
                     paragraph(ui, theme.caption(say(theme, "ib_sends.swapped")));
                 }

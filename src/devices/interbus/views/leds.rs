@@ -47,8 +47,8 @@ fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
             paragraph(ui, RichText::new(say(theme, "ib_leds.unknown")).color(theme.palette.warn));
             return;
         };
-        let (says, remedy) = words::lamps(own);
-        ui.label(theme.value(theme.words(&says)));
+        let (meaning, remedy) = words::lamps(own);
+        ui.label(theme.value(theme.words(&meaning)));
         paragraph(ui, theme.words(&remedy));
     });
 }

@@ -47,7 +47,7 @@ impl TabPage for Page {
 
 impl Page {
     /// Returns whether edits on the page are written from it.
-    fn has_foot(self) -> bool {
+    fn has_edit_bar(self) -> bool {
         matches!(self, Page::Parameters | Page::Cams)
     }
 }
@@ -104,14 +104,14 @@ impl TypedDeviceView for InterbusView {
         (page, view): (Page, &mut InterbusUiState),
         actions: &mut Vec<Action>,
     ) {
-        if page.has_foot() {
+        if page.has_edit_bar() {
             // Stays where it is while the rest scrolls.
             let around = page::sides(ui, theme);
             let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
                 .frame(egui::Frame::NONE.inner_margin(margin))
                 .show_separator_line(false)
-                .show(ui, |ui| edit_bar::foot_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
+                .show(ui, |ui| edit_bar::edit_bar_ui(ui, theme, (studio, device), edit_bar::Edited::Values, actions));
         }
         page::scrolling(ui, theme, (encoder.session.id, page.place()), |ui| {
             if page != Page::Backups {

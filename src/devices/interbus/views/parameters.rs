@@ -12,7 +12,7 @@ use crate::devices::interbus::jobs::{Change, WEAR_ASK, WEAR_LAST, WEAR_LIMIT, WE
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::Parameter;
 use crate::devices::interbus::state::staged::Edit;
-use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, said, words};
+use crate::devices::interbus::state::{Encoder, InterbusAction as Interbus, cams, explain, forms, word_meaning, words};
 use crate::ui::controls::{
     card, choice, empty, enabled_button, entry, paragraph, problem, row, settled_entry, two_columns,
 };
@@ -208,10 +208,13 @@ fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             egui::Grid::new("handshake").num_columns(4).spacing([16.0, 4.0]).show(ui, |ui| {
                 for step in &encoder.handshake {
                     ui.label(theme.mono(format!("0x{:08X}", step.out)));
-                    ui.label(theme.label(theme.words(&said::asked(step.command))));
+                    ui.label(theme.label(theme.words(&word_meaning::command_text(step.command))));
                     ui.label(theme.mono(format!("0x{:08X}", step.input)));
-                    let known = said::Known::of(step.command, encoder.shift());
-                    ui.add(egui::Label::new(theme.label(theme.words(&said::word_text(step.input, &known)))).truncate());
+                    let known = word_meaning::WordContext::of(step.command, encoder.shift());
+                    ui.add(
+                        egui::Label::new(theme.label(theme.words(&word_meaning::word_text(step.input, &known))))
+                            .truncate(),
+                    );
                     ui.end_row();
                 }
             });

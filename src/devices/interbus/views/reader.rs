@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::devices::interbus::protocol::{Mode, READ_OUTS, WindowShift};
-use crate::devices::interbus::state::reader::{Reading, Way};
+use crate::devices::interbus::state::reader::{Reading, WordSource};
 use crate::devices::interbus::state::{TEXTS, explain, words};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, choice, entry, mono_entry, name, paragraph};
@@ -24,28 +24,28 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
         paragraph(ui, theme.label(say(theme, "ib_reader.words")));
         let WordReaderUiState { text, reading } = view;
         ui.horizontal_wrapped(|ui| {
-            for way in Way::ALL {
+            for way in WordSource::ALL {
                 let word = say(theme, way.word());
-                let response = ui.add(egui::Button::selectable(reading.way == way, &word));
+                let response = ui.add(egui::Button::selectable(reading.source == way, &word));
                 if name(response, true, &word).clicked() {
-                    reading.way = way;
+                    reading.source = way;
                 }
             }
         });
-        if reading.way.has_mode() {
+        if reading.source.has_mode() {
             let word = say(theme, "ib_reader.mode");
             entry(ui, theme, &word, |ui| {
                 choice(ui, &word, &mut reading.mode, Mode::ALL.map(|mode| (mode, theme.words(&words::mode(mode)))));
             });
         }
-        if reading.way == Way::In && reading.mode == Mode::Cam {
+        if reading.source == WordSource::In && reading.mode == Mode::Cam {
             let word = say(theme, "ib_cams.shift");
             entry(ui, theme, &word, |ui| {
                 let shifts = (0..=25).filter_map(WindowShift::new);
                 choice(ui, &word, &mut reading.shift, shifts.map(|own| (own, own.get().to_string())));
             });
         }
-        if reading.way == Way::In && reading.mode == Mode::ReadOut {
+        if reading.source == WordSource::In && reading.mode == Mode::ReadOut {
             let word = say(theme, "ib_reader.read_out");
             entry(ui, theme, &word, |ui| {
                 let all =
@@ -60,10 +60,10 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, view: &mut WordReaderUiState) 
             ui.horizontal_top(|ui| {
                 let own = ui.label(theme.mono(&line.word));
                 ui.add_space((WORD - own.rect.width()).max(0.0));
-                match &line.says {
-                    Ok(says) => {
+                match &line.meaning {
+                    Ok(meaning) => {
                         ui.vertical(|ui| {
-                            paragraph(ui, theme.words(says));
+                            paragraph(ui, theme.words(meaning));
                             if let Some(warning) = &line.warning {
                                 paragraph(ui, RichText::new(theme.words(warning)).color(theme.palette.warn));
                             }

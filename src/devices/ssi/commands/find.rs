@@ -97,7 +97,7 @@ fn why(class: &Class) -> String {
 
 /// Returns which motion would decide; `None` if nothing is open.
 fn next(search: &Search) -> Option<String> {
-    let doubt = search.doubt.filter(|doubt| *doubt != protocol::Doubt::Open);
+    let doubt = search.doubt.filter(|doubt| *doubt != protocol::Uncertainty::Open);
     let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal());
     let open = search.classes.first().into_iter().flat_map(|class| &class.open);
     let open = open.map(|open| words::open(*open).terminal());

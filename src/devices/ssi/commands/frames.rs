@@ -17,8 +17,8 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
     // All are looked at before any is told.
     let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
     for frame in frames {
-        let told = DecodedFrame::new(&layout, frame);
-        output.show(&told.json(), &told.text())?;
+        let frame_decoded = DecodedFrame::new(&layout, frame);
+        output.show(&frame_decoded.json(), &frame_decoded.text())?;
     }
     Ok(Done::Well)
 }
@@ -98,8 +98,8 @@ impl<'a> DecodedFrame<'a> {
             }
         }
         let findings = self.layout.findings(self.reading);
-        let told = findings.iter().map(|finding| format!("{}\n", words::finding(finding).terminal()));
-        lines.text() + &told.collect::<String>()
+        let finding_lines = findings.iter().map(|finding| format!("{}\n", words::finding(finding).terminal()));
+        lines.text() + &finding_lines.collect::<String>()
     }
 }
 

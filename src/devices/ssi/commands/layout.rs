@@ -72,8 +72,8 @@ fn of_frame(spec: &str, frame: std::result::Result<Descriptor, SpecError>) -> Re
 
 fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let path = Path::new(spec);
-    let told = |error| failed(&explain::profile(path, &error, Kinds::NONE));
-    let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(told)?;
+    let failure = |error| failed(&explain::profile(path, &error, Kinds::NONE));
+    let profile = load(output, path)?.into_profile::<SsiProfile>().map_err(failure)?;
     let frame = profile.descriptor.clone();
     let layout = Layout::new(frame).map_err(|error| Failure::Failed(vec![format!("{spec}: {error}.")]))?;
     let family = profile.family.as_deref().and_then(|key| families.named(key));

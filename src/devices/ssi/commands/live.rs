@@ -36,21 +36,21 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     let job = || SsiJob::Read;
     let ended = readings(&mut runner, position, job, |came| {
         for (at, word) in words(came)?.timed() {
-            let told = DecodedFrame::new(&chosen.layout, word);
+            let decoded = DecodedFrame::new(&chosen.layout, word);
             let first = *first.get_or_insert(Time::from(at));
-            let begun = tally.note(&chosen.layout, told.reading, at.into());
-            for finding in begun.iter().filter(|one| is_told(one, first == at.into())) {
+            let begun = tally.note(&chosen.layout, decoded.reading, at.into());
+            for finding in begun.iter().filter(|one| is_reported(one, first == at.into())) {
                 say(&format!("{}: {}\n", seconds(at.into()), explained::finding(finding).terminal()));
             }
             if position.csv {
-                output.print(&row(at, &told))?;
+                output.print(&row(at, &decoded))?;
             } else {
-                show(output, at, &told)?;
+                show(output, at, &decoded)?;
             }
         }
         Ok(())
     });
-    for noted in tally.noted().iter().filter(|noted| is_told(&noted.finding, Some(noted.first) == first)) {
+    for noted in tally.noted().iter().filter(|noted| is_reported(&noted.finding, Some(noted.first) == first)) {
         let times = count(usize::try_from(noted.count).unwrap_or(usize::MAX), "time");
         say(&format!("{}: {times}, last at {}\n", name(&noted.finding), seconds(noted.last)));
     }
@@ -58,7 +58,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
 }
 
 /// Returns whether a finding is reported: passing a position that looks like an idle line is not, starting with one is.
-fn is_told(finding: &FrameFinding, is_first: bool) -> bool {
+fn is_reported(finding: &FrameFinding, is_first: bool) -> bool {
     is_first || !matches!(finding, FrameFinding::StuckHigh { sure: false } | FrameFinding::StuckLow { sure: false })
 }
 
@@ -75,9 +75,9 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(told: &DecodedFrame<'_>) -> Self {
+    fn of(decoded: &DecodedFrame<'_>) -> Self {
         let none = Columns { turns: None, steps: None, degrees: None, millimetres: None };
-        match told.place() {
+        match decoded.place() {
             Some((_, Location::Shaft { turns, steps, degrees })) => {
                 Columns { turns: Some(turns), steps: Some(steps), degrees: Some(degrees), ..none }
             }
@@ -89,49 +89,49 @@ impl Columns {
     }
 }
 
-fn show(output: &Output, at: Moment, told: &DecodedFrame<'_>) -> Result<()> {
+fn show(output: &Output, at: Moment, decoded: &DecodedFrame<'_>) -> Result<()> {
     let t = at.since_start().as_secs_f64();
-    let Columns { turns, steps, degrees, millimetres } = Columns::of(told);
+    let Columns { turns, steps, degrees, millimetres } = Columns::of(decoded);
     let mut json = json!({
         "t_s": t,
-        "raw": told.frame,
+        "raw": decoded.frame,
         "turns": turns,
         "steps": steps,
         "degrees": degrees,
-        "valid": told.is_valid(),
-        "errors": told.names(Meaning::Invalid),
-        "warnings": told.names(Meaning::Warning),
+        "valid": decoded.is_valid(),
+        "errors": decoded.names(Meaning::Invalid),
+        "warnings": decoded.names(Meaning::Warning),
     });
     if let (Some(millimetres), Some(keys)) = (millimetres, json.as_object_mut()) {
         keys.insert("millimetres".to_owned(), json!(millimetres));
     }
-    let digits = usize::from(told.layout.clocks()).div_ceil(4);
-    let valid = if told.is_valid() { "" } else { "  not valid" };
-    output.show(&json, &format!("{t:10.3} s  0x{:0digits$X}  {}{valid}\n", told.frame, place(told)))
+    let digits = usize::from(decoded.layout.clocks()).div_ceil(4);
+    let valid = if decoded.is_valid() { "" } else { "  not valid" };
+    output.show(&json, &format!("{t:10.3} s  0x{:0digits$X}  {}{valid}\n", decoded.frame, place(decoded)))
 }
 
-fn place(told: &DecodedFrame<'_>) -> String {
-    match told.place() {
+fn place(decoded: &DecodedFrame<'_>) -> String {
+    match decoded.place() {
         Some((_, Location::Shaft { turns, steps, degrees })) => format!("turn {turns}, step {steps}, {degrees:.6}°"),
         Some((position, Location::Length { millimetres })) => format!("step {position}, {millimetres:.6} mm"),
         None => "no position".to_owned(),
     }
 }
 
-fn row(at: Moment, told: &DecodedFrame<'_>) -> String {
+fn row(at: Moment, decoded: &DecodedFrame<'_>) -> String {
     fn cell<T: ToString>(value: Option<T>) -> String {
         value.map_or_else(String::new, |value| value.to_string())
     }
-    let Columns { turns, steps, degrees, millimetres } = Columns::of(told);
+    let Columns { turns, steps, degrees, millimetres } = Columns::of(decoded);
     format!(
         "{:.6},{},{},{},{},{},{}\n",
         at.since_start().as_secs_f64(),
-        told.frame,
+        decoded.frame,
         cell(turns),
         cell(steps),
         cell(degrees),
         cell(millimetres),
-        told.is_valid(),
+        decoded.is_valid(),
     )
 }
 
@@ -142,8 +142,8 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
     let Some((_, word)) = words.timed().next() else {
         return Err(Failure::Failed(vec!["The adapter gave no word. Try again.".to_owned()]));
     };
-    let told = DecodedFrame::new(&chosen.layout, word);
-    let findings = chosen.layout.findings(told.reading);
+    let decoded = DecodedFrame::new(&chosen.layout, word);
+    let findings = chosen.layout.findings(decoded.reading);
     let of = |meaning| findings.iter().filter(move |finding| finding.meaning() == meaning);
     let list = |meaning| of(meaning).map(|finding| item(&chosen.layout, finding)).collect::<Vec<_>>();
     let (errors, warnings) = (list(Meaning::Invalid), list(Meaning::Warning));
@@ -157,9 +157,9 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
     if chosen.layout.descriptor().errors.is_empty() {
         lines.add("", "This frame has no error bits.");
     }
-    lines.add("position", place(&told));
-    let told = findings.iter().map(|finding| format!("{}\n", explained::finding(finding).terminal()));
-    output.show(&json, &(lines.text() + &told.collect::<String>()))?;
+    lines.add("position", place(&decoded));
+    let finding_lines = findings.iter().map(|finding| format!("{}\n", explained::finding(finding).terminal()));
+    output.show(&json, &(lines.text() + &finding_lines.collect::<String>()))?;
     Ok(Done::Well)
 }
 

@@ -17,7 +17,7 @@ use crate::devices::ssi::protocol::Layout;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::sim::Motor;
 use crate::store::Store;
-use crate::worker::{Device, EndedEarly, Progress, Session, SessionContext, Tell, Watched};
+use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionContext, Watched};
 
 /// An SSI encoder behind its adapter.
 pub struct Ssi {
@@ -79,8 +79,8 @@ impl fmt::Debug for Ssi {
 
 impl Ssi {
     /// The host's side of the line.
-    fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
-        Master::new(desk.ctx(&mut *self.wire), &mut self.station)
+    fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
+        Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 }
 
@@ -126,23 +126,23 @@ impl Device for Ssi {
 
     fn run(
         &mut self,
-        desk: &mut SessionContext,
+        context: &mut SessionContext,
         job: SsiJob,
-        tell: &mut dyn FnMut(Tell<Infallible, JobStep>),
+        tell: &mut dyn FnMut(JobReport<Infallible, JobStep>),
     ) -> Result<SsiOutput, JobError> {
-        let mut master = self.master(desk);
+        let mut master = self.master(context);
         Ok(match job {
             SsiJob::Hello => SsiOutput::Hello(Box::new(master.hello()?)),
             SsiJob::Set(asking) => SsiOutput::Set(Box::new(master.set(asking)?)),
             SsiJob::Read => SsiOutput::Read(master.word()?),
             SsiJob::Check(layout) => {
-                let progress = &mut |done, total| tell(Tell::Progress(Progress { done, total, what: JobStep }));
+                let progress = &mut |done, total| tell(JobReport::Progress(Progress { done, total, step: JobStep }));
                 SsiOutput::Check(check::check(&mut master, &layout, progress)?)
             }
         })
     }
 
-    fn pace(&mut self, desk: &mut SessionContext, interval: Option<Duration>) {
+    fn pace(&mut self, context: &mut SessionContext, interval: Option<Duration>) {
         let streamed = interval.filter(|interval| *interval <= STREAMED);
         let microseconds = streamed.and_then(|interval| u32::try_from(interval.as_micros()).ok());
         self.streamed_us = microseconds.filter(|microseconds| *microseconds > 0);
@@ -150,16 +150,16 @@ impl Device for Ssi {
             self.station.count_anew();
         }
         if self.streamed_us.is_none()
-            && let Err(error) = self.master(desk).end_words()
+            && let Err(error) = self.master(context).end_words()
         {
             tracing::warn!("the adapter's stream could not be ended: {error}");
         }
     }
 
-    fn sample(&mut self, desk: &mut SessionContext) -> Result<Words, JobError> {
+    fn sample(&mut self, context: &mut SessionContext) -> Result<Words, JobError> {
         match self.streamed_us {
-            Some(period_us) => self.master(desk).words(period_us),
-            None => self.master(desk).next_word(),
+            Some(period_us) => self.master(context).words(period_us),
+            None => self.master(context).next_word(),
         }
     }
 
@@ -171,8 +171,8 @@ impl Device for Ssi {
         self.wire.check()
     }
 
-    fn leave(&mut self, desk: &mut SessionContext) {
-        if let Err(error) = self.master(desk).leave_supply() {
+    fn leave(&mut self, context: &mut SessionContext) {
+        if let Err(error) = self.master(context).leave_supply() {
             tracing::warn!("the encoder's supply could not be switched off: {error}");
         }
     }

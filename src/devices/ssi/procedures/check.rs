@@ -44,7 +44,7 @@ pub enum CheckFinding {
     /// Millivolts wished and measured, and milliamperes.
     Supply {
         /// Millivolts wished.
-        wished: u16,
+        requested: u16,
         /// Millivolts measured.
         measured: u16,
         /// Milliamperes measured.
@@ -61,7 +61,7 @@ pub enum CheckFinding {
     /// A finding about words, and in how many of them.
     Said {
         /// The finding.
-        what: Said,
+        finding: Said,
         /// In how many words.
         count: u64,
     },
@@ -103,7 +103,7 @@ pub fn check(
 
 /// Judges an adapter and consecutive words.
 fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResult> {
-    let mut said: Vec<(Said, u64)> = Vec::new();
+    let mut counted: Vec<(Said, u64)> = Vec::new();
     let mut positions = Vec::new();
     for word in words {
         let reading = layout.decode(*word);
@@ -111,20 +111,20 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
             positions.push(reading.position);
         }
         for finding in layout.findings(reading) {
-            match said.iter_mut().find(|(own, _)| *own == finding) {
+            match counted.iter_mut().find(|(own, _)| *own == finding) {
                 Some((_, count)) => *count += 1,
-                None => said.push((finding, 1)),
+                None => counted.push((finding, 1)),
             }
         }
     }
     let different = words.iter().collect::<BTreeSet<_>>().len();
     let taken = CheckFinding::Words { taken: words.len() as u64, different };
     let among = |wanted: fn(&Said) -> bool| {
-        let wanted = said.iter().filter(move |(what, _)| wanted(what));
-        wanted.map(|(what, count)| CheckFinding::Said { what: what.clone(), count: *count })
+        let wanted = counted.iter().filter(move |(what, _)| wanted(what));
+        wanted.map(|(what, count)| CheckFinding::Said { finding: what.clone(), count: *count })
     };
     let verdict = |wanted: fn(&Said) -> bool| {
-        let worst = said.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
+        let worst = counted.iter().filter(|(what, _)| wanted(what)).map(|(what, _)| match what.meaning() {
             Meaning::Invalid => Verdict::Bad,
             Meaning::Warning => Verdict::Attention,
         });
@@ -173,11 +173,11 @@ fn adapter(identity: &Identity) -> SsiStepResult {
 fn supply(identity: &Identity) -> SsiStepResult {
     let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
     let (verdict, finding) = match supplied {
-        Some((wished, (measured, milliampere))) => {
+        Some((requested, (measured, milliampere))) => {
             // A tenth is what encoders for 5 V stand.
-            let is_near = measured.abs_diff(wished) <= wished / 10;
+            let is_near = measured.abs_diff(requested) <= requested / 10;
             let verdict = if is_near && milliampere > 0 { Verdict::Good } else { Verdict::Attention };
-            (verdict, CheckFinding::Supply { wished, measured, milliampere })
+            (verdict, CheckFinding::Supply { requested, measured, milliampere })
         }
         None => (Verdict::Good, CheckFinding::SuppliedElsewhere),
     };
@@ -259,7 +259,7 @@ mod tests {
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = judge(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);
-        assert_eq!(lines[3].findings, [CheckFinding::Said { what: Said::Padding, count: 2 }]);
+        assert_eq!(lines[3].findings, [CheckFinding::Said { finding: Said::Padding, count: 2 }]);
         assert_eq!(judge(&identity(400_000, None), &layout("ahs36"), &words)[3].findings, [CheckFinding::Fits]);
     }
 

@@ -60,7 +60,7 @@ impl Words {
     }
 
     /// Returns whether nothing came before these words since recording began.
-    pub const fn begins(&self) -> bool {
+    pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }
 
@@ -91,10 +91,10 @@ mod tests {
         let run = Words::run(&portion, &data, asking, 1_500_000, 50);
         let at = |us| Moment::after_start(Duration::from_micros(us));
         assert_eq!(run.timed().collect::<Vec<_>>(), [(at(3000), 1), (at(3050), 0x1FF_FFFF)]);
-        assert_eq!((run.begins(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
+        assert_eq!((run.is_stream_start(), run.is_streamed(), run.is_limited, run.lost), (false, true, false, 2));
         assert!(Words::run(&portion, &data, asking, 1_500_000, 49).is_limited);
         let lone = Words::one(at(9), 5, asking, 1_000_000);
         assert_eq!(lone.timed().collect::<Vec<_>>(), [(at(9), 5)]);
-        assert_eq!((lone.begins(), lone.is_streamed()), (true, false));
+        assert_eq!((lone.is_stream_start(), lone.is_streamed()), (true, false));
     }
 }

@@ -141,8 +141,8 @@ impl Layout {
                 findings.push(FrameFinding::Pattern { name: pattern.name.clone(), meaning: pattern.meaning });
             }
         }
-        let told = descriptor.patterns.iter().any(|pattern| pattern.word == Word::Ones);
-        if flags.has(Flags::ONES) && !told {
+        let has_ones_pattern = descriptor.patterns.iter().any(|pattern| pattern.word == Word::Ones);
+        if flags.has(Flags::ONES) && !has_ones_pattern {
             findings.push(FrameFinding::StuckHigh { sure: self.is_no_position(reading) });
         }
         if flags.has(Flags::ZEROS) {

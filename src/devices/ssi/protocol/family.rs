@@ -151,7 +151,7 @@ pub struct Signal {
 
 /// A family that cannot be used, and where.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{file}, line {line}, column {column}: {what}")]
+#[error("{file}, line {line}, column {column}: {problem}")]
 pub struct FamilyError {
     /// The file's name as it was given.
     pub file: String,
@@ -160,7 +160,7 @@ pub struct FamilyError {
     /// Column, counted from 1.
     pub column: usize,
     /// The problem.
-    pub what: FamilyProblem,
+    pub problem: FamilyProblem,
 }
 
 /// Why a family cannot be used.
@@ -191,7 +191,7 @@ impl Family {
     /// With line and column: text that is not RON, unknown or missing keys; a key that cannot stand on the command line,
     /// and a family whose frame as delivered cannot work.
     pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
-        let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, what };
+        let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, problem: what };
         let family: Family = ron::from_str(text).map_err(|wrong| {
             error(wrong.span.start.line, wrong.span.start.col, FamilyProblem::Parser(wrong.code.to_string()))
         })?;

@@ -3,25 +3,25 @@
 //! how usual it is. Layouts that these frames cannot tell apart are one class, with the motion that would decide.
 
 mod any_other;
-mod ends;
+mod code_ends;
+mod frame_set;
 mod members;
 mod motion;
 mod of_family;
 mod plausible;
 mod probe;
 mod reading;
-mod seen;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
 use std::collections::HashSet;
 
+use frame_set::FrameSet;
 use members::{Member, members};
 use motion::Motion;
 use probe::Probe;
 use reading::{Read, readings};
-use seen::Seen;
 
 use super::family::{Families, Settings};
 use super::layout::Layout;
@@ -49,14 +49,14 @@ pub struct Search {
     /// Number of different frames.
     pub different: usize,
     /// Why the first class is not certain; `None`: it is the only one, and every bit is explained.
-    pub doubt: Option<Doubt>,
+    pub doubt: Option<Uncertainty>,
     /// The classes that fit, the best first; may be empty.
     pub classes: Vec<Class>,
 }
 
 /// Why the result is not certain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
+pub enum Uncertainty {
     /// The shaft stood, or hardly moved.
     Standing,
     /// Every bit is 0 or 1 in all frames.
@@ -170,17 +170,17 @@ struct Group {
 /// Reads frames of `clocks` bits, right-justified, taken one after the other at even intervals.
 pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     let newest = frames.get(frames.len().saturating_sub(MOST_FRAMES)..).unwrap_or_default();
-    let seen = Seen::new(newest, clocks);
+    let seen = FrameSet::new(newest, clocks);
     let different = seen.different();
     let search = |doubt, classes| Search { frames: frames.len(), different, doubt, classes };
     if let Some(high) = seen.stuck().filter(|_| !newest.is_empty()) {
-        return search(Some(Doubt::Stuck { high }), Vec::new());
+        return search(Some(Uncertainty::Stuck { high }), Vec::new());
     }
-    if different < 8 || seen.stands() {
-        return search(Some(Doubt::Standing), Vec::new());
+    if different < 8 || seen.is_standing() {
+        return search(Some(Uncertainty::Standing), Vec::new());
     }
     let repeat = seen.repeat();
-    let words = repeat.map_or_else(|| Seen::new(newest, clocks), |repeat| seen.first_words(repeat));
+    let words = repeat.map_or_else(|| FrameSet::new(newest, clocks), |repeat| seen.first_words(repeat));
     let mut groups: Vec<Group> = Vec::new();
     for read in readings(&words) {
         let known = groups.iter().position(|group| same(&group.read.motion, &read.motion));
@@ -203,7 +203,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         }
     }
     if different < LEAST_DIFFERENT && !groups.first().is_some_and(|group| group.read.closed) {
-        return search(Some(Doubt::Standing), Vec::new());
+        return search(Some(Uncertainty::Standing), Vec::new());
     }
     for group in &mut groups {
         // If steps vary, a lowest bit that never changes is not one: it is a parity, or a zero that the code covers.

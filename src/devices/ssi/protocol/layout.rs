@@ -4,7 +4,7 @@ mod check;
 #[cfg(test)]
 mod tests;
 
-pub use check::{AsAWhole, LayoutError, Several, Taker};
+pub use check::{ClockUse, LayoutError, RepeatedPart, WordOperation};
 #[cfg(test)]
 pub(crate) use tests::layouts as any_layouts;
 

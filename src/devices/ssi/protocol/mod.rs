@@ -33,11 +33,11 @@ pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, Resolved, SettingName, Settings,
     SettingsError, Signal, StepLimits,
 };
-pub use find::{Class, Doubt, Evidence, Open, Proposal, Search, find};
+pub use find::{Class, Evidence, Open, Proposal, Search, Uncertainty, find};
 pub use frame_text::{FrameTextError, frame_bits, parse_frame};
 #[cfg(test)]
 pub(crate) use layout::any_layouts;
-pub use layout::{AsAWhole, Flags, FrameReading, Layout, LayoutError, Several, Taker};
+pub use layout::{ClockUse, Flags, FrameReading, Layout, LayoutError, RepeatedPart, WordOperation};
 pub use range::{Direction, Fraction, Location, Range, RangeError};
 pub use spec::SpecError;
 pub use tally::{Noted, Tally};

@@ -9,13 +9,13 @@ use crate::units::Moment;
 /// An error bit or a word that stands for a fault, and when it comes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct InjectedFault {
-    shows: Shows,
+    shows: FaultIndication,
     /// From one time that it happens to the next; none: it stands from the beginning.
     period: Option<Duration>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shows {
+enum FaultIndication {
     /// This error bit.
     Bit {
         index: usize,
@@ -56,12 +56,12 @@ impl InjectedFault {
     /// clears is about the time between the two; an intermittent one is present in the second half of its period.
     pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
-            return before.is_none() || !matches!(self.shows, Shows::Bit { cleared: true, .. });
+            return before.is_none() || !matches!(self.shows, FaultIndication::Bit { cleared: true, .. });
         };
         let period = period.as_nanos().max(1);
         let times = |moment: Moment| moment.since_start().as_nanos() / period;
         match self.shows {
-            Shows::Bit { cleared: true, .. } => times(at) > before.map_or(0, times),
+            FaultIndication::Bit { cleared: true, .. } => times(at) > before.map_or(0, times),
             _ => at.since_start().as_nanos() % period >= period / 2,
         }
     }
@@ -69,30 +69,30 @@ impl InjectedFault {
     /// The word that is sent instead of the frame.
     pub(super) const fn word(&self) -> Option<u64> {
         match self.shows {
-            Shows::Word(word) => Some(word),
-            Shows::Bit { .. } => None,
+            FaultIndication::Word(word) => Some(word),
+            FaultIndication::Bit { .. } => None,
         }
     }
 
     /// The error bit that speaks.
     pub(super) const fn flag(&self) -> Flags {
         match self.shows {
-            Shows::Bit { index, .. } => Flags::error(index),
-            Shows::Word(_) => Flags::NONE,
+            FaultIndication::Bit { index, .. } => Flags::error(index),
+            FaultIndication::Word(_) => Flags::NONE,
         }
     }
 }
 
-fn shows(name: &str, layout: &Layout) -> Option<Shows> {
+fn shows(name: &str, layout: &Layout) -> Option<FaultIndication> {
     let descriptor = layout.descriptor();
     let is_own = |own: &str| own.replace(' ', "-").eq_ignore_ascii_case(name.trim());
     let bits = descriptor.errors.iter().enumerate();
     let mut bits = bits.filter(|(_, bit)| is_own(&bit.name));
     if let Some((index, bit)) = bits.next() {
-        return Some(Shows::Bit { index, cleared: bit.cleared_by_transfer });
+        return Some(FaultIndication::Bit { index, cleared: bit.cleared_by_transfer });
     }
     let pattern = descriptor.patterns.iter().find(|pattern| is_own(&pattern.name))?;
-    Some(Shows::Word(match pattern.word {
+    Some(FaultIndication::Word(match pattern.word {
         Word::Ones => u64::MAX >> (64 - layout.clocks().clamp(1, 64)),
         Word::Bits(word) => word,
     }))

@@ -7,7 +7,7 @@ use super::action::{SsiAction, Try};
 use super::design::Edit;
 use super::encoder::Encoder;
 use super::families::families;
-use super::search::{Frames, Hunt, MOST, Origin, read_frames};
+use super::search::{Frames, MOST, Origin, SearchState, read_frames};
 use super::{Done, strip};
 use crate::app::action::{Action as StudioAction, Done as StudioDone};
 use crate::app::services::Services;
@@ -64,7 +64,7 @@ impl Encoder {
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
             SsiAction::FindIn(path) => self.find_in(path, services),
-            SsiAction::ForgetSearch => self.hunt = Hunt::Nothing,
+            SsiAction::ForgetSearch => self.hunt = SearchState::Nothing,
             SsiAction::Take(class, member) => self.take_found(class, member),
             SsiAction::ForgetErrors => self.record.forget_tally(),
             SsiAction::AskExport(format) => {
@@ -138,7 +138,7 @@ impl Encoder {
         let clocks = self.clocks();
         let frames = self.record.words(clocks);
         if frames.is_empty() {
-            self.hunt = Hunt::Failed(TEXTS.text("ssi_find.nothing_read"));
+            self.hunt = SearchState::Failed(TEXTS.text("ssi_find.nothing_read"));
             return;
         }
         self.find(services, move || Ok(Frames { origin: Origin::Live, clocks, frames }));
@@ -153,22 +153,22 @@ impl Encoder {
     fn find(&mut self, services: &mut Services, frames: impl FnOnce() -> Result<Frames, Text> + Send + 'static) {
         self.searches = self.searches.wrapping_add(1);
         let number = self.searches;
-        self.hunt = Hunt::Running(number);
+        self.hunt = SearchState::Running(number);
         let (session, families) = (self.session.id, families(services));
         services.tasks.run("find", move || {
             let result = frames().map(|Frames { origin, clocks, mut frames }| {
                 frames.drain(..frames.len().saturating_sub(MOST));
                 let search = Box::new(find(&frames, clocks, &families));
-                Hunt::Found { origin, clocks, search }
+                SearchState::Found { origin, clocks, search }
             });
-            let hunt = Box::new(result.unwrap_or_else(Hunt::Failed));
+            let hunt = Box::new(result.unwrap_or_else(SearchState::Failed));
             StudioAction::Done(StudioDone::device(session, Done::Found { number, hunt }))
         });
     }
 
     /// A layout that was found, as the layout on the drawing board.
     fn take_found(&mut self, class: usize, member: usize) {
-        let Hunt::Found { search, .. } = &self.hunt else { return };
+        let SearchState::Found { search, .. } = &self.hunt else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };
         let mut profile = self.wanted_profile();
         profile.family = proposal.family.as_ref().map(|(key, _)| key.clone());

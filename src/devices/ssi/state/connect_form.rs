@@ -15,7 +15,7 @@ use crate::parameter::{Entry, Parameters as _};
 
 /// The way to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum SsiWay {
+pub enum SsiLinkKind {
     /// The virtual encoder in this program, behind a virtual adapter.
     #[default]
     Virtual,
@@ -29,7 +29,7 @@ pub enum SsiWay {
 /// for what is usual.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
-    pub way: SsiWay,
+    pub kind: SsiLinkKind,
     /// Over a network, and not a serial port of this machine.
     pub network: bool,
     /// Serial port of the adapter.
@@ -60,15 +60,15 @@ impl FormModel for SsiForm {
     fn from_url(url: &LinkUrl) -> Self {
         let mut form = SsiForm::default();
         let target = url.target.as_str();
-        form.way = match url.scheme {
-            Scheme::Sim => SsiWay::Virtual,
-            Scheme::Replay => SsiWay::Replay,
-            Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => SsiWay::Adapter,
+        form.kind = match url.scheme {
+            Scheme::Sim => SsiLinkKind::Virtual,
+            Scheme::Replay => SsiLinkKind::Replay,
+            Scheme::Bridge | Scheme::Serial | Scheme::Tcp | Scheme::Modbus | Scheme::Enip => SsiLinkKind::Adapter,
         };
         if let Some(network) = adapter_in_network(target).filter(|_| url.scheme == Scheme::Bridge) {
             form.network = true;
             (form.host, form.tcp_port) = parted(network);
-        } else if form.way == SsiWay::Replay {
+        } else if form.kind == SsiLinkKind::Replay {
             form.file = target.to_owned();
         } else {
             form.port = target.to_owned();
@@ -93,7 +93,7 @@ impl FormModel for SsiForm {
 impl SsiForm {
     /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
-        let own = if self.way == SsiWay::Virtual { Self::of_the_virtual() } else { Vec::new() };
+        let own = if self.kind == SsiLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
     }
 
@@ -117,16 +117,16 @@ impl SsiForm {
     }
 
     fn target(&self) -> Result<(Scheme, String), Text> {
-        Ok(match self.way {
-            SsiWay::Virtual => (Scheme::Sim, String::new()),
-            SsiWay::Adapter if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
-            SsiWay::Adapter => (Scheme::Bridge, entered(&self.port, "form.port_missing")?),
-            SsiWay::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
+        Ok(match self.kind {
+            SsiLinkKind::Virtual => (Scheme::Sim, String::new()),
+            SsiLinkKind::Adapter if self.network => (Scheme::Bridge, to_adapter(&self.host, &self.tcp_port)?),
+            SsiLinkKind::Adapter => (Scheme::Bridge, entered(&self.port, "form.port_missing")?),
+            SsiLinkKind::Replay => (Scheme::Replay, entered(&self.file, "form.file_missing")?),
         })
     }
 
     fn parameters(&self) -> Parameters {
-        let is_virtual = self.way == SsiWay::Virtual;
+        let is_virtual = self.kind == SsiLinkKind::Virtual;
         let mut parameters = Parameters::default();
         parameters.typed(&self.entries(), &self.typed);
         if self.leave_supply {
@@ -174,9 +174,9 @@ mod tests {
             change(&mut form);
             form.url().unwrap_err().id()
         };
-        assert_eq!(refused(|form| form.way = SsiWay::Adapter), "form.port_missing");
-        assert_eq!(refused(|form| (form.way, form.network) = (SsiWay::Adapter, true)), "form.host_missing");
-        assert_eq!(refused(|form| form.way = SsiWay::Replay), "form.file_missing");
+        assert_eq!(refused(|form| form.kind = SsiLinkKind::Adapter), "form.port_missing");
+        assert_eq!(refused(|form| (form.kind, form.network) = (SsiLinkKind::Adapter, true)), "form.host_missing");
+        assert_eq!(refused(|form| form.kind = SsiLinkKind::Replay), "form.file_missing");
         assert_eq!(refused(|form| form.typed.set("margin", "soon")), "form.margin");
         assert_eq!(refused(|form| form.typed.set("rpm", "fast")), "form.rpm");
         assert_eq!(refused(|form| form.typed.set("fault", "drop:2")), "form.fault");
@@ -187,11 +187,11 @@ mod tests {
     #[test]
     fn another_way_takes_along_only_what_it_has() {
         let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
-        (form.way, form.port) = (SsiWay::Adapter, "COM3".to_owned());
+        (form.kind, form.port) = (SsiLinkKind::Adapter, "COM3".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
         // What a typed link had and its way has no entry for.
         let mut form = SsiForm::from_url(&"bridge:COM3?rpm=60".parse().unwrap());
-        form.way = SsiWay::Virtual;
+        form.kind = SsiLinkKind::Virtual;
         form.typed.set("rpm", "6");
         assert_eq!(form.url().unwrap().to_string(), "sim:?rpm=6");
     }

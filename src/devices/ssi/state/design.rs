@@ -75,15 +75,15 @@ impl Design {
     ///
     /// # Errors
     /// Why it cannot work.
-    fn of(profile: SsiProfile, families: &Families, wished: Option<&Settings>) -> Result<Self, Text> {
+    fn of(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.named(key));
         let sends = |family: &Family, settings: &Settings| {
             settings.resolve(family).is_ok_and(|resolved| *resolved.layout.descriptor() == profile.descriptor)
         };
         let settings = family.and_then(|family| {
-            let wished = wished.filter(|wished| sends(family, wished));
-            wished.cloned().or_else(|| family.settings_of(&profile.descriptor))
+            let requested = requested.filter(|requested| sends(family, requested));
+            requested.cloned().or_else(|| family.settings_of(&profile.descriptor))
         });
         let resolved = family.zip(settings.as_ref()).and_then(|(family, settings)| settings.resolve(family).ok());
         let advice = resolved.map(|resolved| resolved.advice).unwrap_or_default();
@@ -192,11 +192,11 @@ impl Designer {
 
     /// Changes the layout, as one step that can be undone. False where it stays as it is.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
-        let wished = match &edit {
+        let requested = match &edit {
             Edit::Settings(settings) => Some((**settings).clone()),
             _ => self.now.settings.clone(),
         };
-        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families, wished.as_ref())) {
+        match self.edited(edit).and_then(|profile| Design::of(profile, &self.families, requested.as_ref())) {
             Ok(design) => {
                 self.problem = None;
                 if design.profile == self.now.profile {

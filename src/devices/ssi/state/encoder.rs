@@ -4,8 +4,8 @@
 use std::sync::Arc;
 
 use super::design::{Design, Designer, Edit};
-use super::record::{Record, Seen, Streamed};
-use super::search::Hunt;
+use super::record::{ReadWord, Record, Streamed};
+use super::search::SearchState;
 use super::trial::{Decoded, Trial};
 use crate::app::check::CheckLine;
 use crate::app::session::{Phase, Session, Source};
@@ -29,7 +29,7 @@ pub struct Encoder {
     /// The recording of what was read.
     pub record: Record,
     /// The search for the layout.
-    pub hunt: Hunt,
+    pub hunt: SearchState,
     /// Searches that were begun.
     pub(super) searches: u32,
     /// The adapter and how it reads words, once known.
@@ -41,7 +41,7 @@ pub struct Encoder {
     /// Words have so many clocks while a layout is looked for.
     pub(super) clocks: Option<u8>,
     /// How the adapter was last asked to read words.
-    pub(super) told: Option<Asking>,
+    pub(super) requested: Option<Asking>,
 }
 
 impl Encoder {
@@ -55,13 +55,13 @@ impl Encoder {
             designer,
             trial,
             follows: true,
-            hunt: Hunt::default(),
+            hunt: SearchState::default(),
             searches: 0,
             identity: None,
             check: None,
             motor: None,
             clocks: None,
-            told: None,
+            requested: None,
         }
     }
 
@@ -71,7 +71,7 @@ impl Encoder {
     }
 
     /// The frame that is shown: the word that was read last where that is wished and there is one, else the one to try with.
-    pub fn shown(&self) -> Decoded {
+    pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
     }
@@ -82,7 +82,7 @@ impl Encoder {
     }
 
     /// The word that was read last; `None`: none was.
-    pub fn last(&self) -> Option<&Seen> {
+    pub fn last(&self) -> Option<&ReadWord> {
         self.record.last()
     }
 

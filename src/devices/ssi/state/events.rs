@@ -51,7 +51,7 @@ impl Kind for Ssi {
         explained::job(error)
     }
 
-    fn loss(error: &JobError) -> Option<Text> {
+    fn connection_error(error: &JobError) -> Option<Text> {
         explained::loss(error)
     }
 }
@@ -61,8 +61,8 @@ impl Encoder {
     fn tell_asking(&mut self, services: &mut Services) {
         let asking = self.asking();
         // Once it has said who it is, and nothing else runs; what it refused is not asked again.
-        if self.identity.is_some() && self.session.is_ready() && self.told != Some(asking) {
-            self.told = Some(asking);
+        if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
+            self.requested = Some(asking);
             self.submit(SsiJob::Set(asking), services);
         }
     }
@@ -110,7 +110,7 @@ impl SessionEvents for Encoder {
     fn finished(&mut self, output: SsiOutput, services: &mut Services) {
         match output {
             SsiOutput::Hello(identity) => {
-                self.told = Some(identity.asking);
+                self.requested = Some(identity.asking);
                 self.take_identity(*identity, services);
                 self.see_a_word(services);
             }
@@ -129,11 +129,11 @@ impl SessionEvents for Encoder {
     }
 
     fn forget_requests(&mut self) {
-        (self.motor, self.told, self.identity) = (None, None, None);
+        (self.motor, self.requested, self.identity) = (None, None, None);
     }
 
     fn cancelled(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         services.job_ends(self.session.id, id, JobEnd::Cancelled);
-        services.tell(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
+        services.notify(Severity::Warning, Ssi::error_texts(error), Some(&self.session.name()));
     }
 }

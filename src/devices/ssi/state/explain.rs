@@ -11,7 +11,7 @@ use crate::app::explain::link;
 use crate::buses::bridge::state::adapter;
 use crate::devices::ssi::jobs::JobError;
 use crate::devices::ssi::protocol::{
-    Advice, Code, Coded, Doubt, Evidence, FrameFinding, Layout, Meaning, Noted, Open, Range, Warning,
+    Advice, Code, Coded, Evidence, FrameFinding, Layout, Meaning, Noted, Open, Range, Uncertainty, Warning,
 };
 use crate::devices::ssi::state::TEXTS;
 
@@ -167,15 +167,15 @@ pub fn open(open: Open) -> Text {
 }
 
 /// Returns whether the first layout found is certain, or why not.
-pub fn doubt(doubt: Option<Doubt>) -> Text {
+pub fn doubt(doubt: Option<Uncertainty>) -> Text {
     TEXTS.text(match doubt {
         None => "ssi_find.sure",
-        Some(Doubt::Standing) => "ssi_find.standing",
-        Some(Doubt::Stuck { high: true }) => "ssi.stuck_high",
-        Some(Doubt::Stuck { high: false }) => "ssi.stuck_low",
-        Some(Doubt::Nothing) => "ssi_find.nothing_fits",
-        Some(Doubt::Close) => "ssi_find.close",
-        Some(Doubt::Open) => "ssi_find.open",
+        Some(Uncertainty::Standing) => "ssi_find.standing",
+        Some(Uncertainty::Stuck { high: true }) => "ssi.stuck_high",
+        Some(Uncertainty::Stuck { high: false }) => "ssi.stuck_low",
+        Some(Uncertainty::Nothing) => "ssi_find.nothing_fits",
+        Some(Uncertainty::Close) => "ssi_find.close",
+        Some(Uncertainty::Open) => "ssi_find.open",
     })
 }
 

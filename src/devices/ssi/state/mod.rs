@@ -28,13 +28,13 @@ mod words;
 pub use texts::TEXTS;
 
 pub use action::{SsiAction, Try};
-pub use connect_form::{SsiForm, SsiWay};
+pub use connect_form::{SsiForm, SsiLinkKind};
 pub use design::{Design, Designer, Edit};
 pub use encoder::Encoder;
 pub use export::Format;
 pub use form::{Entry, Field, Group, Input, Row, whole};
-pub use record::{Record, Seen, Streamed};
-pub use search::{Frames, Hunt, Origin, read_clocks, read_frames};
+pub use record::{ReadWord, Record, Streamed};
+pub use search::{Frames, Origin, SearchState, read_clocks, read_frames};
 pub use trial::{Decoded, Trial};
 
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ pub enum Done {
     Found {
         number: u32,
         /// The state of the search.
-        hunt: Box<Hunt>,
+        hunt: Box<SearchState>,
     },
     /// A file was written, or not.
     Written(PathBuf, Result<(), FileError>),

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use super::design::Edit;
-use super::{Done, Encoder, Hunt, SsiAction, TEXTS};
+use super::{Done, Encoder, SearchState, SsiAction, TEXTS};
 use crate::app::action::Opened;
 use crate::app::documents::{document_of, only_looked_at};
-use crate::app::services::{JobEnd, Services, World};
+use crate::app::services::{Environment, JobEnd, Services};
 use crate::app::session::{Drafted, SessionEvents, Source};
 use crate::app::{
     ActContext, DeviceMemory, DeviceModel, EditStep, FileQuestion, Prepare, Recording, Severity, Tab, Text, explain,
@@ -20,7 +20,7 @@ impl DeviceModel for Encoder {
     type Action = SsiAction;
     type Done = Done;
 
-    fn prepare(&self, _world: &World) -> Prepare<Ssi> {
+    fn prepare(&self, _world: &Environment) -> Prepare<Ssi> {
         let asking = self.asking();
         Box::new(move |session| session.ask_like(asking))
     }
@@ -29,9 +29,9 @@ impl DeviceModel for Encoder {
         self.let_go(JobEnd::Cancelled, services);
         self.record.begin(&opened.began);
         self.motor = opened.aside.clone();
-        self.told = None;
+        self.requested = None;
         self.session.take_line(opened, services);
-        if !self.session.drafting.has_looked() {
+        if !self.session.drafting.is_loaded() {
             self.load_draft(services);
         }
         self.submit(SsiJob::Hello, services);
@@ -44,14 +44,14 @@ impl DeviceModel for Encoder {
     fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Found { number, hunt } => {
-                if self.hunt == Hunt::Running(number) {
+                if self.hunt == SearchState::Running(number) {
                     self.hunt = *hunt;
                 }
             }
             Done::Written(path, Ok(())) => {
                 services.log.settle_file(&path);
                 let text = Text::new("session.saved").with("path", path.display());
-                services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                services.notify(Severity::Good, vec![text], Some(&self.session.name()));
             }
             Done::Written(_, Err(error)) => self.session.refuse(explain::file(&error), services),
         }

@@ -30,14 +30,14 @@ pub struct Record {
     tally: Tally,
     /// Findings up to this time are no longer shown.
     forgotten: Option<Moment>,
-    last: Option<Seen>,
+    last: Option<ReadWord>,
     stream: Option<Streamed>,
     lost: u64,
 }
 
 /// A word with what it says.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Seen {
+pub struct ReadWord {
     /// When it was taken.
     pub at: Moment,
     /// Its bits.
@@ -96,20 +96,20 @@ impl Record {
         match self.stream {
             // Whatever was dropped, the numbers of the words show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
-            _ => self.track.lose(dropped),
+            _ => self.track.note_dropped(dropped),
         }
         for run in runs {
             self.follow(&run);
             self.see(&run);
-            self.keep(run);
+            self.buffer(run);
         }
     }
 
     /// Appends a run to the previous one: missing words are counted and never joined.
     fn follow(&mut self, run: &Words) {
-        let before = self.stream.filter(|_| !run.begins()).map(|stream| run.first.saturating_sub(stream.next));
+        let before = self.stream.filter(|_| !run.is_stream_start()).map(|stream| run.first.saturating_sub(stream.next));
         let missing = before.unwrap_or(run.lost);
-        if run.is_streamed() && (run.begins() || missing > 0) {
+        if run.is_streamed() && (run.is_stream_start() || missing > 0) {
             self.track.gap();
         }
         self.lost += missing;
@@ -140,11 +140,11 @@ impl Record {
         self.track.add(&sightings, &self.meaning);
         if let Some((at, word)) = run.timed().last() {
             self.last =
-                Some(Seen { at, clocks: run.clocks, decoded: fits.then(|| Decoded::of(&self.layout, word)), word });
+                Some(ReadWord { at, clocks: run.clocks, decoded: fits.then(|| Decoded::of(&self.layout, word)), word });
         }
     }
 
-    fn keep(&mut self, run: Words) {
+    fn buffer(&mut self, run: Words) {
         self.held += run.words.len();
         self.kept.push_back(run);
         while self.held > KEPT && self.kept.len() > 1 {
@@ -196,7 +196,7 @@ impl Record {
         self.kept.iter().rev().take_while(move |run| {
             let goes_on = later.is_none_or(|later| {
                 let ends = run.first + run.words.len() as u64;
-                !later.begins() && later.first == ends && later.period_ns == run.period_ns
+                !later.is_stream_start() && later.first == ends && later.period_ns == run.period_ns
             });
             later = Some(run);
             goes_on && run.clocks == clocks
@@ -215,7 +215,7 @@ impl Record {
     }
 
     /// The last word.
-    pub fn last(&self) -> Option<&Seen> {
+    pub fn last(&self) -> Option<&ReadWord> {
         self.last.as_ref()
     }
 

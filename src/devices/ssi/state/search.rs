@@ -33,7 +33,7 @@ pub struct Frames {
 
 /// The state of the search.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub enum Hunt {
+pub enum SearchState {
     /// Nothing was looked for.
     #[default]
     Nothing,

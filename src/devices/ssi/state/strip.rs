@@ -196,7 +196,7 @@ impl Strip {
     }
 
     /// Returns the appearance of each cell of a frame.
-    pub fn shown(&self, frame: u64) -> Vec<CellState> {
+    pub fn cells_of(&self, frame: u64) -> Vec<CellState> {
         let descriptor = self.layout.descriptor();
         let flags = self.layout.decode(frame).flags;
         let cells = self.layout.cells(frame).into_iter();

@@ -16,7 +16,7 @@ pub struct Diagram {
     timing: Timing,
     pieces: Vec<Piece>,
     spans: Vec<Span>,
-    marks: Vec<Mark>,
+    marks: Vec<TimingMark>,
 }
 
 /// A stretch of time that is drawn. Between two of them the axis is broken.
@@ -32,7 +32,7 @@ pub struct Piece {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// The activity that lasts.
-    pub what: Lasting,
+    pub activity: Lasting,
     /// Start in seconds.
     pub from: f64,
     /// Latest end in seconds.
@@ -60,16 +60,16 @@ pub enum Lasting {
 
 /// A moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mark {
+pub struct TimingMark {
     /// The event.
-    pub what: Moment,
+    pub event: TimingEvent,
     /// In seconds.
     pub at: f64,
 }
 
 /// An event at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Moment {
+pub enum TimingEvent {
     /// The position that is sent is kept.
     Latched,
     /// A position is taken, which the next burst sends.
@@ -108,7 +108,7 @@ impl Diagram {
         let (period, burst) = (timing.period.as_secs_f64(), timing.burst.as_secs_f64());
         let (pause, cycle) = (reads.pause.as_secs_f64(), timing.cycle.as_secs_f64());
         let (least, most) = timing.monoflop;
-        let span = |what, from, to| Span { what, from, to, least: to };
+        let span = |what, from, to| Span { activity: what, from, to, least: to };
         let mut spans = vec![
             span(Lasting::Period, 0.0, period),
             span(Lasting::Burst, 0.0, burst),
@@ -117,15 +117,21 @@ impl Diagram {
             span(Lasting::LeastPause, burst, burst + timing.least_pause.as_secs_f64()),
         ];
         let mode = times.synchronous.filter(|_| reads.synchronous);
-        let first =
-            if matches!(mode.map(|mode| mode.taken), Some(Taken::FirstEdge)) { Moment::Taken } else { Moment::Latched };
-        let mut marks = vec![Mark { what: first, at: 0.0 }];
+        let first = if matches!(mode.map(|mode| mode.taken), Some(Taken::FirstEdge)) {
+            TimingEvent::Taken
+        } else {
+            TimingEvent::Latched
+        };
+        let mut marks = vec![TimingMark { event: first, at: 0.0 }];
         if let Some(Taken::Behind { starts, ready }) = mode.map(|mode| mode.taken) {
             let (starts, ready) = (burst + starts * 1e-6, burst + (starts + ready) * 1e-6);
             spans.push(span(Lasting::Making, starts, ready));
-            marks.extend([Mark { what: Moment::Started, at: starts }, Mark { what: Moment::Ready, at: ready }]);
+            marks.extend([
+                TimingMark { event: TimingEvent::Started, at: starts },
+                TimingMark { event: TimingEvent::Ready, at: ready },
+            ]);
         }
-        marks.push(Mark { what: Moment::Next, at: cycle });
+        marks.push(TimingMark { event: TimingEvent::Next, at: cycle });
         marks.sort_by(|a, b| a.at.total_cmp(&b.at));
         let pieces = pieces(burst, cycle + NEXT * period, &spans, &marks);
         Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
@@ -153,7 +159,7 @@ impl Diagram {
     }
 
     /// Moments, the first of them first.
-    pub fn marks(&self) -> &[Mark] {
+    pub fn marks(&self) -> &[TimingMark] {
         &self.marks
     }
 
@@ -200,21 +206,21 @@ impl Diagram {
 
     /// Returns the state at a moment: the time, and the clock with its content, or what the lines wait for.
     pub fn state_at(&self, at: f64) -> Vec<Text> {
-        let mut told = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
+        let mut texts = vec![TEXTS.text("ssi.timing_at").with_text("time", time(at))];
         if let Some(bit) = self.bits().into_iter().find(|bit| (bit.from..bit.to).contains(&at)) {
-            told.push(cell(&self.strip, bit.clock));
+            texts.push(cell(&self.strip, bit.clock));
         } else {
             let waits = [Lasting::Monoflop, Lasting::Making, Lasting::Pause];
-            let is_in = |span: &&Span| waits.contains(&span.what) && (span.from..span.to).contains(&at);
-            told.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
+            let is_in = |span: &&Span| waits.contains(&span.activity) && (span.from..span.to).contains(&at);
+            texts.extend(self.spans.iter().filter(is_in).map(|span| self.words(span)));
         }
-        told
+        texts
     }
 
     /// A span in words, with how long it is.
     pub fn words(&self, span: &Span) -> Text {
         let long = time(span.to - span.from);
-        let text = match span.what {
+        let text = match span.activity {
             Lasting::Period => TEXTS.text("ssi.timing_period"),
             Lasting::Burst => TEXTS.text("ssi.timing_burst").with("clocks", self.clocks()),
             Lasting::Pause => TEXTS.text("ssi.timing_pause"),
@@ -233,14 +239,14 @@ impl Diagram {
     }
 }
 
-impl Moment {
+impl TimingEvent {
     pub fn words(self) -> Text {
         TEXTS.text(match self {
-            Moment::Latched => "ssi.timing_latched",
-            Moment::Taken => "ssi.timing_taken",
-            Moment::Started => "ssi.timing_started",
-            Moment::Ready => "ssi.timing_ready",
-            Moment::Next => "ssi.timing_next",
+            TimingEvent::Latched => "ssi.timing_latched",
+            TimingEvent::Taken => "ssi.timing_taken",
+            TimingEvent::Started => "ssi.timing_started",
+            TimingEvent::Ready => "ssi.timing_ready",
+            TimingEvent::Next => "ssi.timing_next",
         })
     }
 }
@@ -266,7 +272,7 @@ pub fn time(seconds: f64) -> Text {
 }
 
 /// The axis of time: the burst whole, and behind it all that is near to something that happens.
-fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[Mark]) -> Vec<Piece> {
+fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Piece> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();
     let end = moments.iter().copied().fold(end, f64::max);

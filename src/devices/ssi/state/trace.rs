@@ -14,9 +14,9 @@ pub(super) fn meaning(entry: &TraceEntry) -> Explained {
         return fault;
     }
     let packet = traced::packet(&bytes);
-    let said = packet.and_then(|packet| match Request::parse(&packet) {
-        Ok(request) => Some(traced::asked(&request)),
+    let meaning = packet.and_then(|packet| match Request::parse(&packet) {
+        Ok(request) => Some(traced::request_text(&request)),
         Err(_) => traced::message_text(&packet),
     });
-    said.into_iter().collect::<Vec<_>>().into()
+    meaning.into_iter().collect::<Vec<_>>().into()
 }

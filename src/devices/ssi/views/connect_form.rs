@@ -4,7 +4,7 @@ use egui::Ui;
 
 use crate::app::Action;
 use crate::app::connect::Connect as Dialog;
-use crate::devices::ssi::state::{SsiForm, SsiWay};
+use crate::devices::ssi::state::{SsiForm, SsiLinkKind};
 use crate::devices::ssi::views::say;
 use crate::parameter::Entry;
 use crate::ui::Theme;
@@ -28,18 +28,18 @@ impl TypedConnectForm for SsiConnectForm {
         actions: &mut Vec<Action>,
     ) {
         let ways = [
-            (SsiWay::Virtual, "connect.virtual"),
-            (SsiWay::Adapter, "connect.adapter"),
-            (SsiWay::Replay, "connect.replay"),
+            (SsiLinkKind::Virtual, "connect.virtual"),
+            (SsiLinkKind::Adapter, "connect.adapter"),
+            (SsiLinkKind::Replay, "connect.replay"),
         ];
-        segments(ui, theme, &mut form.way, ways);
-        if form.way == SsiWay::Adapter {
+        segments(ui, theme, &mut form.kind, ways);
+        if form.kind == SsiLinkKind::Adapter {
             paragraph(ui, theme.caption(say(theme, "connect.ssi_words")));
         }
         ui.add_space(theme.space.between);
-        match form.way {
-            SsiWay::Virtual => typed(ui, theme, say, SsiForm::of_the_virtual(), &mut form.typed),
-            SsiWay::Adapter => {
+        match form.kind {
+            SsiLinkKind::Virtual => typed(ui, theme, say, SsiForm::of_the_virtual(), &mut form.typed),
+            SsiLinkKind::Adapter => {
                 segments(ui, theme, &mut form.network, [(false, "connect.serial"), (true, "connect.tcp")]);
                 if form.network {
                     network(ui, theme, &mut form.host, &mut form.tcp_port);
@@ -47,9 +47,9 @@ impl TypedConnectForm for SsiConnectForm {
                     serial(ui, theme, dialog, &mut form.port, actions);
                 }
             }
-            SsiWay::Replay => recording(ui, theme, &mut form.file, actions),
+            SsiLinkKind::Replay => recording(ui, theme, &mut form.file, actions),
         }
-        if form.way != SsiWay::Replay && unfolded(ui, theme, more) {
+        if form.kind != SsiLinkKind::Replay && unfolded(ui, theme, more) {
             let (supply, rest) = SsiForm::of_the_link();
             let none = say(theme, "connect.voltage_none");
             typed(ui, theme, say, supply.into_iter().map(|own| Entry { hint: none.clone(), ..own }), &mut form.typed);

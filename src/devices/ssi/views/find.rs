@@ -4,9 +4,9 @@
 use egui::{RichText, Ui};
 
 use crate::app::{Action, Text};
-use crate::devices::ssi::protocol::{Class, Descriptor, Doubt, Proposal, Search};
+use crate::devices::ssi::protocol::{Class, Descriptor, Proposal, Search, Uncertainty};
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Encoder, Hunt, Origin, SsiAction as Ssi, TEXTS, read_clocks};
+use crate::devices::ssi::state::{Encoder, Origin, SearchState, SsiAction as Ssi, TEXTS, read_clocks};
 use crate::devices::ssi::views::say;
 use crate::ui::controls::{
     card, card_with, enabled_button, entry, icon_button, paragraph, primary, problem, row, settled_entry, spinner,
@@ -36,20 +36,22 @@ pub(super) fn page_ui(
     frames(ui, theme, encoder, view, actions);
     ui.add_space(theme.space.groups);
     match &encoder.hunt {
-        Hunt::Nothing => {}
-        Hunt::Running(_) => {
+        SearchState::Nothing => {}
+        SearchState::Running(_) => {
             ui.horizontal(|ui| {
                 spinner(ui, theme);
                 ui.label(say(theme, "ssi_find.running"));
             });
         }
-        Hunt::Failed(why) => {
+        SearchState::Failed(why) => {
             ui.horizontal_top(|ui| {
                 ui.label(RichText::new(icons::X_CIRCLE).color(theme.palette.bad));
                 paragraph(ui, theme.words(why));
             });
         }
-        Hunt::Found { origin, clocks, search } => found(ui, theme, encoder, view, (origin, *clocks, search), actions),
+        SearchState::Found { origin, clocks, search } => {
+            found(ui, theme, encoder, view, (origin, *clocks, search), actions)
+        }
     }
 }
 
@@ -87,7 +89,7 @@ fn frames(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState,
             if enabled_button(ui, words > 0, icons::FLOPPY_DISK, &say(theme, "ssi_find.save")).clicked() {
                 ask(Ssi::AskSaveFrames);
             }
-            let running = matches!(encoder.hunt, Hunt::Running(_));
+            let running = matches!(encoder.hunt, SearchState::Running(_));
             let find = primary(ui, theme, words > 0 && !running, icons::MAGNIFYING_GLASS, &say(theme, "ssi_find.find"));
             if find.on_disabled_hover_text(say(theme, "ssi_find.poll")).clicked() {
                 ask(Ssi::Find);
@@ -117,9 +119,9 @@ fn found(
     paragraph(ui, theme.label(theme.words(&text)));
     let (icon, colour) = match search.doubt {
         None => (icons::CHECK_CIRCLE, theme.palette.good),
-        Some(Doubt::Open) => (icons::QUESTION, theme.palette.accent),
-        Some(Doubt::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
-        Some(Doubt::Standing | Doubt::Nothing | Doubt::Close) => (icons::WARNING, theme.palette.warn),
+        Some(Uncertainty::Open) => (icons::QUESTION, theme.palette.accent),
+        Some(Uncertainty::Stuck { .. }) => (icons::X_CIRCLE, theme.palette.bad),
+        Some(Uncertainty::Standing | Uncertainty::Nothing | Uncertainty::Close) => (icons::WARNING, theme.palette.warn),
     };
     ui.horizontal_top(|ui| {
         ui.label(RichText::new(icon).color(colour));

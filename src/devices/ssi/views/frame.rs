@@ -60,7 +60,7 @@ pub(super) fn page_ui(
         },
     );
     ui.add_space(theme.space.groups);
-    foot(ui, theme, studio, device, encoder, actions);
+    buttons_ui(ui, theme, studio, device, encoder, actions);
 }
 
 /// Splits the form into the part beside the trial frame, and the part below it: direction and preset, and error bits.
@@ -181,7 +181,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
     let model = BitStrip {
         label: &label,
         strip: &strip,
-        frame: Some(encoder.shown().frame),
+        frame: Some(encoder.displayed_frame().frame),
         selected,
         toggles: true,
         movable: true,
@@ -235,7 +235,14 @@ fn group_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, group: &Group, view: 
 }
 
 /// Taking changes back, saving, and taking the layout for an encoder that is connected.
-fn foot(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, encoder: &Encoder, actions: &mut Vec<Action>) {
+fn buttons_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    device: &AnyDevice,
+    encoder: &Encoder,
+    actions: &mut Vec<Action>,
+) {
     let is_dirty = encoder.is_dirty();
     ui.horizontal(|ui| {
         if enabled_button(ui, is_dirty, icons::ARROW_COUNTER_CLOCKWISE, &theme.say("memory.revert")).clicked() {

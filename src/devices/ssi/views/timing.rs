@@ -35,7 +35,7 @@ pub(super) fn page_ui(
     card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
         let diagram = Diagram::of(designer.layout(), times, &reads);
         let label = say(theme, "ssi_timing.title");
-        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.shown().frame) };
+        let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);
     });
     ui.add_space(theme.space.groups);
@@ -52,18 +52,18 @@ pub(super) fn page_ui(
 
 fn result(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     let micros = |time: std::time::Duration| theme.number(time.as_secs_f64() * 1e6, 2);
-    let mut told = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.mono(words));
-    told("ssi_timing.period", format!("{} µs", micros(timing.period)));
-    told("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
-    told(
+    let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.mono(words));
+    value_row("ssi_timing.period", format!("{} µs", micros(timing.period)));
+    value_row("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
+    value_row(
         "ssi_timing.cycle",
         format!("{} µs · {} Hz", micros(timing.cycle), theme.number(1.0 / timing.cycle.as_secs_f64().max(1e-9), 1)),
     );
     let (least, most) = timing.monoflop;
     let monoflop = if least == most { micros(most) } else { format!("{} … {}", micros(least), micros(most)) };
-    told("ssi_timing.monoflop", format!("{monoflop} µs"));
-    told("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
-    told("ssi_timing.most_reads", format!("{} Hz", theme.number(timing.most_reads_hz, 0)));
+    value_row("ssi_timing.monoflop", format!("{monoflop} µs"));
+    value_row("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
+    value_row("ssi_timing.most_reads", format!("{} Hz", theme.number(timing.most_reads_hz, 0)));
     let age = timing.age.map_or_else(
         || say(theme, "ssi_timing.age_unknown"),
         |(least, most)| {
@@ -74,11 +74,11 @@ fn result(ui: &mut Ui, theme: &Theme, timing: &Timing) {
             }
         },
     );
-    told("ssi_timing.age", age);
+    value_row("ssi_timing.age", age);
     let cable = timing
         .cable_hz
         .map_or_else(|| say(theme, "ssi_timing.cable_unknown"), |hz| format!("{} Hz", theme.number(f64::from(hz), 0)));
-    told("ssi_timing.most_clock", cable);
+    value_row("ssi_timing.most_clock", cable);
     ui.add_space(theme.space.inside);
     if timing.warnings.is_empty() {
         warning_ui(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));

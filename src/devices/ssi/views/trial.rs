@@ -39,17 +39,17 @@ pub(super) fn card_ui(
     view: &mut TrialUiState,
     actions: &mut Vec<Action>,
 ) {
-    let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.shown());
+    let shown = view.held.take().filter(|_| view.is_typed_in()).unwrap_or_else(|| encoder.displayed_frame());
     let is_live = encoder.is_following();
     let id = encoder.session.id;
-    let mut wish = None;
+    let mut action = None;
     let live = |ui: &mut Ui| {
         if encoder.last().is_some_and(|seen| seen.decoded.is_some()) {
             let word = say(theme, "ssi_trial.live");
             let response =
                 ui.add(egui::Button::selectable(is_live, &word)).on_hover_text(say(theme, "ssi_trial.live_hint"));
             if name(response, true, &word).clicked() && !is_live {
-                wish = Some(Try::Live);
+                action = Some(Try::Live);
             }
         }
     };
@@ -59,7 +59,7 @@ pub(super) fn card_ui(
         problem(ui, theme, encoder.trial.problem());
         findings(ui, theme, &shown);
     });
-    actions.extend(wish.map(|with| Action::device(id, Ssi::Try(with))));
+    actions.extend(action.map(|with| Action::device(id, Ssi::Try(with))));
     view.held = view.is_typed_in().then_some(shown);
 }
 

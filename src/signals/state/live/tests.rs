@@ -5,14 +5,14 @@ use std::time::{Duration, Instant};
 use super::*;
 use crate::analysis::capture::Capture;
 use crate::analysis::quality::Family;
-use crate::app::services::World;
+use crate::app::services::Environment;
 use crate::app::{Kinds, Tool};
 use crate::signals::state::{Judge, SignalsAction};
 use crate::store::Store;
 
 fn services() -> (Services, tempfile::TempDir) {
     let folder = tempfile::tempdir().unwrap();
-    (Services::new(World::real(Store::at(folder.path()), Kinds::NONE), Arc::new(|| ())), folder)
+    (Services::new(Environment::real(Store::at(folder.path()), Kinds::NONE), Arc::new(|| ())), folder)
 }
 
 fn started(services: &mut Services) -> Signals {

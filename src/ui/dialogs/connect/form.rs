@@ -34,13 +34,13 @@ pub trait ConnectForm {
 
 /// Begins the form of a kind of device.
 pub(in crate::ui) fn begun<F: TypedConnectForm>() -> Box<dyn ConnectForm> {
-    Box::new(Begun::<F>(F::Memory::default()))
+    Box::new(FormAdapter::<F>(F::Memory::default()))
 }
 
 /// The adapter from [`TypedConnectForm`] to [`ConnectForm`].
-struct Begun<F: TypedConnectForm>(F::Memory);
+struct FormAdapter<F: TypedConnectForm>(F::Memory);
 
-impl<F: TypedConnectForm> ConnectForm for Begun<F> {
+impl<F: TypedConnectForm> ConnectForm for FormAdapter<F> {
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>) {
         let Some(own) = dialog.form::<F::Form>() else { return };
         let mut form = own.clone();

@@ -2,7 +2,7 @@
 
 /// The space that a field needs.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Want {
+pub(super) struct SpaceNeeded {
     pub(super) bits: usize,
     /// The width of the words below it.
     pub(super) words: f32,
@@ -50,13 +50,13 @@ fn groups(from: usize, to: usize, field_bits: usize) -> usize {
 }
 
 /// The fields within a width, `gap` between them. A field that is longer than a line is parted.
-pub(super) fn place(wants: &[Want], width: f32, gap: f32) -> Placing {
+pub(super) fn place(wants: &[SpaceNeeded], width: f32, gap: f32) -> Placing {
     let fewest = CELLS.last().map_or(1, |least| with_cell(wants, width, gap, *least).lines);
     let fits = CELLS.iter().map(|cell| with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
     fits.unwrap_or_default()
 }
 
-fn with_cell(wants: &[Want], width: f32, gap: f32, cell: f32) -> Placing {
+fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> Placing {
     let mut placing = Placing { cell, ..Placing::default() };
     let (mut left, mut line) = (0.0, 0);
     for (field, want) in wants.iter().enumerate() {
@@ -94,8 +94,8 @@ mod tests {
     const GAP: f32 = 8.0;
 
     /// The kit encoder's frame with its acknowledge, start and control bit.
-    fn kit() -> Vec<Want> {
-        let want = |(bits, words)| Want { bits, words };
+    fn kit() -> Vec<SpaceNeeded> {
+        let want = |(bits, words)| SpaceNeeded { bits, words };
         [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]
             .map(want)
             .into_iter()
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn a_field_longer_than_a_line_is_parted_at_bytes() {
-        let wants = [Want { bits: 64, words: 50.0 }];
+        let wants = [SpaceNeeded { bits: 64, words: 50.0 }];
         let placing = place(&wants, 400.0, GAP);
         // 32 bits with 7 groups between them take 32 · 11 + 21 = 373 points.
         let parts: Vec<(usize, usize)> = placing.pieces.iter().map(|own| (own.first, own.bits)).collect();
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn nothing_is_nothing() {
         assert_eq!(place(&[], 100.0, GAP).lines, 0);
-        let none = [Want { bits: 0, words: 10.0 }];
+        let none = [SpaceNeeded { bits: 0, words: 10.0 }];
         assert!(place(&none, f32::NAN, GAP).pieces.is_empty());
         assert!(!place(&kit(), 0.0, GAP).pieces.is_empty());
     }

@@ -42,7 +42,7 @@ fn meaning(packet: &Packet) -> Result<Vec<String>, String> {
     if packet.op & Operation::REPLY_BIT == 0 {
         let request = Request::parse(packet).map_err(unknown)?;
         let mut lines = vec![format!("request {seq}: {}", name(request.operation()))];
-        lines.extend(asked(&request));
+        lines.extend(request_text(&request));
         return Ok(lines);
     }
     match Message::parse(packet) {
@@ -80,7 +80,7 @@ fn name(operation: Operation) -> &'static str {
     }
 }
 
-fn asked(request: &Request) -> Option<String> {
+fn request_text(request: &Request) -> Option<String> {
     let switch = |on: bool| if on { "on" } else { "off" };
     Some(match request {
         Request::Hello | Request::SsiRead | Request::BissRead => return None,

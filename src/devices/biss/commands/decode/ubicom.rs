@@ -7,10 +7,10 @@ use crate::cli::decode::Explained;
 use crate::devices::biss::commands::words;
 use crate::devices::biss::protocol::{Layout, RegisterAddress};
 
-/// Decodes frames. `asked` is the request before them, and the last of theirs afterwards.
-pub(super) fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explained> {
+/// Decodes frames. `requested` is the request before them, and the last of theirs afterwards.
+pub(super) fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let mut explained = Vec::new();
-    let mut request = *asked;
+    let mut request = *requested;
     let mut rest = bytes;
     while !rest.is_empty() {
         let (own, more) = rest.split_at_checked(length(rest)).unwrap_or((rest, &[]));
@@ -22,7 +22,7 @@ pub(super) fn explain(bytes: &[u8], asked: &mut Option<Request>) -> Vec<Explaine
         explained.push(Explained { shown: hex(own), compact: hex_compact(own), meaning, more: form("UBICOM") });
     }
     if explained.iter().all(|one| one.meaning.is_ok()) {
-        *asked = request;
+        *requested = request;
     }
     explained
 }
@@ -40,8 +40,8 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
     if frame.address != NODE {
         lines.push(format!("of node 0x{:02X}, which no encoder has", frame.address));
     }
-    if let Ok(asked) = Request::parse(frame, ByteOrder::LowFirst) {
-        lines.push(match asked {
+    if let Ok(requested) = Request::parse(frame, ByteOrder::LowFirst) {
+        lines.push(match requested {
             Request::Read { register } => format!("read register {}", register_words(register)),
             Request::Write { register, value } => {
                 format!("write 0x{value:02X} to register {}", register_words(register))
@@ -49,7 +49,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
             Request::Position { argument: 0x01 } => "read the position".to_owned(),
             Request::Position { argument } => format!("read the position, with the argument 0x{argument:02X}"),
         });
-        *request = Some(asked);
+        *request = Some(requested);
         return Ok(lines);
     }
     let unknown = |error: &dyn std::fmt::Display| format!("a UBICOM frame that is neither request nor reply: {error}");
@@ -84,7 +84,7 @@ fn register_words(register: u16) -> String {
 fn value_words(register: u16, value: u8) -> String {
     let Some(address) = RegisterAddress::from_global(register) else { return format!("value 0x{value:02X}") };
     match words::register_meaning(address, &[value]) {
-        Some(said) => format!("register {} is 0x{value:02X}: {said}", register_words(register)),
+        Some(meaning) => format!("register {} is 0x{value:02X}: {meaning}", register_words(register)),
         None => format!("register {} is 0x{value:02X}", register_words(register)),
     }
 }

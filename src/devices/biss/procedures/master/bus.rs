@@ -3,8 +3,8 @@
 
 use std::time::Duration;
 
-use super::{Attempt, ExchangeError, Master, Taken};
-use crate::buses::bridge::procedures::{Adapter, AdapterError, Answered, BISS_TIME_OUT_US, Failure};
+use super::{Attempt, ExchangeError, Master, WriteReaction};
+use crate::buses::bridge::procedures::{Adapter, AdapterError, BISS_TIME_OUT_US, Failure, TimedReply};
 use crate::buses::bridge::protocol::{BissStatus, Capabilities, ErrorCode, REPEAT_AFTER, Reply, Request};
 use crate::devices::biss::procedures::error::{Damage, Error, RequestedItem};
 use crate::devices::biss::procedures::position::PositionReading;
@@ -111,12 +111,12 @@ impl<'a> Master<'a> {
     }
 
     /// The bank has to be selected.
-    pub(super) fn bus_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+    pub(super) fn bus_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         Ok(match self.register_write(address, value)? {
-            Ok(reads) if reads == value => Ok(Taken::Yes),
+            Ok(reads) if reads == value => Ok(WriteReaction::Yes),
             // A command may be gone as soon as it is carried out (`U`); the status tells.
-            Ok(0) if self.station.is_command(address) => Ok(Taken::Yes),
-            Ok(reads) => Ok(Taken::No(Some(reads))),
+            Ok(0) if self.station.is_command(address) => Ok(WriteReaction::Yes),
+            Ok(reads) => Ok(WriteReaction::No(Some(reads))),
             Err(trouble) => Err(trouble),
         })
     }
@@ -137,7 +137,7 @@ impl<'a> Master<'a> {
     }
 
     /// Evaluates an answer about a register, and its consequence for the selected bank.
-    fn register_answer(&mut self, answered: Result<Option<Answered>, Failure>) -> Attempt<Reply> {
+    fn register_answer(&mut self, answered: Result<Option<TimedReply>, Failure>) -> Attempt<Reply> {
         let trouble = match answered {
             Ok(Some(answered)) => {
                 let now = self.now();

@@ -9,7 +9,7 @@ use crate::buses::bridge::procedures::flow::{Flow, Streamed};
 use crate::buses::bridge::procedures::{Adapter, AdapterError, Failure};
 use crate::buses::bridge::protocol::Data;
 use crate::devices::biss::procedures::frames::{FrameRun, frames};
-use crate::devices::biss::procedures::station::Way;
+use crate::devices::biss::procedures::station::Transport;
 use crate::devices::biss::procedures::{Error, Station};
 
 /// A wish to end is heard so often.
@@ -23,7 +23,7 @@ impl Master<'_> {
     /// As for a [`position`](Self::position) when it begins; then the adapter's, or the user's wish, with which the stream
     /// goes on.
     pub fn frames(&mut self, period_us: u32) -> Result<Option<FrameRun>, Error> {
-        if self.station.way != Way::Adapter {
+        if self.station.transport != Transport::Adapter {
             return Ok(None);
         }
         let streamed = Streamed::Biss { period_us };

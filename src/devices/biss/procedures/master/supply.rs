@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::Master;
 use crate::devices::biss::procedures::Error;
-use crate::devices::biss::procedures::station::{Supply, Way};
+use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
 /// A register that was written may begin a store that no status tells of; how long one takes is not published (`U`).
@@ -37,7 +37,7 @@ impl Master<'_> {
     /// # Errors
     /// The adapter's.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
-        if self.station.way != Way::Adapter || !self.station.adapter.supply_goes_off() {
+        if self.station.transport != Transport::Adapter || !self.station.adapter.supply_goes_off() {
             return Ok(());
         }
         self.shielded(|master| {

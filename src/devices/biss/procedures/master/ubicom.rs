@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use super::{Attempt, ExchangeError, Master, Taken};
+use super::{Attempt, ExchangeError, Master, WriteReaction};
 use crate::bits::{ByteOrder, MaskedBytes};
 use crate::buses::ubicom::protocol::{
     BYTE_TIME_OUT, Frame, NODE, PositionWord, Receiver, Reply, Request, Written, character_bits,
@@ -28,7 +28,7 @@ struct Timed {
 }
 
 /// The bytes received so far.
-struct Heard {
+struct ReceivedBytes {
     receiver: Receiver,
     sent: Vec<u8>,
     /// The first of all that came, for the trace.
@@ -60,11 +60,11 @@ impl Master<'_> {
         })
     }
 
-    pub(super) fn pin_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<Taken> {
+    pub(super) fn pin_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         let order = self.station.order.unwrap_or(ByteOrder::LowFirst);
         Ok(match self.exchange(Request::Write { register: address.global(), value }, order)? {
-            Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(Taken::Yes),
-            Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(Taken::No(None)),
+            Ok(Timed { reply: Reply::Written(Written::Acknowledged), .. }) => Ok(WriteReaction::Yes),
+            Ok(Timed { reply: Reply::Written(Written::Refused), .. }) => Ok(WriteReaction::No(None)),
             Ok(Timed { reply, .. }) => return Err(Error::other_reply(RequestedItem::Write(address, value), &reply)),
             Err(trouble) => Err(trouble),
         })
@@ -103,7 +103,7 @@ impl Master<'_> {
         self.station.line.sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
         let deadline = sent_at + self.longest_pin_exchange();
-        let heard = Heard {
+        let heard = ReceivedBytes {
             receiver: Receiver::new(NODE),
             sent: frame,
             raw: Vec::new(),
@@ -114,7 +114,7 @@ impl Master<'_> {
         self.listen(request, heard, deadline)
     }
 
-    fn listen(&mut self, request: Request, mut heard: Heard, deadline: Moment) -> Attempt<Timed> {
+    fn listen(&mut self, request: Request, mut heard: ReceivedBytes, deadline: Moment) -> Attempt<Timed> {
         let gap = BYTE_TIME_OUT + self.station.line.margin;
         let mut last_at = self.now();
         let mut portion = Vec::new();
@@ -149,7 +149,7 @@ impl Master<'_> {
     }
 
     /// The reply in a frame, where it is one.
-    fn judge(&self, request: Request, frame: &[u8], heard: &mut Heard) -> Option<Reply> {
+    fn judge(&self, request: Request, frame: &[u8], heard: &mut ReceivedBytes) -> Option<Reply> {
         if frame == heard.sent {
             heard.echo_heard = true;
             return None;
@@ -165,7 +165,7 @@ impl Master<'_> {
         None
     }
 
-    fn understood(&mut self, heard: &Heard, reply: &[u8], at: Moment) {
+    fn understood(&mut self, heard: &ReceivedBytes, reply: &[u8], at: Moment) {
         let state = &mut self.station.line;
         state.answered();
         state.answer_began(at);
@@ -182,7 +182,7 @@ impl Master<'_> {
     }
 
     /// The time is up.
-    fn give_up(&mut self, heard: Heard) -> ExchangeError {
+    fn give_up(&mut self, heard: ReceivedBytes) -> ExchangeError {
         let broken = heard.raw.strip_prefix(&*heard.sent).unwrap_or(&heard.raw);
         let echo = if heard.echo_heard { heard.sent.len() } else { 0 };
         let bytes = heard.bytes.saturating_sub(echo);

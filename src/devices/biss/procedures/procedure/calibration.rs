@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use super::guide::{Attended, Course, Guide};
+use super::guide::{Attended, Guide, RunCourse};
 use super::{Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{
@@ -68,7 +68,7 @@ impl Guide<'_, '_> {
             let (before, done) = (CalibrationStatus::Idle, CalibrationStatus::CounterclockwiseDone);
             (CalibrationCommand::StartCounterclockwise, before, done)
         };
-        let course = Course {
+        let course = RunCourse {
             run,
             command: command.byte(),
             was,

@@ -7,7 +7,9 @@ use std::time::Duration;
 
 use super::operator::Measured;
 use super::speed_monitor::SpeedMonitor;
-use super::{Activity, Answer, Demand, Detail, Failure, LeftState, Motion, News, Operator, ProcedureStep, Run, Task};
+use super::{
+    Activity, Answer, Demand, Detail, Failure, LeftState, Motion, Operator, ProcedureProgress, ProcedureStep, Run, Task,
+};
 use crate::devices::biss::procedures::{Error, Master};
 use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
@@ -40,7 +42,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
     pub(super) master: &'g mut Master<'m>,
     pub(super) description: Arc<Description>,
     operator: &'g mut dyn Operator,
-    tell: &'g mut dyn FnMut(News),
+    tell: &'g mut dyn FnMut(ProcedureProgress),
     standing: LeftState,
     op: usize,
     step: ProcedureStep,
@@ -48,7 +50,7 @@ pub(in crate::devices::biss::procedures) struct Guide<'g, 'm> {
 }
 
 /// The course of a run.
-pub(super) struct Course {
+pub(super) struct RunCourse {
     pub(super) run: Run,
     /// The command that starts it.
     pub(super) command: u8,
@@ -77,7 +79,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         master: &'g mut Master<'m>,
         description: Arc<Description>,
         operator: &'g mut dyn Operator,
-        tell: &'g mut dyn FnMut(News),
+        tell: &'g mut dyn FnMut(ProcedureProgress),
     ) -> Self {
         let standing = LeftState::in_operation(false);
         Guide { master, description, operator, tell, standing, op: 0, step: ProcedureStep::LeadBack, cycles: 0 }
@@ -114,11 +116,11 @@ impl<'g, 'm> Guide<'g, 'm> {
 
     pub(super) fn step(&mut self, step: ProcedureStep) {
         self.step = step;
-        self.say(Detail::Begins);
+        self.report(Detail::Begins);
     }
 
-    pub(super) fn say(&mut self, detail: Detail) {
-        (self.tell)(News { op: self.op, step: self.step, detail });
+    pub(super) fn report(&mut self, detail: Detail) {
+        (self.tell)(ProcedureProgress { op: self.op, step: self.step, detail });
     }
 
     pub(super) fn procedure(&self, kind: ProcedureKind) -> Result<Procedure, Failure> {
@@ -232,7 +234,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     /// other status. What was there before the command says nothing of this run until something else was.
     pub(super) fn run(
         &mut self,
-        course: &Course,
+        course: &RunCourse,
         procedure: &Procedure,
         explain: impl Fn(&mut Self, u8) -> Result<Failure, Error>,
     ) -> Result<(), Failure> {
@@ -245,11 +247,11 @@ impl<'g, 'm> Guide<'g, 'm> {
         let started = self.master.now();
         let mut begun = false;
         loop {
-            let asked = self.master.now();
+            let requested = self.master.now();
             let status = self.master.with_patience(SILENCE, |master| master.read(procedure.status))?;
             let elapsed = self.master.now().since(started);
             begun |= status == course.active || status != course.was;
-            begun |= course.run.calibrates() && self.master.now().since(asked) >= BEGUN;
+            begun |= course.run.calibrates() && self.master.now().since(requested) >= BEGUN;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
                 // Not begun yet.
@@ -265,7 +267,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             } else if elapsed >= course.limit {
                 return Err(Failure::TooLong { run: course.run, seconds: elapsed.as_secs() });
             }
-            self.say(Detail::Lasts { elapsed, expected: Some(course.expected) });
+            self.report(Detail::Lasts { elapsed, expected: Some(course.expected) });
             self.master.wait(course.every)?;
         }
         self.does(Activity::Nothing);
@@ -298,11 +300,11 @@ impl<'g, 'm> Guide<'g, 'm> {
             let measured = self.measure(task, &mut gauge)?;
             if !is_told {
                 // Answers from before the question was displayed are void.
-                self.operator.begins();
+                self.operator.on_task_start();
                 is_told = true;
             }
             let demand = Demand::new(task, measured, self.master.now().since(begun));
-            self.say(Detail::Demand(demand.clone()));
+            self.report(Detail::Demand(demand.clone()));
             match self.operator.attend(&demand) {
                 Answer::Go if demand.is_ready() => return Ok(Attended::Go(demand.motion)),
                 Answer::Go | Answer::Wait => {}

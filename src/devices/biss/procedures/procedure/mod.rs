@@ -30,7 +30,7 @@ pub(super) use guide::Guide;
 pub use left_state::{Activity, LeftState, Possible};
 pub use operator::{Advice, Answer, Blocker, Demand, Operator, OperatorChannel, Run, SpeedRange, Task, Unattended};
 pub use speed_monitor::Motion;
-pub use steps::{Detail, News, ProcedureStep, steps_of};
+pub use steps::{Detail, ProcedureProgress, ProcedureStep, steps_of};
 pub use wiegand::WiegandReport;
 
 use super::{Error, Master, PositionReading, identify};

@@ -247,7 +247,7 @@ pub enum Answer {
 /// The person beside the motor.
 pub trait Operator {
     /// Called when something is asked for the first time: earlier answers belong to another question.
-    fn begins(&mut self) {}
+    fn on_task_start(&mut self) {}
 
     /// Asked again and again, a few times a second, each time with a new measurement.
     fn attend(&mut self, demand: &Demand) -> Answer;
@@ -296,7 +296,7 @@ impl OperatorChannel {
 }
 
 impl Operator for OperatorChannel {
-    fn begins(&mut self) {
+    fn on_task_start(&mut self) {
         *self.slot() = None;
     }
 
@@ -420,7 +420,7 @@ mod tests {
         seat.answer(first, Answer::Skip);
         assert_eq!((ask(first), ask(first)), (Answer::Skip, Answer::Wait));
         seat.answer(first, Answer::Go);
-        operator.begins();
+        operator.on_task_start();
         assert_eq!(
             operator.attend(&demand(first, Measured::default())),
             Answer::Wait,

@@ -36,7 +36,7 @@ pub enum ProcedureStep {
 
 /// The progress of a write.
 #[derive(Clone, Debug, PartialEq)]
-pub struct News {
+pub struct ProcedureProgress {
     /// Index of the operation in the plan, counted from 0.
     pub op: usize,
     /// The step of the operation.

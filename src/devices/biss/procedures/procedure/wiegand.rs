@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::guide::{Attended, Course, Guide};
+use super::guide::{Attended, Guide, RunCourse};
 use super::{Activity, Failure, Motion, Outcome, ProcedureStep, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{Procedure, ProcedureKind, WiegandCommand, WiegandResult, WiegandStatus};
@@ -63,7 +63,7 @@ impl Guide<'_, '_> {
         // The slowest motor that is let start takes 62 s.
         let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
         let expected = Duration::from_secs_f64(REVOLUTIONS / rpm * 60.0);
-        let course = Course {
+        let course = RunCourse {
             run,
             command: command.byte(),
             was,

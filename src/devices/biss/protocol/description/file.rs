@@ -12,7 +12,7 @@ use super::super::crc::Crc;
 use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
-use super::german::German;
+use super::german::GermanTexts;
 use super::name::Name;
 use super::register::{Access, Area, Decoding, Register, Role};
 use super::{Description, Identity, Lock, Procedure};
@@ -52,7 +52,7 @@ struct File {
     #[serde(default)]
     procedures: Rows<Procedure>,
     #[serde(default)]
-    german: German,
+    german: GermanTexts,
 }
 
 impl File {

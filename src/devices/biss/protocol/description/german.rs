@@ -12,9 +12,9 @@ use super::name::Name;
 
 /// English names with their German ones.
 #[derive(Default)]
-pub(super) struct German(BTreeMap<String, String>);
+pub(super) struct GermanTexts(BTreeMap<String, String>);
 
-impl German {
+impl GermanTexts {
     /// Gives the names their German; `text` is the file, in which a needless entry is looked for.
     pub(super) fn translate<'a>(
         mut self,
@@ -56,7 +56,7 @@ fn is_behind_key(rest: &str) -> bool {
     rest.trim_start().starts_with(':')
 }
 
-impl<'de> Deserialize<'de> for German {
+impl<'de> Deserialize<'de> for GermanTexts {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_map(Entries)
     }
@@ -65,13 +65,13 @@ impl<'de> Deserialize<'de> for German {
 struct Entries;
 
 impl<'de> Visitor<'de> for Entries {
-    type Value = German;
+    type Value = GermanTexts;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("English names with their German ones")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<German, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<GermanTexts, A::Error> {
         let mut entries = BTreeMap::new();
         while let Some((english, german)) = map.next_entry::<String, String>()? {
             if german.trim().is_empty() {
@@ -82,6 +82,6 @@ impl<'de> Visitor<'de> for Entries {
             }
             entries.insert(english, german);
         }
-        Ok(German(entries))
+        Ok(GermanTexts(entries))
     }
 }

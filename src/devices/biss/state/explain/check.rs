@@ -70,8 +70,8 @@ fn finding(finding: &CheckFinding) -> Text {
             .with_number("cw", result.lowest_cw.volts(), 1)
             .with_number("ccw", result.lowest_ccw.volts(), 1),
         CheckFinding::NotTested => TEXTS.text("check.not_tested"),
-        CheckFinding::Readings { asked, damaged } => {
-            TEXTS.text("check.readings").with("asked", asked).with("damaged", damaged)
+        CheckFinding::Readings { requested, damaged } => {
+            TEXTS.text("check.readings").with("asked", requested).with("damaged", damaged)
         }
         CheckFinding::Wear { seen, limit } => TEXTS.text("check.cycles").with("seen", seen).with("limit", limit),
     }

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use crate::app::explain::{document, in_both_languages, url};
 use crate::app::{DeviceType, Kinds};
-use crate::devices::biss::procedures::{Station, Way};
+use crate::devices::biss::procedures::{Station, Transport};
 use crate::devices::biss::profile::BissProfile;
 use crate::devices::biss::state::Encoder;
 use crate::link::Query;
@@ -16,7 +16,7 @@ const KINDS: Kinds = Kinds::new(Formats::new(&[]), &[Encoder::KIND], &[]);
 fn a_wrong_link_is_told_in_both_languages() {
     for text in ["order=x", "echo=x", "timeout=0", "margin=x", "clock=1", "voltage=24"] {
         let query: Query = text.parse().unwrap();
-        let error = Station::from_query(&query, Way::Adapter, Duration::ZERO).unwrap_err();
+        let error = Station::from_query(&query, Transport::Adapter, Duration::ZERO).unwrap_err();
         in_both_languages(&url(&error), &error);
     }
 }

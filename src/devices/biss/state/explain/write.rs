@@ -200,11 +200,11 @@ pub fn failure(failure: &Failure) -> Text {
             .with("expected", format!("0x{expected:02X}"))
             .with("found", format!("0x{found:02X}")),
         Failure::TooLong { seconds, .. } => TEXTS.text("biss_failure.too_long").with("seconds", seconds),
-        Failure::NotReady { task: asked, blockers } => {
+        Failure::NotReady { task: requested, blockers } => {
             let both =
                 |first, second| TEXTS.text("biss_failure.both").with_text("first", first).with_text("second", second);
             let why = blockers.iter().map(|own| blocker(*own)).reduce(both);
-            let text = TEXTS.text("biss_failure.not_ready").with_text("task", task(*asked));
+            let text = TEXTS.text("biss_failure.not_ready").with_text("task", task(*requested));
             text.with_text("why", why.unwrap_or_else(|| plain("")))
         }
         Failure::NotVerified { item, expected, got } => {

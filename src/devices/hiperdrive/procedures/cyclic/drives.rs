@@ -12,7 +12,7 @@ use crate::units::Moment;
 #[derive(Clone, Debug)]
 pub struct Drives {
     connection: Connection,
-    men: Vec<Man>,
+    controlled: Vec<ControlledDrive>,
     /// Further places of the image.
     places: usize,
     lost: Option<CyclicLost>,
@@ -20,7 +20,7 @@ pub struct Drives {
 }
 
 #[derive(Clone, Debug)]
-struct Man {
+struct ControlledDrive {
     dead_man: DeadMan,
     /// The data received since the last packet.
     heard: Option<Actual>,
@@ -44,13 +44,19 @@ impl Drives {
     pub fn new(opened: &Opened, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
         let placed = drives.iter().filter(|drive| drive.get() <= places);
-        let men = placed.map(|drive| Man { dead_man: DeadMan::new(*drive, spent), heard: None }).collect();
-        Drives { connection: Connection::new(opened, now), men, places: places.into(), lost: None, ending: None }
+        let men = placed.map(|drive| ControlledDrive { dead_man: DeadMan::new(*drive, spent), heard: None }).collect();
+        Drives {
+            connection: Connection::new(opened, now),
+            controlled: men,
+            places: places.into(),
+            lost: None,
+            ending: None,
+        }
     }
 
     /// The drives' dead-men.
-    pub fn men(&self) -> impl Iterator<Item = &DeadMan> {
-        self.men.iter().map(|man| &man.dead_man)
+    pub fn dead_men(&self) -> impl Iterator<Item = &DeadMan> {
+        self.controlled.iter().map(|man| &man.dead_man)
     }
 
     /// Returns the measured figures.
@@ -78,7 +84,7 @@ impl Drives {
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
             self.ending = Some(Ending { since: now, off: 0 });
-            self.men.iter_mut().for_each(|man| man.dead_man.lose(now));
+            self.controlled.iter_mut().for_each(|man| man.dead_man.lose(now));
         }
     }
 
@@ -93,7 +99,7 @@ impl Drives {
     /// A packet has come. Whether it counted.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> bool {
         let Some(image) = self.connection.on_packet(now, bytes) else { return false };
-        for man in &mut self.men {
+        for man in &mut self.controlled {
             man.heard = image.drives.get(place(man.dead_man.drive())).copied();
         }
         true
@@ -109,17 +115,17 @@ impl Drives {
         if now < self.poll_at() || self.is_over() {
             return None;
         }
-        let moves = self.men().any(|man| !man.is_idle());
+        let moves = self.dead_men().any(|man| !man.is_idle());
         if let Some(after) = self.connection.silent(now, moves) {
             self.lose(now, CyclicLost::Silent { after });
         }
         if self.connection.is_quiet(now) {
-            self.men.iter_mut().for_each(|man| man.dead_man.fall_deaf(now));
+            self.controlled.iter_mut().for_each(|man| man.dead_man.fall_deaf(now));
         }
         let rest = Intent::rest(intent.drive, intent.number, now);
         let intent = if self.is_ending() { &rest } else { intent };
         let mut drives = vec![OutData::default(); self.places];
-        for man in &mut self.men {
+        for man in &mut self.controlled {
             let number = man.dead_man.drive();
             let setpoint = man.dead_man.next(now, man.heard.take(), intent, &permit(number));
             if let Some(out) = drives.get_mut(place(number)) {
@@ -127,7 +133,7 @@ impl Drives {
             }
         }
         self.look_whether_it_ends(now, &mut drives);
-        let moving_on = self.men().find(|man| man.gives_up()).map(DeadMan::drive);
+        let moving_on = self.dead_men().find(|man| man.gives_up()).map(DeadMan::drive);
         if let Some(number) = moving_on {
             self.lost.get_or_insert(CyclicLost::DoesNotStand(number));
             self.close(now);
@@ -136,7 +142,7 @@ impl Drives {
     }
 
     fn look_whether_it_ends(&mut self, now: Moment, drives: &mut [OutData]) {
-        let idle = self.men().all(DeadMan::is_idle);
+        let idle = self.dead_men().all(DeadMan::is_idle);
         let Some(ending) = &mut self.ending else { return };
         if idle || ending.off > 0 || now.since(ending.since) >= LADDER {
             ending.off += 1;

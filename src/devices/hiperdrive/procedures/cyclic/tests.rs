@@ -180,7 +180,7 @@ fn a_loss_stops_and_stays() {
     assert!(bench.drives.lost().is_none());
     assert_eq!(bench.cycles(1).join(" "), "1419");
     assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(40) }));
-    assert_eq!(bench.drives.men().next().unwrap().ended(), Some((1, Ended::Lost)));
+    assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((1, Ended::Lost)));
     bench.act(MotionRequest::Lead(Goal::Enabled));
     assert_eq!(bench.cycles(100).join(" "), "1419 0401 0000");
     assert!(bench.drives.is_over());
@@ -204,7 +204,7 @@ fn whoever_was_kept_from_listening_listens_before_giving_up() {
         assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
         // Without knowing where the drive is nothing moves on.
         let how = if lost { Ended::Lost } else { Ended::Deaf };
-        assert_eq!(bench.drives.men().next().unwrap().ended(), Some((1, how)), "{away} ms");
+        assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((1, how)), "{away} ms");
     }
     // Nothing comes after it either.
     let mut bench = Bench::jogs();
@@ -234,7 +234,7 @@ fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
     bench.cycles(4);
     bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
     assert_eq!(bench.cycles(3).join(" "), "0409");
-    assert_eq!(bench.drives.men().next().unwrap().ended(), Some((2, Ended::Deaf)));
+    assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((2, Ended::Deaf)));
     bench.cycles(2);
     assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(90) }));
 }

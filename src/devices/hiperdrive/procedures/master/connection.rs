@@ -87,7 +87,7 @@ impl Master<'_> {
             }
         }
         match refused {
-            Some(refusal) => Err(Error::Refused { asked: RequestedItem::Open, refusal }),
+            Some(refusal) => Err(Error::Refused { requested: RequestedItem::Open, refusal }),
             None => Err(Error::NoCyclic),
         }
     }
@@ -142,10 +142,10 @@ impl Master<'_> {
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
         // Opened twice it would be refused as in use: it is sent once. Where its reply is not understood it may be open.
-        let asked = self.request_with(RequestedItem::Open, &open.request(), &[ours], ONCE);
-        let opened = asked.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
+        let requested = self.request_with(RequestedItem::Open, &open.request(), &[ours], ONCE);
+        let opened = requested.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
-            Err(cause) => Err(Error::Damaged { asked: RequestedItem::Open, tries: 1, cause: cause.into() }),
+            Err(cause) => Err(Error::Damaged { requested: RequestedItem::Open, tries: 1, cause: cause.into() }),
         });
         if let Err(Error::NoReply { .. } | Error::Damaged { .. }) = &opened {
             self.close_blindly(&close);

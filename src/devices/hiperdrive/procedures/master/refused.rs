@@ -20,11 +20,11 @@ impl Master<'_> {
     /// The way.
     pub(super) fn why_refused(
         &mut self,
-        asked: RequestedItem,
+        requested: RequestedItem,
         number: ParameterNumber,
         refusal: Refusal,
     ) -> Result<Error, Error> {
-        let Some(drive) = number.drive() else { return Ok(Error::Refused { asked, refusal }) };
+        let Some(drive) = number.drive() else { return Ok(Error::Refused { requested, refusal }) };
         let topology = match self.station.known.topology {
             None if refusal.status == GeneralStatus::PATH_UNKNOWN => Some(topology(self)?),
             known => known,
@@ -39,7 +39,7 @@ impl Master<'_> {
         if refusal.status == GeneralStatus::STATE && self.is_zero(number, REQUESTED, drive)? {
             return Ok(Error::NotRequested { drive });
         }
-        Ok(Error::Refused { asked, refusal })
+        Ok(Error::Refused { requested, refusal })
     }
 
     /// Returns whether another parameter of a drive is known to be 0.
@@ -68,7 +68,7 @@ impl Master<'_> {
                 let range = self.range_now(number, row)?;
                 Ok(match range {
                     Some(range) => Error::Refuses(OutOfRange { number, name: row.name, value, range }),
-                    None => Error::Refused { asked: RequestedItem::Set(number), refusal },
+                    None => Error::Refused { requested: RequestedItem::Set(number), refusal },
                 })
             }
             _ => self.why_refused(RequestedItem::Set(number), number, refusal),

@@ -221,13 +221,13 @@ fn limits_are_the_familys_turns_in_the_unit_of_the_scale() {
                 let row = number.row().unwrap();
                 let (low, high) = rows.get(&own).map_or((-way, way), |(low, high, _)| (*low, *high));
                 let (low, high) = (steps(low), steps(high));
-                let said = format!("{own} of {name} at {numerator}/{denominator}");
+                let label = format!("{own} of {name} at {numerator}/{denominator}");
                 for value in [low, 0, high] {
-                    assert_eq!(row.check(number, value, travel), Ok(value), "{said}");
+                    assert_eq!(row.check(number, value, travel), Ok(value), "{label}");
                 }
                 for value in [low - 1, high + 1] {
                     let refused = row.check(number, value, travel).unwrap_err();
-                    assert_eq!(refused.range, Range::Within(low, high), "{said}");
+                    assert_eq!(refused.range, Range::Within(low, high), "{label}");
                 }
             }
             for topology in [Topology::Adapter, Topology::Hub8] {

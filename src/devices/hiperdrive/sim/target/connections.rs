@@ -277,8 +277,8 @@ impl Plant {
 }
 
 /// Returns the address for cyclic data: as the originator requested, else its address and the usual port.
-fn originator_socket(peer: Ipv4Addr, said: Option<SocketAddress>) -> SocketAddrV4 {
-    match said {
+fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> SocketAddrV4 {
+    match requested {
         Some(socket) if socket.address.is_unspecified() => SocketAddrV4::new(peer, socket.port),
         Some(socket) => SocketAddrV4::new(socket.address, socket.port),
         None => SocketAddrV4::new(peer, IMPLICIT_PORT),

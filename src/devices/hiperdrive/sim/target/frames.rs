@@ -65,7 +65,7 @@ impl Plant {
             return frame.refusal(status);
         }
         // A TCP connection has one session. Another request for one returns it (`U`).
-        if let Some((session, _)) = self.sessions.iter().find(|(_, whose)| **whose == from) {
+        if let Some((session, _)) = self.sessions.iter().find(|(_, owner)| **owner == from) {
             return Frame { session: *session, ..frame.refusal(EncapsulationStatus::UNSUPPORTED) };
         }
         let session = loop {

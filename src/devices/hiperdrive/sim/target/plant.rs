@@ -112,7 +112,7 @@ impl Plant {
 
     /// Ends the TCP connection of an originator, with its session and what belongs to it.
     pub(super) fn leave(&mut self, originator: Originator) {
-        let own: Vec<u32> = self.sessions.iter().filter(|(_, whose)| **whose == originator).map(|(s, _)| *s).collect();
+        let own: Vec<u32> = self.sessions.iter().filter(|(_, owner)| **owner == originator).map(|(s, _)| *s).collect();
         own.into_iter().for_each(|session| self.end(session));
     }
 

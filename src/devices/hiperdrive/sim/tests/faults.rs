@@ -20,8 +20,8 @@ fn acknowledge(bench: &mut Bench) {
 #[test]
 fn a_blocked_drive_fails_and_comes_back() {
     for (target, wall, code) in [
-        (655_360, Load { wall_above: Some(30_000.0), ..Load::default() }, ErrorCode::BLOCK_FORWARD),
-        (-655_360, Load { wall_below: Some(-30_000.0), ..Load::default() }, ErrorCode::BLOCK_REVERSE),
+        (655_360, SpindleLoad { wall_above: Some(30_000.0), ..SpindleLoad::default() }, ErrorCode::BLOCK_FORWARD),
+        (-655_360, SpindleLoad { wall_below: Some(-30_000.0), ..SpindleLoad::default() }, ErrorCode::BLOCK_REVERSE),
     ] {
         let mut bench = Bench::single();
         bench.load(wall);
@@ -45,7 +45,7 @@ fn a_blocked_drive_fails_and_comes_back() {
 #[test]
 fn a_weak_drive_does_not_follow() {
     let mut bench = Bench::single();
-    bench.load(Load { percent: 60, ..Load::default() });
+    bench.load(SpindleLoad { percent: 60, ..SpindleLoad::default() });
     bench.out[FIRST].torque = 26;
     bench.start(65_536);
     bench.run(1000);
@@ -61,7 +61,7 @@ fn a_weak_drive_does_not_follow() {
 /// 50 °C around it and 40 K of its own at full torque: above 80 °C after 60 s · ln 4 = 83 s of moving.
 #[test]
 fn a_hot_drive_fails() {
-    let hot = Load { ambient: 50.0, ..Load::default() };
+    let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
     let mut bench = Bench::new(Setup { drives: vec![Some((Variant::new(13), hot))], ..Setup::default() });
     assert_eq!(bench.read(119), Value::Number(50));
     bench.enable();

@@ -6,7 +6,7 @@ mod parameters;
 
 use std::time::Duration;
 
-use super::{Drive, Load, Setup, Station};
+use super::{Drive, Setup, SpindleLoad, Station};
 use crate::devices::hiperdrive::protocol::{
     Actual, DriveNumber, ErrorCode, OutData, OutImage, ParameterNumber, Pkw, Topology, Value, Variant,
 };
@@ -37,7 +37,7 @@ impl Bench {
 
     /// A hub of four with drives in the first two places.
     fn hub() -> Self {
-        let drive = Some((Variant::new(13), Load::default()));
+        let drive = Some((Variant::new(13), SpindleLoad::default()));
         Bench::new(Setup { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })
     }
 
@@ -97,7 +97,7 @@ impl Bench {
         self.station.drive(DriveNumber::FIRST).unwrap()
     }
 
-    fn load(&mut self, load: Load) {
+    fn load(&mut self, load: SpindleLoad) {
         let now = self.now;
         self.drive().set_load(now, load);
     }

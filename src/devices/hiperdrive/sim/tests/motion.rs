@@ -178,7 +178,7 @@ fn a_hub_moves_what_is_requested() {
 #[test]
 fn time_passes_the_same_in_any_portions() {
     let run = |portions: &[u64]| {
-        let mut drive = Drive::new(Variant::new(7), Topology::Adapter, Load::default());
+        let mut drive = Drive::new(Variant::new(7), Topology::Adapter, SpindleLoad::default());
         let at = |ms| Moment::START + Duration::from_millis(ms);
         let out = OutData { control: 0x0479, speed: 80, torque: 50, target: 100_000 };
         drive.command(at(0), out);

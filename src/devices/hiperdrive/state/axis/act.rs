@@ -7,7 +7,7 @@ use crate::app::Language;
 
 /// A request to the device.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Ask {
+pub enum DriveRequest {
     /// Parameters, by the numbers of drive 1, are written through a plan that does not save.
     Try(Vec<(u16, i64)>),
     /// The place where the drive stands gets this position, which is not saved.

@@ -1,6 +1,6 @@
 //! Values of a drive that are known to differ from the saved ones: after an interrupted run, and to be written back.
 
-use super::Seen;
+use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 
 /// A parameter, by the number of drive 1.
@@ -13,7 +13,7 @@ pub struct Difference {
     pub now: i64,
 }
 
-impl Seen {
+impl DriveFacts {
     /// Returns the values known to differ from the saved ones, by number.
     pub fn differences(&self) -> Vec<Difference> {
         let difference = |(number, saved): (&u16, &i64)| {
@@ -25,13 +25,13 @@ impl Seen {
 }
 
 /// The position that is set is known to be another than the saved one.
-pub(super) fn is_place_other(seen: &Seen) -> bool {
+pub(super) fn is_place_other(seen: &DriveFacts) -> bool {
     seen.differences().iter().any(|own| own.number == REFERENCE)
 }
 
 /// Returns the values to write so that everything is as before. The reference is set by the user, at its place: writing
 /// it gives that number to the present place of the axis (manual, 198), which at any other place would be a wrong zero.
-pub(super) fn to_write_back(seen: &Seen) -> Vec<(u16, i64)> {
+pub(super) fn to_write_back(seen: &DriveFacts) -> Vec<(u16, i64)> {
     let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);
     differences.map(|own| (own.number, own.saved)).collect()
 }

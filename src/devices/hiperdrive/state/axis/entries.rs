@@ -1,12 +1,12 @@
 //! The entries of the set-up of an axis: pitch and resolution, the position of a place, both limits; and their results.
 
-use super::{Seen, words};
+use super::{DriveFacts, words};
 use crate::app::number::within;
 use crate::app::texts::signed;
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::protocol::{Family, Length, PositionScale, nearest_reference};
 use crate::devices::hiperdrive::state::TEXTS;
-use crate::devices::hiperdrive::state::ruler::{Beyond, Measure, Ruler};
+use crate::devices::hiperdrive::state::ruler::{Measure, PositionRangeError, Ruler};
 
 /// The entered text, in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl Entries {
     ///
     /// # Errors
     /// In words.
-    pub fn preview(&self, seen: &Seen) -> Result<Preview, Text> {
+    pub fn preview(&self, seen: &DriveFacts) -> Result<Preview, Text> {
         let (pitch, step) = (self.pitch()?, length("hd_axis.resolution", &self.resolution, 100.0)?);
         let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
         let ruler = Ruler { scale, pitch: Some(pitch) };
@@ -152,8 +152,8 @@ fn position(what: &'static str, text: &str, ruler: Option<Ruler>) -> Result<i32,
     let ruler = ruler.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
     let value = within(TEXTS.text(what), text, -1e6, 1e6)?;
     ruler.steps(value, Measure::Millimetres).map_err(|why| match why {
-        Beyond::NoPitch => TEXTS.text("hd_axis.unread"),
-        Beyond::Bits { least, most } => TEXTS
+        PositionRangeError::NoPitch => TEXTS.text("hd_axis.unread"),
+        PositionRangeError::Bits { least, most } => TEXTS
             .text("hd_axis.beyond")
             .with_text("what", TEXTS.text(what))
             .with_number("least", least, 0)

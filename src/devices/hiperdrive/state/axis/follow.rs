@@ -1,9 +1,11 @@
 //! The progress of the run: by the user's buttons, by completed writes, by the drive's data.
 
 use super::entries::{Entries, typed};
-use super::standstill::Shift;
+use super::standstill::PositionChange;
 use super::supply::Power;
-use super::{Ask, Axis, AxisChange, AxisStep, Confirmed, End, Outcome, Over, Seen, TestTarget, Travel};
+use super::{
+    Axis, AxisChange, AxisStep, Confirmed, DriveFacts, DriveRequest, End, Outcome, RunSummary, TestTarget, Travel,
+};
 
 impl Axis {
     /// Changes the entries.
@@ -14,7 +16,7 @@ impl Axis {
     }
 
     /// The position where the axis stands becomes the limit of this step.
-    pub(crate) fn take_limit(&mut self, seen: &Seen) {
+    pub(crate) fn take_limit(&mut self, seen: &DriveFacts) {
         if self.may_take_place(seen).is_err() {
             return;
         }
@@ -28,20 +30,20 @@ impl Axis {
     }
 
     /// Goes to the next step if this one is done; `when` is the time as written in the report.
-    pub(crate) fn go_on(&mut self, seen: &Seen, when: &str) {
+    pub(crate) fn go_on(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.may_go_on(seen).is_ok() {
             self.leave(seen, false, when);
         }
     }
 
     /// Skips this step, if that is allowed.
-    pub(crate) fn skip(&mut self, seen: &Seen, when: &str) {
+    pub(crate) fn skip(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() && self.may_skip(seen) {
             self.leave(seen, true, when);
         }
     }
 
-    fn leave(&mut self, seen: &Seen, skipped: bool, when: &str) {
+    fn leave(&mut self, seen: &DriveFacts, skipped: bool, when: &str) {
         // The fact that was just confirmed may differ from the earlier one.
         self.settle(seen);
         if self.fallen().is_some() {
@@ -51,7 +53,7 @@ impl Axis {
             // The person has set it, or said that it is right.
             self.unexplained = None;
         }
-        let next = self.step.beside(1);
+        let next = self.step.neighbour(1);
         if self.chain.make(self.step, self.basis(seen), skipped)
             && let Some(next) = next
         {
@@ -64,16 +66,16 @@ impl Axis {
     }
 
     /// Goes to the previous step, or to the one that has to be repeated. Values that were written stay.
-    pub(crate) fn back(&mut self, seen: &Seen) {
+    pub(crate) fn back(&mut self, seen: &DriveFacts) {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;
         }
-        if let Some(step) = self.fallen().or_else(|| self.step.beside(-1)) {
+        if let Some(step) = self.fallen().or_else(|| self.step.neighbour(-1)) {
             self.enter(step, seen);
         }
     }
 
-    fn enter(&mut self, step: AxisStep, seen: &Seen) {
+    fn enter(&mut self, step: AxisStep, seen: &DriveFacts) {
         self.step = step;
         if step == AxisStep::PowerCycle {
             self.power = Some(Power::on(seen));
@@ -81,28 +83,30 @@ impl Axis {
     }
 
     /// Ends it early. The caller stops the drive.
-    pub(crate) fn cancel(&mut self, seen: &Seen, when: &str) {
+    pub(crate) fn cancel(&mut self, seen: &DriveFacts, when: &str) {
         if self.over.is_none() {
             self.going = None;
             self.end_as(End::Cancelled, seen, when);
         }
     }
 
-    fn end_as(&mut self, end: End, seen: &Seen, when: &str) {
-        self.over = Some(Over { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
+    fn end_as(&mut self, end: End, seen: &DriveFacts, when: &str) {
+        self.over = Some(RunSummary { end, when: when.to_owned(), seen: Box::new(seen.clone()) });
     }
 
     /// Records that a request is in progress.
-    pub(crate) fn begin(&mut self, ask: Ask, seen: &Seen) {
+    pub(crate) fn begin(&mut self, ask: DriveRequest, seen: &DriveFacts) {
         match ask {
-            Ask::Try(_) | Ask::SetPosition(_) | Ask::Save | Ask::Restore(_) => self.asked = Some(ask),
-            Ask::ConfirmLimits => {
+            DriveRequest::Try(_) | DriveRequest::SetPosition(_) | DriveRequest::Save | DriveRequest::Restore(_) => {
+                self.asked = Some(ask)
+            }
+            DriveRequest::ConfirmLimits => {
                 let confirmed = |limits| Confirmed { scale: seen.scale, seen: limits, agreed: limits, begun: None };
                 self.confirmed = seen.limits.map(confirmed);
             }
-            Ask::PowerCycle => self.lose(),
-            Ask::BelieveRestart => self.power = self.power.map(Power::confirmed_by_user),
-            Ask::Move(_) | Ask::Take | Ask::Give | Ask::Acknowledge => {}
+            DriveRequest::PowerCycle => self.lose(),
+            DriveRequest::BelieveRestart => self.power = self.power.map(Power::confirmed_by_user),
+            DriveRequest::Move(_) | DriveRequest::Take | DriveRequest::Give | DriveRequest::Acknowledge => {}
         }
     }
 
@@ -117,21 +121,21 @@ impl Axis {
     /// Records that a request was written and read back.
     pub(crate) fn written(&mut self) {
         match self.asked.take() {
-            Some(Ask::Try(values)) => {
+            Some(DriveRequest::Try(values)) => {
                 self.agree(&values, true);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The mark is never saved.
                 self.saved &= self.step == AxisStep::PowerCycle;
                 self.returned.clear();
             }
-            Some(Ask::SetPosition(position)) => {
+            Some(DriveRequest::SetPosition(position)) => {
                 self.sets = Some(position);
                 self.changes.push(AxisChange::Position(position));
                 self.saved = false;
                 self.returned.clear();
             }
-            Some(Ask::Save) => (self.saved, self.partly) = (true, false),
-            Some(Ask::Restore(values)) => {
+            Some(DriveRequest::Save) => (self.saved, self.partly) = (true, false),
+            Some(DriveRequest::Restore(values)) => {
                 self.changes.retain(|change| matches!(change, AxisChange::Position(_)));
                 (self.partly, self.returned) = (false, values);
             }
@@ -158,7 +162,7 @@ impl Axis {
     /// Records that a request was not written; `begun`: a part of it may have been.
     pub(crate) fn not_written(&mut self, begun: bool) {
         match self.asked.take() {
-            Some(Ask::Try(values)) if begun => {
+            Some(DriveRequest::Try(values)) if begun => {
                 self.agree(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
                 // The mark is never saved: without it everything else is as it was saved.
@@ -166,11 +170,11 @@ impl Axis {
                     (self.partly, self.saved) = (true, false);
                 }
             }
-            Some(Ask::SetPosition(position)) if begun => {
+            Some(DriveRequest::SetPosition(position)) if begun => {
                 self.changes.push(AxisChange::Position(position));
                 (self.partly, self.saved) = (true, false);
             }
-            Some(Ask::Restore(_) | Ask::Save) if begun => self.partly = true,
+            Some(DriveRequest::Restore(_) | DriveRequest::Save) if begun => self.partly = true,
             _ => {}
         }
     }
@@ -187,12 +191,12 @@ impl Axis {
     }
 
     /// All parameters were read; `switched`: the virtual supply was off since.
-    pub(crate) fn surveyed(&mut self, seen: &Seen, switched: bool) {
+    pub(crate) fn surveyed(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
 
     /// Takes the drive's present data: the travel, the end of a test move, and whether all results still hold.
-    pub(crate) fn look(&mut self, seen: &Seen) {
+    pub(crate) fn look(&mut self, seen: &DriveFacts) {
         if self.over.is_some() {
             return;
         }
@@ -215,13 +219,13 @@ impl Axis {
     }
 
     /// Lets fall what the drive does not have any more, and takes what it has.
-    fn settle(&mut self, seen: &Seen) {
+    fn settle(&mut self, seen: &DriveFacts) {
         if !seen.is_settled() || self.asked.is_some() {
             return;
         }
         match self.standstill.note(seen, self.origin(seen)) {
-            Some(Shift::Jump) => self.jumps += 1,
-            Some(Shift::Unexplained(way)) if self.chain.holds(AxisStep::Reference) => {
+            Some(PositionChange::Jump) => self.jumps += 1,
+            Some(PositionChange::Unexplained(way)) if self.chain.holds(AxisStep::Reference) => {
                 self.unexplained = Some(self.unexplained.unwrap_or_default() + way);
             }
             _ => {}

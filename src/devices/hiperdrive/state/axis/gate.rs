@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::supply::{MARK, Power, Restart, is_marked, mark};
-use super::{Ask, Axis, AxisStep, Button, Seen, TestTarget, differences, words};
+use super::{Axis, AxisStep, Button, DriveFacts, DriveRequest, TestTarget, differences, words};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::Lock;
 use crate::devices::hiperdrive::protocol::State;
@@ -18,7 +18,7 @@ impl Axis {
     ///
     /// # Errors
     /// Why it cannot be pressed now.
-    pub fn ask(&self, button: Button, seen: &Seen) -> Result<Ask, Text> {
+    pub fn ask(&self, button: Button, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
         }
@@ -33,13 +33,13 @@ impl Axis {
             Button::Take | Button::Give if seen.controlled == (button == Button::Take) => {
                 Err(TEXTS.text("hd_axis.already"))
             }
-            Button::Take => Ok(Ask::Take),
-            Button::Give => stands().map(|()| Ask::Give),
+            Button::Take => Ok(DriveRequest::Take),
+            Button::Give => stands().map(|()| DriveRequest::Give),
             Button::Recall => {
                 stands()?;
                 let back = differences::to_write_back(seen);
                 match (back.is_empty(), differences::is_place_other(seen)) {
-                    (false, _) => Ok(Ask::Restore(back)),
+                    (false, _) => Ok(DriveRequest::Restore(back)),
                     (true, false) => Err(TEXTS.text("hd_axis.nothing_back")),
                     (true, true) => Err(TEXTS.text("hd_axis.place_left")),
                 }
@@ -47,26 +47,26 @@ impl Axis {
             _ if self.over.is_some() => Err(TEXTS.text("hd_axis.over")),
             Button::Acknowledge if !seen.controlled => Err(TEXTS.text("hd_axis.no_control")),
             Button::Acknowledge if !seen.has_failed() => Err(TEXTS.text("hd_axis.no_fault")),
-            Button::Acknowledge => Ok(Ask::Acknowledge),
+            Button::Acknowledge => Ok(DriveRequest::Acknowledge),
             _ if let Some(step) = self.fallen() => Err(words::fallen(step)),
             Button::Do => stands().and_then(|()| self.ask_of_step(seen)),
             Button::Confirm => match (seen.scale, seen.limits) {
-                (Some(_), Some(_)) => Ok(Ask::ConfirmLimits),
+                (Some(_), Some(_)) => Ok(DriveRequest::ConfirmLimits),
                 _ => Err(TEXTS.text("hd_axis.unread")),
             },
             Button::Widen => {
                 let preview = self.entries.preview(seen)?;
-                stands().map(|()| Ask::Try(vec![(158, preview.lower.into()), (160, preview.upper.into())]))
+                stands().map(|()| DriveRequest::Try(vec![(158, preview.lower.into()), (160, preview.upper.into())]))
             }
             Button::Go(place) => {
                 self.may_move(seen)?;
-                stands().and_then(|()| self.target(place, seen).map(Ask::Move))
+                stands().and_then(|()| self.target(place, seen).map(DriveRequest::Move))
             }
             Button::PowerCycle if !seen.is_virtual => Err(TEXTS.text("hd_axis.not_virtual")),
             Button::PowerCycle if seen.controlled => Err(TEXTS.text("hd_axis.give_first")),
-            Button::PowerCycle => Ok(Ask::PowerCycle),
+            Button::PowerCycle => Ok(DriveRequest::PowerCycle),
             Button::Restarted => match self.power {
-                Some(Power::Back { restart: Restart::Unproven, .. }) => Ok(Ask::BelieveRestart),
+                Some(Power::Back { restart: Restart::Unproven, .. }) => Ok(DriveRequest::BelieveRestart),
                 Some(Power::Back { restart: Restart::Disproved, .. }) => Err(TEXTS.text("hd_axis.not_restarted")),
                 Some(Power::Back { .. }) => Err(TEXTS.text("hd_axis.already")),
                 _ => Err(TEXTS.text("hd_axis.needs_power")),
@@ -74,10 +74,10 @@ impl Axis {
         }
     }
 
-    fn ask_of_step(&self, seen: &Seen) -> Result<Ask, Text> {
+    fn ask_of_step(&self, seen: &DriveFacts) -> Result<DriveRequest, Text> {
         match self.step {
             AxisStep::Request if seen.requested == Some(true) => Err(TEXTS.text("hd_axis.already")),
-            AxisStep::Request => Ok(Ask::Try(vec![(152, 1)])),
+            AxisStep::Request => Ok(DriveRequest::Try(vec![(152, 1)])),
             AxisStep::Scale => {
                 let preview = self.entries.preview(seen)?;
                 if seen.scale == Some(preview.scale) {
@@ -86,23 +86,23 @@ impl Axis {
                 let (numerator, denominator) = (preview.scale.numerator(), preview.scale.denominator());
                 let (low, high) = (preview.lower, preview.upper);
                 let all = [(154, numerator.into()), (156, denominator.into()), (158, low.into()), (160, high.into())];
-                Ok(Ask::Try(all.to_vec()))
+                Ok(DriveRequest::Try(all.to_vec()))
             }
             AxisStep::Reference => {
                 let reference = self.entries.reference(seen.ruler(), seen.limits)?;
-                Ok(Ask::SetPosition(reference.becomes))
+                Ok(DriveRequest::SetPosition(reference.becomes))
             }
             AxisStep::Upper => {
                 let (low, high) = self.taught(seen)?;
                 if seen.limits == Some((low, high)) {
                     return Err(TEXTS.text("hd_axis.already"));
                 }
-                Ok(Ask::Try(vec![(158, low.into()), (160, high.into())]))
+                Ok(DriveRequest::Try(vec![(158, low.into()), (160, high.into())]))
             }
-            AxisStep::Save => Ok(Ask::Save),
+            AxisStep::Save => Ok(DriveRequest::Save),
             AxisStep::PowerCycle => match (self.power, is_marked(seen), mark()) {
                 (Some(Power::On(_) | Power::Back { restart: Restart::Unproven, .. }), Some(false), Some(mark)) => {
-                    Ok(Ask::Try(vec![(MARK, mark)]))
+                    Ok(DriveRequest::Try(vec![(MARK, mark)]))
                 }
                 _ => Err(TEXTS.text("hd_axis.already")),
             },
@@ -111,7 +111,7 @@ impl Axis {
     }
 
     /// Returns both limits as taught, and checks that the axis is between them.
-    fn taught(&self, seen: &Seen) -> Result<(i32, i32), Text> {
+    fn taught(&self, seen: &DriveFacts) -> Result<(i32, i32), Text> {
         let ruler = seen.ruler();
         let (low, high) = (self.entries.lower(ruler)?, self.entries.upper(ruler)?);
         let mm = |steps: i32| words::millimetres(ruler, steps.into());
@@ -130,7 +130,7 @@ impl Axis {
     ///
     /// # Errors
     /// In words.
-    pub fn may_move(&self, seen: &Seen) -> Result<(), Text> {
+    pub fn may_move(&self, seen: &DriveFacts) -> Result<(), Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
         }
@@ -158,7 +158,7 @@ impl Axis {
     ///
     /// # Errors
     /// Why not, in words.
-    pub fn may_take_place(&self, seen: &Seen) -> Result<(), Text> {
+    pub fn may_take_place(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.fallen() {
             return Err(words::fallen(step));
         }
@@ -184,12 +184,12 @@ impl Axis {
     }
 
     /// Returns whether the previous step can be shown now.
-    pub fn may_go_back(&self, seen: &Seen) -> bool {
+    pub fn may_go_back(&self, seen: &DriveFacts) -> bool {
         self.step != AxisStep::Request && self.asked.is_none() && !seen.moves
     }
 
     /// Returns whether the step can be skipped now.
-    pub fn may_skip(&self, seen: &Seen) -> bool {
+    pub fn may_skip(&self, seen: &DriveFacts) -> bool {
         self.step.may_be_skipped() && self.asked.is_none() && !seen.moves && self.fallen().is_none()
     }
 
@@ -197,7 +197,7 @@ impl Axis {
     ///
     /// # Errors
     /// What is missing.
-    pub fn may_go_on(&self, seen: &Seen) -> Result<(), Text> {
+    pub fn may_go_on(&self, seen: &DriveFacts) -> Result<(), Text> {
         let lacks = |holds: bool, id: &'static str| if holds { Ok(()) } else { Err(TEXTS.text(id)) };
         if self.asked.is_some() {
             return Err(TEXTS.text("hd_axis.busy"));
@@ -245,7 +245,7 @@ impl Axis {
     }
 
     /// A person has agreed to the limits that the drive has, under the scale that it has.
-    pub(super) fn is_confirmed(&self, seen: &Seen) -> bool {
+    pub(super) fn is_confirmed(&self, seen: &DriveFacts) -> bool {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));
         let are_agreed = (low == agreed.0 || low == begun.0) && (high == agreed.1 || high == begun.1);
@@ -256,7 +256,7 @@ impl Axis {
     ///
     /// # Errors
     /// Without limits.
-    pub fn target(&self, place: TestTarget, seen: &Seen) -> Result<i32, Text> {
+    pub fn target(&self, place: TestTarget, seen: &DriveFacts) -> Result<i32, Text> {
         let (low, high) = seen.limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         Ok(place.between(low, high))
     }

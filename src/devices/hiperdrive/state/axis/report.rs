@@ -1,6 +1,6 @@
 //! The end of a run as it is written down, to be kept and printed: plain text that fits a page, lengths in millimetres.
 
-use super::{Axis, AxisStep, End, Reached, Seen, TestTarget, words};
+use super::{Axis, AxisStep, DriveFacts, End, Reached, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -20,7 +20,7 @@ const COLUMNS: usize = 78;
 const INDENT: &str = "   ";
 
 /// The report of a run that is over; `None` while it goes on. What was written back since is told as it is `now`.
-pub fn report(axis: &Axis, now: &Seen, device: &Device, language: Language) -> Option<String> {
+pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
     let over = axis.over()?;
     let seen = &over.seen;
     let mut page = Page { text: String::new(), language };
@@ -40,7 +40,7 @@ pub fn report(axis: &Axis, now: &Seen, device: &Device, language: Language) -> O
     Some(page.text)
 }
 
-fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &Seen) {
+fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &DriveFacts) {
     let reached = axis.reached(step);
     let line = TEXTS.text("hd_axis.report_step").with("number", step.index() + 1);
     page.line("", &line.with_text("step", words::title(step)).with_text("reached", words::reached(reached)));
@@ -60,7 +60,7 @@ fn step_lines(page: &mut Page, axis: &Axis, step: AxisStep, seen: &Seen) {
 }
 
 /// Returns what was written, whether it is saved, and what differs from the saved values now.
-pub fn end_lines(axis: &Axis, now: &Seen) -> Vec<Text> {
+pub fn end_lines(axis: &Axis, now: &DriveFacts) -> Vec<Text> {
     let mut lines = Vec::new();
     match (axis.changes().is_empty(), words::returned(axis, now)) {
         (true, None) => lines.push(TEXTS.text("hd_axis.nothing_written")),

@@ -4,8 +4,8 @@
 
 use std::time::Duration;
 
-use super::Seen;
-use super::chain::Origin;
+use super::DriveFacts;
+use super::step_outcomes::Origin;
 use super::supply::READJUSTS;
 use crate::devices::hiperdrive::procedures::dead_man::SETTLE;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
@@ -19,14 +19,14 @@ const UNREAD: Duration = Duration::from_secs(1);
 /// The axis as it stood last.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Standstill {
-    last: Option<Stand>,
+    last: Option<StandstillReading>,
     /// The connection was lost since: the clock of a session counts for that session alone.
     interrupted: bool,
 }
 
 /// A reading of an axis that stands.
 #[derive(Clone, Copy, Debug)]
-struct Stand {
+struct StandstillReading {
     /// `None`: read with everything else, behind a connection that was lost.
     at: Option<Moment>,
     position: i32,
@@ -38,7 +38,7 @@ struct Stand {
 
 /// A change of position that no motion explains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Shift {
+pub(super) enum PositionChange {
     /// Farther than the shaft can turn in that time: the reference was set again.
     Jump,
     /// Steps by which it changed while it was not read: it was moved, or its reference was set again.
@@ -57,13 +57,13 @@ impl Standstill {
     }
 
     /// Takes a reading. Returns the change since the previous one if no motion explains it.
-    pub(super) fn note(&mut self, seen: &Seen, origin: Origin) -> Option<Shift> {
+    pub(super) fn note(&mut self, seen: &DriveFacts, origin: Origin) -> Option<PositionChange> {
         let (actual, position, scale, at) = (seen.actual?, seen.position?, seen.scale?, seen.actual_at);
         if at.is_none() && !self.interrupted {
             return None;
         }
         let stands = !seen.moves && actual.status.has(StatusBit::StandingStill) && actual.speed == 0;
-        let now = Stand { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
+        let now = StandstillReading { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
         let is_interrupted = std::mem::take(&mut self.interrupted);
         // Behind a motion it stands elsewhere, which says nothing.
         let before = std::mem::replace(&mut self.last, stands.then_some(now))?;
@@ -73,7 +73,7 @@ impl Standstill {
     }
 }
 
-fn shift(before: &Stand, now: &Stand, is_interrupted: bool) -> Option<Shift> {
+fn shift(before: &StandstillReading, now: &StandstillReading, is_interrupted: bool) -> Option<PositionChange> {
     let way = i64::from(now.position) - i64::from(before.position);
     let allowed = |degrees: f64| way.abs() <= i64::from(now.scale.steps_of_degrees(degrees));
     // Each session has a clock of its own.
@@ -81,8 +81,8 @@ fn shift(before: &Stand, now: &Stand, is_interrupted: bool) -> Option<Shift> {
     let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + SETTLE).as_secs_f64();
     match elapsed {
         _ if allowed(READJUSTS) => None,
-        Some(elapsed) if !allowed(READJUSTS + turned(elapsed)) => Some(Shift::Jump),
+        Some(elapsed) if !allowed(READJUSTS + turned(elapsed)) => Some(PositionChange::Jump),
         Some(elapsed) if elapsed <= UNREAD => None,
-        _ => Some(Shift::Unexplained(way)),
+        _ => Some(PositionChange::Unexplained(way)),
     }
 }

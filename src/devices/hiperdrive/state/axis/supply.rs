@@ -1,7 +1,7 @@
 //! The check over the supply: what was before it went, what is after it came back, and what proves that it was off at all. A
 //! connection that was lost and found again proves nothing.
 
-use super::Seen;
+use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
 
@@ -14,7 +14,7 @@ pub(super) const READJUSTS: f64 = 5.0;
 
 /// The facts before the supply is switched off.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Before {
+pub struct StateBeforePowerOff {
     scale: Option<PositionScale>,
     limits: Option<(i32, i32)>,
     position: Option<i32>,
@@ -41,12 +41,12 @@ pub enum Restart {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Power {
     /// The device still answers.
-    On(Before),
+    On(StateBeforePowerOff),
     /// It has stopped answering, or its parameters were not read since.
-    Gone(Before),
+    Gone(StateBeforePowerOff),
     Back {
         /// As it was.
-        before: Before,
+        before: StateBeforePowerOff,
         /// The saved values are present.
         kept: bool,
         /// Steps between where it stood and where it stands; `None` where one of them is not known.
@@ -59,21 +59,21 @@ pub enum Power {
 }
 
 impl Power {
-    pub(super) fn on(seen: &Seen) -> Self {
-        Power::On(Before::default()).followed(seen)
+    pub(super) fn on(seen: &DriveFacts) -> Self {
+        Power::On(StateBeforePowerOff::default()).followed(seen)
     }
 
     /// Takes the latest values while the supply is on. As long as the mark is there, the supply was not off since it
     /// was set.
-    pub(super) fn followed(self, seen: &Seen) -> Self {
+    pub(super) fn followed(self, seen: &DriveFacts) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
                 if seen.is_settled() && is_marked(seen) == Some(true) =>
             {
-                let before = Before { marked: true, ..before };
+                let before = StateBeforePowerOff { marked: true, ..before };
                 Power::Back { before, kept, moved, allowed, restart: Restart::Disproved }
             }
-            Power::On(_) if seen.is_settled() => Power::On(Before {
+            Power::On(_) if seen.is_settled() => Power::On(StateBeforePowerOff {
                 scale: seen.scale,
                 limits: seen.limits,
                 position: seen.position,
@@ -92,7 +92,7 @@ impl Power {
 
     /// Notes that the parameters were read again. Unless something shows that the supply was off, any reading may be
     /// the one after it.
-    pub(super) fn back(self, seen: &Seen, switched: bool) -> Self {
+    pub(super) fn back(self, seen: &DriveFacts, switched: bool) -> Self {
         let mut before = match self {
             Power::Gone(before) | Power::Back { before, restart: Restart::Unproven | Restart::Disproved, .. } => before,
             own => return own,
@@ -134,7 +134,7 @@ impl Power {
 }
 
 /// [`MARK`] is not as from the factory; `None` where it was not read.
-pub(super) fn is_marked(seen: &Seen) -> Option<bool> {
+pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&MARK)? != from_the_factory()?)
 }
 

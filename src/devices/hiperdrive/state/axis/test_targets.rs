@@ -1,6 +1,6 @@
 //! How far an axis was moved by hand, and the three targets of the test.
 
-use super::Seen;
+use super::DriveFacts;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
 use crate::devices::hiperdrive::protocol::Direction;
 
@@ -68,7 +68,7 @@ impl Outcome {
 
 impl Travel {
     /// The drive is somewhere. Less than a 64th of a turn is not told from nothing.
-    pub(super) fn note(&mut self, seen: &Seen) {
+    pub(super) fn note(&mut self, seen: &DriveFacts) {
         let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
             self.from = None;
             return;

@@ -13,8 +13,8 @@ use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, Family, StatusWord};
 
 /// A drive that nobody has asked for, as it comes from the factory.
-fn fresh() -> Seen {
-    Seen {
+fn fresh() -> DriveFacts {
+    DriveFacts {
         connected: true,
         actual: Some(Actual { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
         position: Some(0),
@@ -25,7 +25,7 @@ fn fresh() -> Seen {
         // 511 · 65536.
         limits: Some((-33_488_896, 33_488_896)),
         family: Some(Family::Short),
-        ..Seen::default()
+        ..DriveFacts::default()
     }
 }
 
@@ -33,7 +33,7 @@ fn run() -> Axis {
     Axis::new(DriveNumber::FIRST, None)
 }
 
-fn at(seen: &mut Seen, position: i32) {
+fn at(seen: &mut DriveFacts, position: i32) {
     if let Some(actual) = &mut seen.actual {
         actual.position = position;
     }
@@ -42,10 +42,10 @@ fn at(seen: &mut Seen, position: i32) {
 
 /// The drive does what is asked for.
 #[track_caller]
-fn obey(axis: &mut Axis, seen: &mut Seen, ask: Ask) {
+fn obey(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
     axis.begin(ask.clone(), seen);
     match ask {
-        Ask::Try(values) | Ask::Restore(values) => {
+        DriveRequest::Try(values) | DriveRequest::Restore(values) => {
             seen.values.extend(values.iter().copied());
             let number = |own: u16| values.iter().find(|(number, _)| *number == own).map(|(_, value)| *value);
             if let Some(value) = number(152) {
@@ -61,39 +61,40 @@ fn obey(axis: &mut Axis, seen: &mut Seen, ask: Ask) {
             }
             axis.written();
         }
-        Ask::SetPosition(position) => {
+        DriveRequest::SetPosition(position) => {
             at(seen, position);
             seen.values.insert(198, position.into());
             seen.times_set += 1;
             axis.written();
         }
-        Ask::ConfirmLimits => seen.locks.clear(),
-        Ask::Take => seen.controlled = true,
-        Ask::Give => seen.controlled = false,
-        Ask::Save => axis.written(),
-        Ask::Move(_) | Ask::PowerCycle | Ask::Acknowledge | Ask::BelieveRestart => {}
+        DriveRequest::ConfirmLimits => seen.locks.clear(),
+        DriveRequest::Take => seen.controlled = true,
+        DriveRequest::Give => seen.controlled = false,
+        DriveRequest::Save => axis.written(),
+        DriveRequest::Move(_) | DriveRequest::PowerCycle | DriveRequest::Acknowledge | DriveRequest::BelieveRestart => {
+        }
     }
     axis.look(seen);
 }
 
 #[track_caller]
-fn press(axis: &mut Axis, seen: &mut Seen, button: Button) -> Ask {
+fn press(axis: &mut Axis, seen: &mut DriveFacts, button: Button) -> DriveRequest {
     let ask = axis.ask(button, seen).unwrap();
     obey(axis, seen, ask.clone());
     ask
 }
 
 #[track_caller]
-fn next(axis: &mut Axis, seen: &Seen, step: AxisStep) {
+fn next(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     assert_eq!(axis.may_go_on(seen), Ok(()));
     go_on(axis, seen);
     assert_eq!(axis.step(), step);
 }
 
-fn go_on(axis: &mut Axis, seen: &Seen) {
+fn go_on(axis: &mut Axis, seen: &DriveFacts) {
     // The pitch that is typed is confirmed with that.
     let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= AxisStep::Scale);
-    axis.go_on(&Seen { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
+    axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
 }
 
 /// The step with the spindle: 4 mm a turn, a step 0.01 mm.
@@ -103,7 +104,7 @@ fn type_spindle(axis: &mut Axis) {
 
 /// Past it: what was confirmed measures from then on.
 #[track_caller]
-fn confirm_spindle(axis: &mut Axis, seen: &mut Seen) {
+fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
     next(axis, seen, AxisStep::Confirm);
     seen.pitch = axis.entries().pitch().ok();
     axis.look(seen);
@@ -144,14 +145,14 @@ fn what_was_written_again_is_told_as_it_is_now() {
 }
 
 /// From the beginning to the step with the slow jog: 4 mm a turn, a step 0.01 mm.
-fn until_jog() -> (Axis, Seen) {
+fn until_jog() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(152, 1)]));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(152, 1)]));
     next(&mut axis, &seen, AxisStep::Scale);
     type_spindle(&mut axis);
     // Reference 5: 400/256; 511 · 400 = 204400.
     let values = vec![(154, 400), (156, 256), (158, -204_400), (160, 204_400)];
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(values));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(values));
     confirm_spindle(&mut axis, &mut seen);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_confirm");
     press(&mut axis, &mut seen, Button::Confirm);
@@ -159,7 +160,7 @@ fn until_jog() -> (Axis, Seen) {
     (axis, seen)
 }
 
-fn jog(axis: &mut Axis, seen: &mut Seen, to: i32, turns: Direction) {
+fn jog(axis: &mut Axis, seen: &mut DriveFacts, to: i32, turns: Direction) {
     let from = seen.position.unwrap();
     (seen.moves, seen.held) = (true, Some((from.unsigned_abs().into(), turns)));
     for part in 0..=4 {
@@ -170,7 +171,7 @@ fn jog(axis: &mut Axis, seen: &mut Seen, to: i32, turns: Direction) {
     axis.look(seen);
 }
 
-fn until_test() -> (Axis, Seen) {
+fn until_test() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_jog();
     press(&mut axis, &mut seen, Button::Take);
     jog(&mut axis, &mut seen, 500, Direction::Clockwise);
@@ -181,7 +182,7 @@ fn until_test() -> (Axis, Seen) {
     next(&mut axis, &seen, AxisStep::Reference);
     axis.edit(Entries { reference: "1,00".to_owned(), ..axis.entries().clone() });
     // 100 steps become 128: the nearest multiple of 64.
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::SetPosition(128));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::SetPosition(128));
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
     at(&mut seen, -1000);
@@ -191,13 +192,13 @@ fn until_test() -> (Axis, Seen) {
     at(&mut seen, 2000);
     axis.take_limit(&seen);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_limits");
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -1000), (160, 2000)]));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -1000), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     (axis, seen)
 }
 
-fn go(axis: &mut Axis, seen: &mut Seen, place: TestTarget, ends: i32) {
-    let Ask::Move(target) = axis.ask(Button::Go(place), seen).unwrap() else { panic!("no move") };
+fn go(axis: &mut Axis, seen: &mut DriveFacts, place: TestTarget, ends: i32) {
+    let DriveRequest::Move(target) = axis.ask(Button::Go(place), seen).unwrap() else { panic!("no move") };
     let act = seen.ended.map_or(1, |(act, _)| act + 1);
     axis.went(place, target, act);
     seen.moves = true;
@@ -208,7 +209,7 @@ fn go(axis: &mut Axis, seen: &mut Seen, place: TestTarget, ends: i32) {
     axis.look(seen);
 }
 
-fn until_power() -> (Axis, Seen) {
+fn until_power() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_test();
     for (place, ends) in [(TestTarget::Middle, 500), (TestTarget::Lower, -1001), (TestTarget::Upper, 2002)] {
         assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_test");
@@ -230,7 +231,7 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
     axis.surveyed(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
     // By hand: 182 is 1000 from the factory.
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(182, 1001)]));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(182, 1001)]));
     axis.lose();
     seen.connected = false;
     axis.look(&seen);
@@ -255,7 +256,7 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
 
 #[test]
 fn what_did_not_survive_the_supply_is_told() {
-    let survive = |change: fn(&mut Seen)| {
+    let survive = |change: fn(&mut DriveFacts)| {
         let (mut axis, mut seen) = until_power();
         press(&mut axis, &mut seen, Button::Do);
         axis.lose();
@@ -274,12 +275,12 @@ fn what_did_not_survive_the_supply_is_told() {
 
 #[test]
 fn nothing_is_pressed_that_cannot_be_done() {
-    let why = |axis: &Axis, seen: &Seen, button| axis.ask(button, seen).unwrap_err().id();
+    let why = |axis: &Axis, seen: &DriveFacts, button| axis.ask(button, seen).unwrap_err().id();
     let (axis, seen) = until_jog();
     for (label, changed, id) in [
-        ("gone", Seen { connected: false, ..seen.clone() }, "hd_axis.not_connected"),
-        ("busy", Seen { busy: true, stale: true, ..seen.clone() }, "hd_axis.busy"),
-        ("stale", Seen { stale: true, ..seen.clone() }, "hd_axis.unread"),
+        ("gone", DriveFacts { connected: false, ..seen.clone() }, "hd_axis.not_connected"),
+        ("busy", DriveFacts { busy: true, stale: true, ..seen.clone() }, "hd_axis.busy"),
+        ("stale", DriveFacts { stale: true, ..seen.clone() }, "hd_axis.unread"),
         ("no control", seen.clone(), "hd_axis.no_control"),
     ] {
         assert_eq!(why(&axis, &changed, Button::Go(TestTarget::Middle)), id, "{label}");
@@ -295,7 +296,7 @@ fn nothing_is_pressed_that_cannot_be_done() {
     seen.is_virtual = true;
     assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.give_first");
     // While a write is under way nothing else is done.
-    axis.begin(Ask::Save, &seen);
+    axis.begin(DriveRequest::Save, &seen);
     assert_eq!(why(&axis, &seen, Button::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
     axis.back(&seen);
@@ -324,7 +325,7 @@ fn what_is_taught_has_to_hold_the_axis() {
         assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), id, "{lower} {upper}");
     }
     axis.edit(typed("-10,00", "20.01", &axis));
-    assert_eq!(axis.ask(Button::Do, &seen), Ok(Ask::Try(vec![(158, -1000), (160, 2001)])));
+    assert_eq!(axis.ask(Button::Do, &seen), Ok(DriveRequest::Try(vec![(158, -1000), (160, 2001)])));
 }
 
 #[test]
@@ -335,7 +336,7 @@ fn a_test_that_did_not_arrive_does_not_count() {
     assert!(!axis.outcome(TestTarget::Middle).unwrap().is_good());
     go(&mut axis, &mut seen, TestTarget::Middle, 498);
     assert!(axis.outcome(TestTarget::Middle).unwrap().is_good());
-    let Ask::Move(target) = axis.ask(Button::Go(TestTarget::Upper), &seen).unwrap() else { panic!("no move") };
+    let DriveRequest::Move(target) = axis.ask(Button::Go(TestTarget::Upper), &seen).unwrap() else { panic!("no move") };
     axis.went(TestTarget::Upper, target, 9);
     // An earlier act says nothing of this one.
     axis.look(&seen);
@@ -353,7 +354,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     assert!(axis.changes().len() == 8 && axis.reached(AxisStep::Test) == Reached::Ahead);
     assert_eq!(axis.ask(Button::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
-    assert_eq!(press(&mut axis, &mut seen, Button::Recall), Ask::Restore(vec![(152, 0)]));
+    assert_eq!(press(&mut axis, &mut seen, Button::Recall), DriveRequest::Restore(vec![(152, 0)]));
     // The place has the position that it got.
     assert_eq!(axis.changes(), [AxisChange::Position(128)]);
     let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
@@ -365,7 +366,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     // A write that did not begin has changed nothing; one that was cut off may have.
     for (begun, changes) in [(false, 0), (true, 1)] {
         let mut axis = run();
-        axis.begin(Ask::Try(vec![(152, 1)]), &fresh());
+        axis.begin(DriveRequest::Try(vec![(152, 1)]), &fresh());
         axis.not_written(begun);
         assert_eq!((axis.changes().len(), axis.is_partly_written()), (changes, begun));
     }
@@ -391,7 +392,7 @@ fn a_position_that_is_right_is_left_as_it_is() {
 fn pitch_and_step_are_seen_before_they_are_written() {
     let preview = |pitch: &str, resolution: &str, family| {
         let entries = Entries { pitch: pitch.to_owned(), resolution: resolution.to_owned(), ..Entries::default() };
-        entries.preview(&Seen { family: Some(family), ..fresh() }).map_err(|text| text.id())
+        entries.preview(&DriveFacts { family: Some(family), ..fresh() }).map_err(|text| text.id())
     };
     let own = preview("4", "0,01", Family::Short).unwrap();
     assert_eq!((own.scale.numerator(), own.scale.denominator()), (400, 256));

@@ -1,6 +1,6 @@
 //! The texts of the steps of an axis set-up: names, tasks, findings.
 
-use super::{Axis, AxisChange, AxisStep, Outcome, Power, Reached, Restart, Seen, TestTarget};
+use super::{Axis, AxisChange, AxisStep, DriveFacts, Outcome, Power, Reached, Restart, TestTarget};
 use crate::app::Text;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Ended};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
@@ -25,7 +25,7 @@ pub fn title(step: AxisStep) -> Text {
 }
 
 /// Returns the task of a step.
-pub fn todo(step: AxisStep, seen: &Seen) -> Text {
+pub fn todo(step: AxisStep, seen: &DriveFacts) -> Text {
     TEXTS.text(match step {
         AxisStep::Request => "hd_axis.do_request",
         AxisStep::Scale => "hd_axis.do_scale",
@@ -64,7 +64,7 @@ pub fn button(step: AxisStep) -> Text {
 }
 
 /// Returns the findings, if any.
-pub fn found(axis: &Axis, step: AxisStep, seen: &Seen) -> Option<Text> {
+pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
     let ruler = seen.ruler();
     let mm = |steps: i32| millimetres(ruler, steps.into());
     match step {
@@ -159,7 +159,7 @@ pub fn fallen(step: AxisStep) -> Text {
 }
 
 /// The fault of the drive, with its code where that was read; `None`: it has none.
-pub fn fault(seen: &Seen) -> Option<Text> {
+pub fn fault(seen: &DriveFacts) -> Option<Text> {
     if !seen.has_failed() {
         return None;
     }
@@ -178,7 +178,7 @@ pub fn effort(id: &'static str) -> Text {
 }
 
 /// Returns the outcome of a test move in words.
-pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
+pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
         let text = TEXTS.text("hd_axis.arrived").with_text("position", mm(outcome.position.into()));
@@ -189,7 +189,7 @@ pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
 }
 
 /// Returns the values known to differ from the saved ones; `None` if there are none.
-pub fn differences(seen: &Seen) -> Option<Text> {
+pub fn differences(seen: &DriveFacts) -> Option<Text> {
     let difference = |own: super::differences::Difference| {
         let id = if own.number == REFERENCE { "hd_axis.differs_place" } else { "hd_axis.differs" };
         TEXTS.text(id).with("number", own.number).with("now", own.now).with("saved", own.saved)
@@ -199,7 +199,7 @@ pub fn differences(seen: &Seen) -> Option<Text> {
 }
 
 /// Returns the outcome of writing back; `None` if nothing was.
-pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
+pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     if axis.returned.is_empty() {
         return None;
     }
@@ -210,14 +210,14 @@ pub fn returned(axis: &Axis, seen: &Seen) -> Option<Text> {
 }
 
 /// The position is left as it was set, although parameters were written back; `None`: that is not so.
-pub fn place_left(axis: &Axis, seen: &Seen) -> Option<Text> {
+pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
 
 /// The position changed while it was not read; `None`: not since the reference.
-pub fn unexplained(axis: &Axis, seen: &Seen) -> Option<Text> {
+pub fn unexplained(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let way = axis.unexplained?;
     Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
 }

@@ -34,8 +34,8 @@ pub(super) fn step(step: CheckStep) -> Text {
 
 fn finding(finding: &CheckFinding) -> Text {
     match finding {
-        CheckFinding::Replies { asked, slowest_ms, late } => {
-            TEXTS.text("hd_check.replies").with("asked", asked).with("slowest", slowest_ms).with("late", late)
+        CheckFinding::Replies { requested, slowest_ms, late } => {
+            TEXTS.text("hd_check.replies").with("asked", requested).with("slowest", slowest_ms).with("late", late)
         }
         CheckFinding::Category(words) | CheckFinding::Version(words) => plain(words),
         CheckFinding::SerialNumber(number) => Text::new("check.serial").with("number", number),

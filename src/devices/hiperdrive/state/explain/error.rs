@@ -14,28 +14,28 @@ pub fn device(error: &Error) -> Text {
         Error::Link(error) => link(error),
         Error::Cancelled => Text::new("encoder.cancelled"),
         Error::NeverSilent => TEXTS.text("hd_said.never_silent"),
-        Error::NoReply { asked: what, tries, late: None } => {
-            TEXTS.text("hd_said.no_reply").with_text("asked", asked(*what)).with("tries", tries)
+        Error::NoReply { requested: what, tries, late: None } => {
+            TEXTS.text("hd_said.no_reply").with_text("asked", item_text(*what)).with("tries", tries)
         }
-        Error::NoReply { asked: what, tries, late: Some(Late { took, waited }) } => TEXTS
+        Error::NoReply { requested: what, tries, late: Some(Late { took, waited }) } => TEXTS
             .text("hd_said.late_reply")
-            .with_text("asked", asked(*what))
+            .with_text("asked", item_text(*what))
             .with("tries", tries)
             .with("took", took.as_millis())
             .with("waited", waited.as_millis()),
-        Error::Damaged { asked: what, tries, cause } => TEXTS
+        Error::Damaged { requested: what, tries, cause } => TEXTS
             .text("hd_said.damaged")
-            .with_text("asked", asked(*what))
+            .with_text("asked", item_text(*what))
             .with("tries", tries)
             .with_text("why", damage(cause)),
-        Error::Encapsulation { asked: what, status } => TEXTS
+        Error::Encapsulation { requested: what, status } => TEXTS
             .text("hd_said.refused")
-            .with_text("asked", asked(*what))
+            .with_text("asked", item_text(*what))
             .with_text("status", status::frame(*status))
             .with_text("remedy", frame_remedy(*status)),
-        Error::Refused { asked: what, refusal } => TEXTS
+        Error::Refused { requested: what, refusal } => TEXTS
             .text("hd_said.refused")
-            .with_text("asked", asked(*what))
+            .with_text("asked", item_text(*what))
             .with_text("status", status::refusal(refusal))
             .with_text("remedy", remedy(refusal)),
         Error::OtherMaster { extended } => TEXTS.text("hd_said.other_master").with("code", format!("0x{extended:04X}")),
@@ -62,7 +62,7 @@ pub fn device(error: &Error) -> Text {
         Error::WriteOnly { number, .. } => named("hd_said.write_only", *number),
         Error::Motion { number, .. } => named("hd_said.motion", *number),
         Error::Moving { drive } => TEXTS.text("hd_said.moving").with("drive", drive.get()),
-        Error::NotHiperdrive { says } => TEXTS.text("hd_said.other_device").with("says", says),
+        Error::NotHiperdrive { product } => TEXTS.text("hd_said.other_device").with("says", product),
         Error::NotTaken { number, wanted, reads } => {
             named("hd_said.not_taken", *number).with("wanted", wanted).with("reads", reads)
         }
@@ -109,8 +109,8 @@ pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }
 
-fn asked(asked: RequestedItem) -> Text {
-    match asked {
+fn item_text(requested: RequestedItem) -> Text {
+    match requested {
         RequestedItem::Session => TEXTS.text("hd_asked.session"),
         RequestedItem::Parameter(number) => named("hd_asked.parameter", number),
         RequestedItem::Set(number) => named("hd_asked.set", number),

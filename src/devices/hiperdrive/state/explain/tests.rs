@@ -55,7 +55,7 @@ fn bad_input_has_its_sentence_and_its_remedy() {
 
 #[test]
 fn errors_say_what_happened_and_what_to_do() {
-    let asked = RequestedItem::Set(number(158));
+    let requested = RequestedItem::Set(number(158));
     let refusal =
         |status: u8| Refused { service: Service::SET, status: GeneralStatus::new(status), extended: Vec::new() };
     let late = Late { took: Duration::from_millis(1300), waited: Duration::from_millis(1050) };
@@ -63,10 +63,10 @@ fn errors_say_what_happened_and_what_to_do() {
     let length = WrongLength { number: number(107), name: "actual position", expected: 4, got: 2 };
     let errors = [
         Error::NeverSilent,
-        Error::NoReply { asked: RequestedItem::Session, tries: 5, late: None },
-        Error::NoReply { asked: RequestedItem::Session, tries: 5, late: Some(late) },
-        Error::Damaged { asked: RequestedItem::Identity, tries: 5, cause: Damage::Empty },
-        Error::Damaged { asked: RequestedItem::Mac, tries: 5, cause: Damage::Cut { bytes: 7 } },
+        Error::NoReply { requested: RequestedItem::Session, tries: 5, late: None },
+        Error::NoReply { requested: RequestedItem::Session, tries: 5, late: Some(late) },
+        Error::Damaged { requested: RequestedItem::Identity, tries: 5, cause: Damage::Empty },
+        Error::Damaged { requested: RequestedItem::Mac, tries: 5, cause: Damage::Cut { bytes: 7 } },
         Error::InControl,
         Error::NoCyclic,
         Error::Unknown(number(44)),
@@ -81,7 +81,7 @@ fn errors_say_what_happened_and_what_to_do() {
         Error::WriteOnly { number: number(199), name: "reset drive" },
         Error::Motion { number: number(104), name: "target position" },
         Error::Moving { drive: ONE },
-        Error::NotHiperdrive { says: "1769-L16ER".to_owned() },
+        Error::NotHiperdrive { product: "1769-L16ER".to_owned() },
         Error::NotTaken { number: number(198), wanted: 100, reads: 128 },
         Error::NetworkNotTaken { attribute: 5 },
         Error::Busy { reads: 1, milliseconds: 2000 },
@@ -99,12 +99,12 @@ fn errors_say_what_happened_and_what_to_do() {
     }
     // Where more time may help, the command line says how to give it, and the window speaks of no link.
     for late in [None, Some(late)] {
-        let text = device(&Error::NoReply { asked: RequestedItem::Session, tries: 5, late });
+        let text = device(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
         assert!(text.terminal().contains("timeout=2000 in the link"), "{}", text.terminal());
         assert!(!text.words(Language::English).contains("timeout="));
     }
     for status in 0..=0x30 {
-        says(&device(&Error::Refused { asked, refusal: refusal(status) }), 2);
+        says(&device(&Error::Refused { requested, refusal: refusal(status) }), 2);
     }
 }
 

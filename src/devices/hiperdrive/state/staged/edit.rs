@@ -1,6 +1,6 @@
 //! The edits: what each makes of what is wanted, and why it may not be.
 
-use super::{Families, Ground, is_editable, travel};
+use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
@@ -29,13 +29,13 @@ pub enum Edit {
         /// Steps a turn.
         scale: PositionScale,
         /// How its limits change.
-        limits: LimitsStay,
+        limits: LimitsPolicy,
     },
 }
 
 /// How limits change when the size of a step does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LimitsStay {
+pub enum LimitsPolicy {
     /// They stay where they are: their numbers become other ones.
     InPlace,
     /// Their numbers stay: they lie elsewhere.
@@ -74,7 +74,7 @@ pub enum EditError {
 pub(super) fn edited(
     (base, wanted): (&Image, &Image),
     edit: &Edit,
-    ground: Ground,
+    ground: BaseSource,
     families: &Families,
 ) -> Result<Image, EditError> {
     let mut after = wanted.clone();
@@ -86,7 +86,7 @@ pub(super) fn edited(
                 None => after.values.remove(&number),
             };
         }
-        Edit::Leave(number) if ground == Ground::Profile => {
+        Edit::Leave(number) if ground == BaseSource::Profile => {
             after.values.remove(&number);
         }
         Edit::Leave(number) => return Err(EditError::NotAValue(number)),
@@ -100,7 +100,7 @@ pub(super) fn edited(
             let before = wanted.scale(drive).unwrap_or(PositionScale::FACTORY);
             let parts = [(154, i64::from(scale.numerator())), (156, i64::from(scale.denominator()))];
             put(&mut after, drive, parts, ground, families)?;
-            if let (LimitsStay::InPlace, Some((lower, upper))) = (limits, wanted.limits(drive)) {
+            if let (LimitsPolicy::InPlace, Some((lower, upper))) = (limits, wanted.limits(drive)) {
                 let ruler = Ruler { scale: before, pitch: None };
                 let moved = [(158, ruler.rescaled(lower, scale)), (160, ruler.rescaled(upper, scale))];
                 put(&mut after, drive, moved, ground, families)?;
@@ -114,7 +114,7 @@ fn put<const N: usize>(
     after: &mut Image,
     drive: DriveNumber,
     values: [(u16, i64); N],
-    ground: Ground,
+    ground: BaseSource,
     families: &Families,
 ) -> Result<(), EditError> {
     for (number, value) in values {
@@ -129,14 +129,14 @@ fn set(
     after: &mut Image,
     number: ParameterNumber,
     value: i64,
-    ground: Ground,
+    ground: BaseSource,
     families: &Families,
 ) -> Result<(), EditError> {
     let row = number.row().ok_or(EditError::Unknown(number))?;
-    if !is_editable(row) || ground == Ground::Profile && !Image::holds(row) {
+    if !is_editable(row) || ground == BaseSource::Profile && !Image::holds(row) {
         return Err(EditError::NotAValue(number));
     }
-    if ground == Ground::Device && after.get(number).is_none() {
+    if ground == BaseSource::Device && after.get(number).is_none() {
         return Err(EditError::NotRead(number));
     }
     let value = row.check(number, value, travel(number, after, families))?;

@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a HIPERDRIVE.
 
-use super::{Differs, Edit, EditError, LimitsStay, Mark, SavedEdit, Staged};
+use super::{Differs, Edit, EditError, LimitsPolicy, Mark, SavedEdit, Staged};
 use crate::app::PendingEdits;
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, ParameterNumber, PositionScale, Range};
@@ -69,7 +69,7 @@ fn what_cannot_be_is_refused_with_its_reason() {
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut staged = staged();
-    staged.know([(ONE, Family::Short)].into());
+    staged.set_families([(ONE, Family::Short)].into());
     let out = |staged: &mut Staged, edit: Edit| match staged.edit(&edit) {
         Err(EditError::OutOfRange(error)) => (error.number.get(), error.value, error.range),
         other => panic!("{other:?}"),
@@ -81,14 +81,14 @@ fn limits_beyond_the_turns_of_the_drive_are_refused() {
     assert_eq!(out(&mut staged, Edit::Set(number(170), 1 << 30)), (170, 1 << 30, within(67_108_864)));
     assert_eq!(staged.edit(&Edit::Set(number(158), -33_554_432)), Ok(true));
     let hundredths = PositionScale::new(400, 256).unwrap();
-    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
     assert_eq!((staged.value(number(158)), staged.marks(|_| None)), (Some(-204_800), vec![]));
     assert_eq!(out(&mut staged, Edit::Set(number(160), 204_801)), (160, 204_801, within(204_800)));
     assert!(staged.undo() && staged.undo() && !staged.is_dirty());
-    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    staged.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     assert!(matches!(staged.marks(|_| None)[..], [Mark::LimitsMove { .. }]), "that they move is told, once");
     let mut profile = Staged::of_profile(image(&[(154, 400), (156, 256), (158, -204_801), (160, 204_800)]));
-    profile.know([(ONE, Family::Short)].into());
+    profile.set_families([(ONE, Family::Short)].into());
     let [Mark::OutOfRange(error)] = profile.marks(|_| None)[..] else { panic!() };
     assert_eq!((error.number.get(), error.range), (158, within(204_800)));
 }
@@ -117,7 +117,7 @@ fn edits_survive_a_reading_and_the_rest_follows() {
 fn a_draft_waits_for_what_it_is_about() {
     let mut first = staged();
     first.edit(&Edit::Set(number(166), 200)).unwrap();
-    let kept = first.kept();
+    let kept = first.saved_edits();
     assert_eq!(kept, [SavedEdit(166, Some(200))]);
     let mut later = Staged::default();
     later.take_draft(kept.into_iter().chain([
@@ -129,7 +129,7 @@ fn a_draft_waits_for_what_it_is_about() {
     later.refresh(read());
     assert_eq!(later.edited(), image(&[(166, 200)]));
     assert_eq!(
-        later.kept(),
+        later.saved_edits(),
         [SavedEdit(166, Some(200)), SavedEdit(266, Some(7))],
         "the second drive may be plugged in again"
     );
@@ -139,7 +139,7 @@ fn a_draft_waits_for_what_it_is_about() {
 fn a_scale_takes_the_limits_along_or_moves_them() {
     let hundredths = PositionScale::new(400, 256).unwrap();
     let mut along = staged();
-    along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::InPlace }).unwrap();
+    along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
     // 511 turns of 400 steps.
     assert_eq!(along.edited(), image(&[(154, 400), (156, 256), (158, -204_400), (160, 204_400)]));
     // 600 turns of 65536 steps, scaled to 400 are 240 000: inside no more.
@@ -149,7 +149,7 @@ fn a_scale_takes_the_limits_along_or_moves_them() {
     assert_eq!(outside, [expected]);
 
     let mut moved = staged();
-    moved.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsStay::AsNumbers }).unwrap();
+    moved.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::AsNumbers }).unwrap();
     let [Mark::LimitsMove { lower, upper, .. }] = moved.marks(|_| Some(0))[..] else { panic!() };
     // 33 488 896 steps of 400 a turn.
     assert_eq!((lower, upper), ((-511.0, -83_722.24), (511.0, 83_722.24)));
@@ -166,5 +166,5 @@ fn what_somebody_should_look_at_is_marked() {
     assert_eq!(profile.edit(&Edit::Leave(number(166))), Ok(true));
     assert_eq!(profile.edit(&Edit::Set(number(266), 100)), Ok(true), "a profile can be made to say it");
     assert_eq!(profile.edit(&Edit::Set(number(170), 1)), Err(EditError::NotAValue(number(170))), "it is not kept");
-    assert_eq!(profile.kept(), [SavedEdit(166, None), SavedEdit(266, Some(100))]);
+    assert_eq!(profile.saved_edits(), [SavedEdit(166, None), SavedEdit(266, Some(100))]);
 }

@@ -125,9 +125,9 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     {
         super::warning(ui, theme, &why);
     }
-    if let Some(said) = shown.unit.running_or_last(shown.axis.drive()) {
-        let ink = if said.is_well { theme.palette.muted } else { theme.palette.warn };
-        paragraph(ui, RichText::new(theme.words(&said.words)).color(ink));
+    if let Some(status) = shown.unit.running_or_last(shown.axis.drive()) {
+        let ink = if status.is_well { theme.palette.muted } else { theme.palette.warn };
+        paragraph(ui, RichText::new(theme.words(&status.words)).color(ink));
     }
 }
 

@@ -17,7 +17,7 @@ use crate::units::Moment;
 const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKSUM, StatusCode::LENGTH];
 
 /// An exchange that gave no answer.
-pub(in super::super) enum Trouble {
+pub(in super::super) enum ExchangeFailure {
     /// Nothing came back but, maybe, our own bytes.
     Silence {
         /// Our own bytes came back.
@@ -28,7 +28,7 @@ pub(in super::super) enum Trouble {
 }
 
 /// An answer and when it began.
-pub(in super::super) struct Answered {
+pub(in super::super) struct ReceivedAnswer {
     pub(in super::super) answer: Answer,
     /// The address it came from.
     pub(in super::super) sender: u8,
@@ -36,7 +36,7 @@ pub(in super::super) struct Answered {
 }
 
 /// The bytes received, without the echo.
-struct Heard {
+struct ReceivedBytes {
     reply: Vec<u8>,
     /// When the first byte of the reply was complete.
     first_at: Moment,
@@ -46,7 +46,10 @@ struct Heard {
 
 impl Master<'_> {
     /// Makes one exchange. The outer error ends everything; the inner one may be retried.
-    pub(in super::super) fn attempt(&mut self, request: &Request) -> Result<Result<Answered, Trouble>, Error> {
+    pub(in super::super) fn attempt(
+        &mut self,
+        request: &Request,
+    ) -> Result<Result<ReceivedAnswer, ExchangeFailure>, Error> {
         if request.command() != Command::ReadTypeLabel {
             self.learn_echo()?;
         }
@@ -63,11 +66,11 @@ impl Master<'_> {
         let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
         // In what is broken there may be a whole reply. What came too late or too long was let pass; an echo is none.
-        if let Err(Trouble::Damage(Damage::Reply(_))) = judgement {
+        if let Err(ExchangeFailure::Damage(Damage::Reply(_))) = judgement {
             self.line.pass(&reply);
         }
         Ok(judgement.map_err(|trouble| match trouble {
-            Trouble::Damage(Damage::Reply(_)) if secret => Trouble::Damage(Damage::Unreadable),
+            ExchangeFailure::Damage(Damage::Reply(_)) if secret => ExchangeFailure::Damage(Damage::Unreadable),
             trouble => trouble,
         }))
     }
@@ -101,7 +104,7 @@ impl Master<'_> {
         self.dead_time() + self.station.line.margin
     }
 
-    fn listen(&mut self, request: &Request, frame: &SecretFrame, sent_at: Moment) -> Result<Heard, Error> {
+    fn listen(&mut self, request: &Request, frame: &SecretFrame, sent_at: Moment) -> Result<ReceivedBytes, Error> {
         let timing = self.station.timing();
         let deadline = sent_at + timing.worst_case(request) + self.station.line.margin;
         let gap = timing.timeout + self.station.line.margin;
@@ -166,7 +169,7 @@ impl Master<'_> {
         frame: &SecretFrame,
         first_at: Moment,
         intrusion: Option<Damage>,
-    ) -> Heard {
+    ) -> ReceivedBytes {
         let sent = frame.bytes();
         let echo_heard = line.starts_with(sent);
         let reply = self.without_echo(line, frame).unwrap_or_default().to_vec();
@@ -178,28 +181,29 @@ impl Master<'_> {
             Echo::Unknown => false,
         };
         let damage = if wrong_echo { Some(Damage::Echo) } else { intrusion };
-        Heard { reply, first_at, echo_heard, damage }
+        ReceivedBytes { reply, first_at, echo_heard, damage }
     }
 
-    fn judge(&mut self, request: &Request, heard: Heard) -> Result<Answered, Trouble> {
+    fn judge(&mut self, request: &Request, heard: ReceivedBytes) -> Result<ReceivedAnswer, ExchangeFailure> {
         if let Some(damage) = heard.damage {
-            return Err(Trouble::Damage(damage));
+            return Err(ExchangeFailure::Damage(damage));
         }
         if heard.reply.is_empty() {
-            return Err(Trouble::Silence { echo_heard: heard.echo_heard });
+            return Err(ExchangeFailure::Silence { echo_heard: heard.echo_heard });
         }
-        let answer =
-            request.parse_reply(self.station.address, &heard.reply).map_err(|e| Trouble::Damage(Damage::Reply(e)))?;
+        let answer = request
+            .parse_reply(self.station.address, &heard.reply)
+            .map_err(|e| ExchangeFailure::Damage(Damage::Reply(e)))?;
         if let Answer::Rejected { codes, .. } = &answer
             && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
         {
             // The request was right when it left: the line damaged it.
-            return Err(Trouble::Damage(Damage::AtEncoder(*code)));
+            return Err(ExchangeFailure::Damage(Damage::AtEncoder(*code)));
         }
         self.station.line.answered();
         self.station.line.answer_began(heard.first_at);
         self.station.line.echo.learn(heard.echo_heard);
         let sender = heard.reply.first().copied().unwrap_or(self.station.address);
-        Ok(Answered { answer, sender, at: heard.first_at - self.station.timing().character })
+        Ok(ReceivedAnswer { answer, sender, at: heard.first_at - self.station.timing().character })
     }
 }

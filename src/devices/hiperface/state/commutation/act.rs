@@ -32,7 +32,7 @@ impl Encoder {
                         let edited = (address..address + bytes.len()).any(|at| self.staged.is_edited(field, at));
                         let id = if edited { "commutation.staged" } else { "commutation.same" };
                         let text = TEXTS.text(id).with("field", field).with("address", address);
-                        services.tell(Severity::Good, vec![text], Some(&self.session.name()));
+                        services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                     }
                 }
                 Err(why) => self.commutation.problem = Some(why),

@@ -31,10 +31,10 @@ impl Commutation {
         let form = &self.form;
         let wanted = staged.wanted();
         let writable = || wanted.iter().rev().filter(|field| rules::edit(field).is_ok());
-        let asked = || writable().filter(|field| form.field.is_none_or(|own| own == field.number));
+        let candidates = || writable().filter(|field| form.field.is_none_or(|own| own == field.number));
         if form.address.trim().is_empty() {
-            let kept = asked().find_map(|field| first(field, |bytes| is_kept(form.storage, bytes)));
-            let free = || asked().find_map(|field| first(field, is_filler));
+            let kept = candidates().find_map(|field| first(field, |bytes| is_kept(form.storage, bytes)));
+            let free = || candidates().find_map(|field| first(field, is_filler));
             return kept.or_else(free).ok_or_else(no_room);
         }
         let address = whole(TEXTS.text("commutation.address"), &form.address, 0, 127)? as usize;

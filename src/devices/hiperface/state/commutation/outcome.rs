@@ -110,23 +110,23 @@ impl Commutation {
         let (inputs, offset, turns) = (self.form.inputs(geometry)?, self.offset(geometry)?, self.form.second_turns()?);
         let moved = apart(offset.fine_periods, fine_periods, inputs.periods);
         let moved = if inputs.reversed { -moved } else { moved };
-        let said = inputs.motor.second_vector(moved, turns).filter(|said| said.ratio.abs() >= STILL);
+        let second = inputs.motor.second_vector(moved, turns).filter(|second| second.ratio.abs() >= STILL);
         let degrees = |text: Text| {
             let text = text.with_number("moved", moved / f64::from(inputs.periods) * 360.0, 2);
             text.with_number("expected", turns * 360.0 / f64::from(inputs.pole_pairs), 2)
         };
-        let Some(said) = said else { return Ok((Verdict::Fault, degrees(TEXTS.text("commutation.still")))) };
+        let Some(second) = second else { return Ok((Verdict::Fault, degrees(TEXTS.text("commutation.still")))) };
         let pairs = turns * f64::from(inputs.periods) / moved.abs();
-        let whole = (pairs - pairs.round()).abs() < 0.25 && said.pole_pairs > 0;
-        let own = said.pole_pairs == inputs.pole_pairs;
-        let id = match (own && FITS.contains(&said.ratio.abs()), said.ratio > 0.0) {
+        let whole = (pairs - pairs.round()).abs() < 0.25 && second.pole_pairs > 0;
+        let own = second.pole_pairs == inputs.pole_pairs;
+        let id = match (own && FITS.contains(&second.ratio.abs()), second.ratio > 0.0) {
             (true, true) => return Ok((Verdict::Ok, degrees(TEXTS.text("commutation.fits")))),
             (true, false) => "commutation.exchanged",
             (false, true) if whole && !own => "commutation.other_pairs",
             (false, false) if whole && !own => "commutation.exchanged_pairs",
             _ => "commutation.unclear",
         };
-        Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", said.pole_pairs)))
+        Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", second.pole_pairs)))
     }
 
     /// The second vector was read and fits.

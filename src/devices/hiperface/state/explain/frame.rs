@@ -11,8 +11,8 @@ use crate::devices::hiperface::protocol::{
 use crate::devices::hiperface::state::TEXTS;
 
 /// Returns the text of a fact about a frame.
-pub fn frame(said: &FrameFact) -> Text {
-    match said {
+pub fn frame(fact: &FrameFact) -> Text {
+    match fact {
         FrameFact::Heading { address, command } => heading(*address, *command),
         FrameFact::Request(arguments) => request(arguments),
         FrameFact::NoRequest(error) => TEXTS.text("frame.no_request").with_text("why", no_request(*error)),

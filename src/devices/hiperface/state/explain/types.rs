@@ -29,7 +29,7 @@ pub fn open(error: &OpenError) -> Text {
 
 fn type_table(error: &TypeTableError) -> Text {
     match error {
-        TypeTableError::Syntax { line, column, what } => syntax(*line, *column, general::plain(what)),
+        TypeTableError::Syntax { line, column, problem: what } => syntax(*line, *column, general::plain(what)),
         TypeTableError::Range { code, quantity, range } => TEXTS
             .text("detail.range")
             .with("code", format!("{code:02X}h"))

@@ -22,7 +22,7 @@ fn position(microseconds: u64, steps: i64) -> Sample {
 
 fn watched(microseconds: u64, value: i64) -> Sample {
     let (at, what) = (moment(microseconds), Watch::TEMPERATURE);
-    Sample::Watched(WatchedReading { at, what, value: Ok(value), codes: Vec::new() })
+    Sample::Watched(WatchedReading { at, watch: what, value: Ok(value), codes: Vec::new() })
 }
 
 fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {

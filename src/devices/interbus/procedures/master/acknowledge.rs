@@ -6,7 +6,7 @@
 
 use std::time::Duration;
 
-use super::held::{CycleResult, Held, STAYS_FOR};
+use super::stability::{CycleResult, Held, STAYS_FOR};
 use super::{Error, Master};
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::procedures::handshake::is_echo;
@@ -74,12 +74,12 @@ impl Master<'_> {
             rests.go_on(matches!(reply, Reply::Run { .. }) || Some(word) == found, now);
             match reply {
                 _ if is_echo(command, word) => {
-                    holds.map_or(same.stands(), |holds| same.stays_for(holds)).then_some(Ok(()))
+                    holds.map_or(same.is_stable(), |holds| same.stays_for(holds)).then_some(Ok(()))
                 }
-                Reply::Error(error) if word != before && Some(word) != found && same.stands() => {
+                Reply::Error(error) if word != before && Some(word) != found && same.is_stable() => {
                     Some(Err(Error::Refused { sent: command, error }))
                 }
-                _ if may_run && rests.stays() => Some(Ok(())),
+                _ if may_run && rests.is_settled() => Some(Ok(())),
                 // The echo of an earlier word may stand or come late, with other data than were sent (manual 5.3).
                 _ => None,
             }

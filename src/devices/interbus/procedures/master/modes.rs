@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::Master;
-use super::held::CycleResult;
+use super::stability::CycleResult;
 use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
@@ -283,7 +283,7 @@ impl Master<'_> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {
             let asks = matches!(Reply::parse(word), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
-            (!asks && same.stands()).then_some(Ok(()))
+            (!asks && same.is_stable()).then_some(Ok(()))
         });
         match ended {
             Err(Error::TimeOut { .. }) => Ok(()),

@@ -3,7 +3,9 @@
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
 use super::columns::{self, Columns};
-use super::{CamTable, Column, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableRow, Wrong};
+use super::{
+    CamTable, Column, LONGEST_NAME, TableEdge, TableNote, TableOptions, TableProblem, TableProblemKind, TableRow,
+};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Outside, Placed, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
@@ -38,7 +40,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
     let lines = split(text, delimiter);
     let mut table = CamTable { delimiter: Some(delimiter), ..CamTable::default() };
     let Some(first) = lines.first() else {
-        table.problems.push(TableProblem { line: 1, column: 1, what: Wrong::Empty });
+        table.problems.push(TableProblem { line: 1, column: 1, kind: TableProblemKind::Empty });
         return table;
     };
     let columns = table.columns(options, first, &lines);
@@ -53,7 +55,7 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
         }
     }
     if drafts.is_empty() && table.problems.is_empty() {
-        table.problems.push(TableProblem { line: first.number, column: 1, what: Wrong::Empty });
+        table.problems.push(TableProblem { line: first.number, column: 1, kind: TableProblemKind::Empty });
     }
     table.place(drafts);
     table.problems.sort_by_key(|problem| (problem.line, problem.column));
@@ -78,7 +80,11 @@ impl CamTable {
         let columns = known.unwrap_or_else(|| Columns::of_count(count));
         let mut missing = [Column::Start, Column::Stop].into_iter().filter(|column| columns.place(*column).is_none());
         if let Some(column) = missing.next() {
-            self.problems.push(TableProblem { line: first.number, column: 1, what: Wrong::NoColumn(column) });
+            self.problems.push(TableProblem {
+                line: first.number,
+                column: 1,
+                kind: TableProblemKind::NoColumn(column),
+            });
         }
         let named = [Column::Start, Column::Stop].into_iter().filter_map(|column| cells.get(columns.place(column)?));
         let used = options.scale.unit();
@@ -92,13 +98,13 @@ impl CamTable {
     fn place(&mut self, drafts: Vec<Draft>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
-        let wrong = |draft: &Draft, what| TableProblem { line: draft.line, column: draft.column, what };
+        let wrong = |draft: &Draft, what| TableProblem { line: draft.line, column: draft.column, kind: what };
         for (draft, own) in drafts.iter().zip(&mut rows) {
             let Some(cam) = draft.cam else { continue };
             let earlier = taken.iter().find(|(program, number, _)| (*program, *number) == (draft.program, cam));
             match earlier.map(|(.., line)| *line) {
                 Some(first) => {
-                    self.problems.push(wrong(draft, Wrong::Twice { program: draft.program, cam, first }));
+                    self.problems.push(wrong(draft, TableProblemKind::Twice { program: draft.program, cam, first }));
                 }
                 None => {
                     taken.push((draft.program, cam, draft.line));
@@ -112,7 +118,7 @@ impl CamTable {
             *own = CamNumber::all().find(is_free);
             match own {
                 Some(cam) => taken.push((draft.program, *cam, draft.line)),
-                None => self.problems.push(wrong(draft, Wrong::Full(draft.program))),
+                None => self.problems.push(wrong(draft, TableProblemKind::Full(draft.program))),
             }
         }
         let placed = drafts.into_iter().zip(rows).filter_map(|(draft, cam)| {
@@ -179,14 +185,14 @@ fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
 
 fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: bool) -> Result<Draft, TableProblem> {
     let at = |column| columns.place(column).map_or(1, |place| place as u64 + 1);
-    let wrong = |column, what| TableProblem { line: line.number, column: at(column), what };
+    let wrong = |column, what| TableProblem { line: line.number, column: at(column), kind: what };
     let cell = |column| columns.place(column).and_then(|place| line.cells.get(place)).map_or("", String::as_str);
     let program = match cell(Column::Program) {
         "" => options.program,
         text => {
             let own =
                 whole(text, &["program", "programm", "p"]).and_then(|own| ProgramNumber::new(u8::try_from(own).ok()?));
-            own.ok_or_else(|| wrong(Column::Program, Wrong::Program { text: excerpt(text) }))?
+            own.ok_or_else(|| wrong(Column::Program, TableProblemKind::Program { text: excerpt(text) }))?
         }
     };
     let (mut cam, mut name) = (None, cell(Column::Name).to_owned());
@@ -194,22 +200,22 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     match whole(text, &["cam", "nocken", "nocke"]) {
         Some(own) => {
             let own = u8::try_from(own).ok().and_then(CamNumber::new);
-            cam = Some(own.ok_or_else(|| wrong(Column::Cam, Wrong::Cam { text: excerpt(text) }))?);
+            cam = Some(own.ok_or_else(|| wrong(Column::Cam, TableProblemKind::Cam { text: excerpt(text) }))?);
         }
         None if text.is_empty() => {}
         None if columns.cam_or_name => text.clone_into(&mut name),
-        None => return Err(wrong(Column::Cam, Wrong::Cam { text: excerpt(text) })),
+        None => return Err(wrong(Column::Cam, TableProblemKind::Cam { text: excerpt(text) })),
     }
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {
         let column = if columns.cam_or_name { Column::Cam } else { Column::Name };
-        return Err(wrong(column, Wrong::Name { most: LONGEST_NAME }));
+        return Err(wrong(column, TableProblemKind::Name { most: LONGEST_NAME }));
     }
     let value = |column| match cell(column) {
-        "" => Err(wrong(column, Wrong::Missing(column))),
-        text => number(text, comma).ok_or_else(|| wrong(column, Wrong::Number { text: excerpt(text) })),
+        "" => Err(wrong(column, TableProblemKind::Missing(column))),
+        text => number(text, comma).ok_or_else(|| wrong(column, TableProblemKind::Number { text: excerpt(text) })),
     };
     let (start, stop) = (value(Column::Start)?, value(Column::Stop)?);
-    let outside = |column| move |outside| wrong(column, Wrong::Outside { column, outside });
+    let outside = |column| move |outside| wrong(column, TableProblemKind::Outside { column, outside });
     let (start, stop) = edges(options, start, stop, outside(Column::Start), outside(Column::Stop))?;
     let column = if columns.place(Column::Cam).is_some() { at(Column::Cam) } else { at(Column::Name) };
     Ok(Draft { line: line.number, column, program, cam, name, start, stop })
@@ -224,14 +230,14 @@ fn edges(
     stop_outside: impl Fn(Outside) -> TableProblem,
 ) -> Result<(TableEdge, TableEdge), TableProblem> {
     let (scale, range) = (&options.scale, options.range);
-    let edge = |asked, Placed { step, off }| TableEdge { asked, step, off };
+    let edge = |requested, Placed { step, off }| TableEdge { requested, step, off };
     let first = scale.place(start, range).map_err(start_outside)?;
     let span = scale.span(range);
     let one = span / f64::from(range.max(1));
     if scale.is_round(range) && scale.unit() != Unit::Steps && (stop - start - span).abs() < one / 2.0 {
         let step = first.step.checked_sub(1).unwrap_or(range.saturating_sub(1));
         let off = start + first.off + span - one - stop;
-        return Ok((edge(start, first), TableEdge { asked: stop, step, off }));
+        return Ok((edge(start, first), TableEdge { requested: stop, step, off }));
     }
     let last = scale.place(stop, range).map_err(stop_outside)?;
     Ok((edge(start, first), edge(stop, last)))
@@ -260,11 +266,11 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
 
 /// The beginning of a cell.
 fn excerpt(text: &str) -> String {
-    let mut told: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
+    let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {
-        told.push('…');
+        excerpt.push('…');
     }
-    told
+    excerpt
 }
 
 /// A table has room for every cam.

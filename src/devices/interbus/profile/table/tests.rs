@@ -1,6 +1,6 @@
 //! Tables as they come: from spreadsheets, from drawings, with what is wrong in them.
 
-use super::{CamTable, Column, TableNote, TableOptions, TableProblem, Wrong, emit_table};
+use super::{CamTable, Column, TableNote, TableOptions, TableProblem, TableProblemKind, emit_table};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Direction, Image, Names, Outside, Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
@@ -74,7 +74,7 @@ fn what_an_edge_became_and_by_how_much_is_told() {
     assert_eq!(rows(&table), [(1, 0, "feed", 772, 1228), (1, 1, "plain", 1000, 3048)]);
     let row = &table.rows[0];
     assert!((row.start.off + 0.019_531_25).abs() < 1e-9 && (row.stop.off - 0.019_531_25).abs() < 1e-9, "{row:?}");
-    assert_eq!((row.start.asked, row.stop.asked), (350.0, 10.0));
+    assert_eq!((row.start.requested, row.stop.requested), (350.0, 10.0));
     assert_eq!(table.rounded().map(|row| row.line).collect::<Vec<_>>(), [1]);
     assert!((table.most_off() - 0.019_531_25).abs() < 1e-9);
     let table = options(Scale::millimetres(12.5, 0).unwrap(), 10_000).read("feed;100;200,03");
@@ -112,8 +112,8 @@ fn cams_without_a_number_take_what_is_left() {
     assert_eq!((filled[0].names[3].as_str(), filled[0].names[7].as_str()), ("c", ""));
 }
 
-fn problem(line: u64, column: u64, what: Wrong) -> TableProblem {
-    TableProblem { line, column, what }
+fn problem(line: u64, column: u64, what: TableProblemKind) -> TableProblem {
+    TableProblem { line, column, kind: what }
 }
 
 #[test]
@@ -134,16 +134,16 @@ fn what_is_wrong_has_its_line_and_column_and_the_rest_is_taken() {
     let told = |text: &str| text.to_owned();
     let outside = |value| Outside { value, least: 0.0, most: 999.0 };
     let expected = [
-        problem(2, 1, Wrong::Program { text: told("9") }),
-        problem(3, 2, Wrong::Cam { text: told("8") }),
-        problem(4, 2, Wrong::Cam { text: told("x") }),
-        problem(5, 4, Wrong::Number { text: told("one") }),
-        problem(6, 5, Wrong::Missing(Column::Stop)),
-        problem(7, 4, Wrong::Outside { column: Column::Start, outside: outside(1000.0) }),
-        problem(8, 5, Wrong::Outside { column: Column::Stop, outside: outside(-1.0) }),
-        problem(10, 2, Wrong::Twice { program: number(1), cam: cam(5), first: 9 }),
-        problem(11, 1, Wrong::Program { text: told("nan") }),
-        problem(12, 4, Wrong::Number { text: told("inf") }),
+        problem(2, 1, TableProblemKind::Program { text: told("9") }),
+        problem(3, 2, TableProblemKind::Cam { text: told("8") }),
+        problem(4, 2, TableProblemKind::Cam { text: told("x") }),
+        problem(5, 4, TableProblemKind::Number { text: told("one") }),
+        problem(6, 5, TableProblemKind::Missing(Column::Stop)),
+        problem(7, 4, TableProblemKind::Outside { column: Column::Start, outside: outside(1000.0) }),
+        problem(8, 5, TableProblemKind::Outside { column: Column::Stop, outside: outside(-1.0) }),
+        problem(10, 2, TableProblemKind::Twice { program: number(1), cam: cam(5), first: 9 }),
+        problem(11, 1, TableProblemKind::Program { text: told("nan") }),
+        problem(12, 4, TableProblemKind::Number { text: told("inf") }),
     ];
     assert_eq!(table.problems, expected);
     assert_eq!(rows(&table), [(1, 5, "fine", 1, 2)]);
@@ -154,20 +154,20 @@ fn nine_cams_are_one_too_many_for_a_program() {
     let text: String = (0..9).map(|row| format!("track {row};{};{}\n", row * 10, row * 10 + 5)).collect();
     let table = steps(&text);
     assert_eq!(table.rows.len(), 8);
-    assert_eq!(table.problems, [problem(9, 1, Wrong::Full(number(1)))]);
+    assert_eq!(table.problems, [problem(9, 1, TableProblemKind::Full(number(1)))]);
 }
 
 #[test]
 fn tables_of_nothing_say_so() {
     for text in ["", "\n \n", ";;\n", "name;start;stop\n"] {
-        assert_eq!(steps(text).problems[0].what, Wrong::Empty, "{text:?}");
+        assert_eq!(steps(text).problems[0].kind, TableProblemKind::Empty, "{text:?}");
     }
     let table = steps("name;start\nfeed;5\n");
-    assert_eq!(table.problems, [problem(1, 1, Wrong::NoColumn(Column::Stop))]);
+    assert_eq!(table.problems, [problem(1, 1, TableProblemKind::NoColumn(Column::Stop))]);
     let long = format!("{};1;2", "n".repeat(41));
-    assert_eq!(steps(&long).problems, [problem(1, 1, Wrong::Name { most: 40 })]);
+    assert_eq!(steps(&long).problems, [problem(1, 1, TableProblemKind::Name { most: 40 })]);
     let long = steps(&format!("1;{};2", "x".repeat(100)));
-    let Wrong::Number { text } = &long.problems[0].what else { panic!("{:?}", long.problems) };
+    let TableProblemKind::Number { text } = &long.problems[0].kind else { panic!("{:?}", long.problems) };
     assert_eq!(text.chars().count(), 25, "only the beginning is told");
 }
 

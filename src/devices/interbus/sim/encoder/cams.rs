@@ -1,6 +1,6 @@
 //! Cam words that change the running program (reference 5).
 
-use super::{Activity, Encoder, Fault, INVALID, Says};
+use super::{Activity, Encoder, Fault, INVALID, InWordContent};
 use crate::devices::interbus::protocol::{CamNumber, Gear, Program, StartupMode, Value};
 use crate::devices::interbus::sim::memory::{Stored, cam_mut};
 use crate::units::Moment;
@@ -48,8 +48,8 @@ impl Encoder {
     /// A read-out ends. What was set and not stored keeps the encoder setting: position and outputs do not count.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
-            None => self.turn_to(Activity::Running, Says::Live),
-            Some(_) => self.turn_to(Activity::Setting, Says::Word(INVALID)),
+            None => self.turn_to(Activity::Running, InWordContent::Live),
+            Some(_) => self.turn_to(Activity::Setting, InWordContent::Word(INVALID)),
         }
     }
 }

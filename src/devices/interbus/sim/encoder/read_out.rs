@@ -1,6 +1,6 @@
 //! Read-outs (reference 3 and 5).
 
-use super::{Activity, Encoder, Says};
+use super::{Activity, Encoder, InWordContent};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Command, ReadOut, StartupMode, Value};
 use crate::units::Moment;
 
@@ -37,7 +37,7 @@ impl Encoder {
     /// A word that asks for a cam, a register or a number that there is not.
     pub(super) fn show(&mut self, value: Option<u32>) {
         let word = value.map_or(UNKNOWN, |value| VALUE | Value::of_word(value).get());
-        self.turn_to(Activity::ReadingOut, Says::Word(word));
+        self.turn_to(Activity::ReadingOut, InWordContent::Word(word));
     }
 
     fn value(&self, now: Moment, read_out: ReadOut) -> Option<u32> {

@@ -33,7 +33,7 @@ proptest! {
         }
         // Without power there is what was stored, and nothing else.
         master.encoder.disconnect();
-        prop_assert!(master.encoder.memory() == master.encoder.kept());
+        prop_assert!(master.encoder.memory() == master.encoder.stored());
     }
 
     #[test]

@@ -28,7 +28,7 @@ fn the_example_of_the_manual() {
     ]);
     assert_eq!([20, 21, 531, 532].map(|position| outputs(&mut master, position)), [0, 8, 8, 0]);
     let expected = Cam { start: Value::new(0x15).unwrap(), stop: Value::new(0x213).unwrap() };
-    let kept = master.encoder.kept().program(program(1));
+    let kept = master.encoder.stored().program(program(1));
     assert_eq!((kept.cams[3], kept.mask, master.encoder.stores()), (Some(expected), 8, 4));
 }
 

@@ -3,7 +3,7 @@
 use crate::analysis::capture::Delimiter;
 use crate::app::Text;
 use crate::devices::interbus::profile::{
-    CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableRow, Unit, Wrong,
+    CamTable, Column, Scale, TableEdge, TableNote, TableProblem, TableProblemKind, TableRow, Unit,
 };
 use crate::devices::interbus::state::TEXTS;
 
@@ -24,30 +24,30 @@ pub fn layout(table: &CamTable) -> Text {
 /// Returns the text of a problem in a table, with its location.
 pub fn problem(problem: &TableProblem) -> Text {
     let text = TEXTS.text("camtable.problem").with("line", problem.line).with("column", problem.column);
-    text.with_text("what", wrong(&problem.what))
+    text.with_text("what", wrong(&problem.kind))
 }
 
-fn wrong(wrong: &Wrong) -> Text {
+fn wrong(wrong: &TableProblemKind) -> Text {
     match wrong {
-        Wrong::Empty => TEXTS.text("camtable.empty"),
-        Wrong::NoColumn(own) => TEXTS.text("camtable.no_column").with_text("column", column(*own)),
-        Wrong::Missing(own) => TEXTS.text("camtable.missing").with_text("column", column(*own)),
-        Wrong::Number { text } => TEXTS.text("camtable.number").with("text", text),
-        Wrong::Program { text } => TEXTS.text("camtable.program").with("text", text),
-        Wrong::Cam { text } => TEXTS.text("camtable.cam").with("text", text),
-        Wrong::Outside { column: own, outside } => {
+        TableProblemKind::Empty => TEXTS.text("camtable.empty"),
+        TableProblemKind::NoColumn(own) => TEXTS.text("camtable.no_column").with_text("column", column(*own)),
+        TableProblemKind::Missing(own) => TEXTS.text("camtable.missing").with_text("column", column(*own)),
+        TableProblemKind::Number { text } => TEXTS.text("camtable.number").with("text", text),
+        TableProblemKind::Program { text } => TEXTS.text("camtable.program").with("text", text),
+        TableProblemKind::Cam { text } => TEXTS.text("camtable.cam").with("text", text),
+        TableProblemKind::Outside { column: own, outside } => {
             let decimals = |value: f64| if value.fract() == 0.0 { 0 } else { 3 };
             let text = TEXTS.text("camtable.outside").with_text("column", column(*own));
             let text = text.with_number("value", outside.value, decimals(outside.value));
             let text = text.with_number("least", outside.least, decimals(outside.least));
             text.with_number("most", outside.most, decimals(outside.most))
         }
-        Wrong::Full(program) => TEXTS.text("camtable.full").with("program", program.get()),
-        Wrong::Twice { program, cam, first } => {
+        TableProblemKind::Full(program) => TEXTS.text("camtable.full").with("program", program.get()),
+        TableProblemKind::Twice { program, cam, first } => {
             let text = TEXTS.text("camtable.twice").with("program", program.get()).with("cam", cam.get());
             text.with("first", first)
         }
-        Wrong::Name { most } => TEXTS.text("camtable.name").with("most", most),
+        TableProblemKind::Name { most } => TEXTS.text("camtable.name").with("most", most),
     }
 }
 
@@ -79,8 +79,8 @@ pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
     // As in the table: rounding here would hide the effect.
-    let asked = decimals.max(written_decimals(edge.asked));
-    let text = TEXTS.text(id).with_number("asked", edge.asked, asked).with("unit", scale.unit().symbol());
+    let requested = decimals.max(written_decimals(edge.requested));
+    let text = TEXTS.text(id).with_number("asked", edge.requested, requested).with("unit", scale.unit().symbol());
     let off = TEXTS.text(if edge.off < 0.0 { "camtable.less" } else { "camtable.more" });
     let off = off.with_number("off", edge.off.abs(), decimals + 1).with("unit", scale.unit().symbol());
     text.with("step", edge.step).with_text("off", off)

@@ -70,31 +70,31 @@ pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
 
 /// Returns the text of an indicator: whether the output is on, and a difference from the encoder.
 pub fn lamp(lamp: Lamp) -> Text {
-    let says = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
+    let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
         (None, None) => TEXTS.text("cams.lamp_unknown"),
         (Some(own), Some(simulated)) if own != simulated => {
-            TEXTS.text("cams.lamp_differs").with_text("own", says(own)).with_text("simulated", says(simulated))
+            TEXTS.text("cams.lamp_differs").with_text("own", state(own)).with_text("simulated", state(simulated))
         }
-        (Some(own), _) => TEXTS.text("cams.lamp_own").with_text("own", says(own)),
-        (None, Some(simulated)) => TEXTS.text("cams.lamp_simulated").with_text("simulated", says(simulated)),
+        (Some(own), _) => TEXTS.text("cams.lamp_own").with_text("own", state(own)),
+        (None, Some(simulated)) => TEXTS.text("cams.lamp_simulated").with_text("simulated", state(simulated)),
     }
 }
 
 /// Returns the problems in words; the cams of a program that are beyond the measuring range are combined.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
-    let mut told = Vec::new();
+    let mut named = Vec::new();
     let mut texts = Vec::new();
     for own in marks {
         let Some(program) = beyond_in(own) else {
             texts.push(mark(own));
             continue;
         };
-        if told.contains(&program) {
+        if named.contains(&program) {
             continue;
         }
-        told.push(program);
+        named.push(program);
         let cams = marks.iter().filter_map(|other| match *other {
             Mark::Beyond { program: its, cam, .. } if its == program => Some(cam.get().to_string()),
             _ => None,

@@ -25,8 +25,8 @@ fn step(step: CheckStep) -> Text {
 
 fn finding(finding: &CheckFinding) -> Text {
     match finding {
-        CheckFinding::Replies { asked, slowest_ms } => {
-            TEXTS.text("ib_check.replies").with("asked", asked).with("slowest", slowest_ms)
+        CheckFinding::Replies { requested, slowest_ms } => {
+            TEXTS.text("ib_check.replies").with("asked", requested).with("slowest", slowest_ms)
         }
         CheckFinding::OrderFits => TEXTS.text("ib_check.order_fits"),
         CheckFinding::OrderSwapped { input, swapped } => {
@@ -48,8 +48,8 @@ fn finding(finding: &CheckFinding) -> Text {
         }
         CheckFinding::StepsMinusOne => TEXTS.text("ib_check.steps_minus_one"),
         CheckFinding::Mode(mode) => TEXTS.text("ib_check.mode").with_text("mode", startup(*mode)),
-        CheckFinding::ReadOuts { asked, each_ms } => {
-            TEXTS.text("ib_check.read_outs").with("asked", asked).with("each", each_ms)
+        CheckFinding::ReadOuts { requested, each_ms } => {
+            TEXTS.text("ib_check.read_outs").with("asked", requested).with("each", each_ms)
         }
         CheckFinding::Failed(error) => encoder(error),
         CheckFinding::Temperature(tenths) => {

@@ -5,14 +5,14 @@ use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};
 use crate::devices::interbus::state::TEXTS;
 
 /// Returns the text of a request to a gateway, as a part of a sentence.
-pub(super) fn asked(asked: RequestedItem) -> Text {
-    let id = match asked {
+pub(super) fn item_text(requested: RequestedItem) -> Text {
+    let id = match requested {
         RequestedItem::Input { .. } => "ib_asked.input",
         RequestedItem::Output { .. } => "ib_asked.output",
         RequestedItem::Write { .. } => "ib_asked.write",
     };
-    let text = TEXTS.text(id).with("register", asked.register());
-    match asked {
+    let text = TEXTS.text(id).with("register", requested.register());
+    match requested {
         RequestedItem::Write { word, .. } => text.with("word", super::word(word)),
         RequestedItem::Input { .. } | RequestedItem::Output { .. } => text,
     }
@@ -52,8 +52,10 @@ pub fn exception(exception: Exception) -> Text {
 pub fn damage(damage: Damage) -> Text {
     match damage {
         Damage::NoFrame { bytes } => TEXTS.text("ib_damage.no_frame").with("bytes", bytes),
-        Damage::Unit { asked, got } => TEXTS.text("ib_damage.unit").with("asked", asked).with("got", got),
-        Damage::Function { asked, got } => TEXTS.text("ib_damage.function").with("asked", asked).with("got", got),
+        Damage::Unit { requested, got } => TEXTS.text("ib_damage.unit").with("asked", requested).with("got", got),
+        Damage::Function { requested, got } => {
+            TEXTS.text("ib_damage.function").with("asked", requested).with("got", got)
+        }
         Damage::Registers => TEXTS.text("ib_damage.registers"),
     }
 }

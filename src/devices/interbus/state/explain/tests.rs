@@ -40,16 +40,19 @@ fn says(text: &Text, facts: &[&str]) {
 
 #[test]
 fn every_error_of_an_encoder_says_what_to_do() {
-    let asked = RequestedItem::Input { register: 16 };
+    let requested = RequestedItem::Input { register: 16 };
     let standing = |found, is| LeftState { out: 0x2080_0003, parameterising: true, found, is };
     let set = Command::Set(Parameter::Steps, value(8193));
     let time_out = |awaited| Error::TimeOut { awaited, sent: 0x0200_2000, input: 0x12, milliseconds: 2000 };
     let cases = [
-        (Error::NoReply { asked, tries: 3 }, vec!["16", "3"]),
-        (Error::Damaged { asked, tries: 5, cause: Damage::Unit { asked: 1, got: 2 } }, vec!["5", "unit 2", "1"]),
-        (Error::Damaged { asked, tries: 5, cause: Damage::NoFrame { bytes: 7 } }, vec!["7"]),
-        (Error::Damaged { asked, tries: 5, cause: Damage::Function { asked: 4, got: 3 } }, vec!["3", "4"]),
-        (Error::Damaged { asked, tries: 5, cause: Damage::Registers }, vec![]),
+        (Error::NoReply { requested, tries: 3 }, vec!["16", "3"]),
+        (
+            Error::Damaged { requested, tries: 5, cause: Damage::Unit { requested: 1, got: 2 } },
+            vec!["5", "unit 2", "1"],
+        ),
+        (Error::Damaged { requested, tries: 5, cause: Damage::NoFrame { bytes: 7 } }, vec!["7"]),
+        (Error::Damaged { requested, tries: 5, cause: Damage::Function { requested: 4, got: 3 } }, vec!["3", "4"]),
+        (Error::Damaged { requested, tries: 5, cause: Damage::Registers }, vec![]),
         (Error::NeverSilent, vec![]),
         (Error::Illegal(Refused { command: Command::Preset, mode: Mode::Cam }), vec!["0x40000000"]),
         (Error::Refused { sent: set, error: error_word(0x8200_0000) }, vec!["0x02002001", "0x82000000"]),
@@ -76,7 +79,7 @@ fn every_error_of_an_encoder_says_what_to_do() {
         (Error::Changed { item: "shift".to_owned() }, vec!["shift"]),
         (
             Error::NotLedBack {
-                cause: Box::new(Error::NoReply { asked, tries: 3 }),
+                cause: Box::new(Error::NoReply { requested, tries: 3 }),
                 standing: standing(Some(program(3)), Some(StartupMode::K3)),
             },
             vec!["16", "0x20800003", "3", "K3"],
@@ -91,10 +94,10 @@ fn every_error_of_an_encoder_says_what_to_do() {
 /// Modbus application protocol 1.1b3, chapter 7.
 #[test]
 fn every_exception_of_a_gateway_is_told_with_its_code() {
-    let asked = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
+    let requested = RequestedItem::Write { register: 2048, word: 0x4000_0000 };
     for code in [1, 2, 3, 4, 5, 6, 8, 0xA, 0xB, 0x7F] {
         let exception = Exception::new(code);
-        let text = encoder(&Error::Exception { asked, exception });
+        let text = encoder(&Error::Exception { requested, exception });
         says(&text, &[&format!("0x{code:02X}"), "2048", "0x40000000"]);
         assert!(text.words(English).contains(exception.name()) && !text.words(German).contains(exception.name()));
     }
@@ -231,7 +234,7 @@ fn a_wire_that_is_gone_is_a_loss_and_silence_is_none() {
     for error in [gone(), Error::NotLedBack { cause: Box::new(gone()), standing }] {
         assert_eq!(loss(&JobError::Device(error)).unwrap().id(), "link.lost");
     }
-    let silent = JobError::Device(Error::NoReply { asked: RequestedItem::Input { register: 0 }, tries: 3 });
+    let silent = JobError::Device(Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert!(loss(&silent).is_none() && is_silence(&silent));
     assert!(!is_silence(&JobError::Device(Error::NeverSilent)));
 }

@@ -1,6 +1,6 @@
 //! The differences of the edited values from the encoder or the profile.
 
-use super::{Staged, Wanted};
+use super::{EditedValues, Staged};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
 
@@ -45,7 +45,7 @@ impl ValueId {
     }
 }
 
-impl Wanted {
+impl EditedValues {
     /// The value of something; `None`: nothing is known of it.
     pub fn value(&self, place: ValueId) -> Option<u32> {
         match place {

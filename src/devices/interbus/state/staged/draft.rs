@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Ground, Staged, Wanted, edit};
+use super::{BaseSource, EditedValues, Staged, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
@@ -52,10 +52,10 @@ impl Staged {
             return;
         };
         for kept in draft {
-            if kept.is_of_unread(&wanted, self.ground) {
+            if kept.is_of_unread(&wanted, self.base_source) {
                 self.waiting.push(kept);
             } else {
-                kept.put(&mut wanted, self.ground);
+                kept.put(&mut wanted, self.base_source);
             }
         }
         self.step(wanted);
@@ -68,7 +68,7 @@ impl Staged {
     }
 }
 
-fn keep_parameters(base: &Wanted, wanted: &Wanted, kept: &mut Vec<SavedEdit>) {
+fn keep_parameters(base: &EditedValues, wanted: &EditedValues, kept: &mut Vec<SavedEdit>) {
     let (was, is) = (&base.image.parameters, &wanted.image.parameters);
     if (was.steps, was.revolutions) != (is.steps, is.revolutions) {
         kept.push(SavedEdit::Gear(is.steps, is.revolutions));
@@ -81,9 +81,9 @@ fn keep_parameters(base: &Wanted, wanted: &Wanted, kept: &mut Vec<SavedEdit>) {
     kept.extend(shift.map(|shift| SavedEdit::Shift(shift.get())));
 }
 
-fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &mut Vec<SavedEdit>) {
+fn keep_program(base: &EditedValues, wanted: &EditedValues, program: ProgramNumber, kept: &mut Vec<SavedEdit>) {
     let number = program.get();
-    let name = |names: &Wanted| names.names.program(program).to_owned();
+    let name = |names: &EditedValues| names.names.program(program).to_owned();
     if name(base) != name(wanted) {
         kept.push(SavedEdit::ProgramName(number, name(wanted)));
     }
@@ -109,7 +109,7 @@ fn keep_program(base: &Wanted, wanted: &Wanted, program: ProgramNumber, kept: &m
 impl SavedEdit {
     /// Applies it to the edited values, unless a number is invalid. Values beyond the measuring range are applied as
     /// they were left.
-    fn put(self, wanted: &mut Wanted, ground: Ground) {
+    fn put(self, wanted: &mut EditedValues, ground: BaseSource) {
         let parameters = &mut wanted.image.parameters;
         match self {
             SavedEdit::Gear(steps, revolutions) => {
@@ -174,8 +174,8 @@ impl SavedEdit {
     }
 
     /// Returns whether the changed value was not read. A name needs no reading.
-    fn is_of_unread(&self, wanted: &Wanted, ground: Ground) -> bool {
-        ground == Ground::Encoder
+    fn is_of_unread(&self, wanted: &EditedValues, ground: BaseSource) -> bool {
+        ground == BaseSource::Encoder
             && match self {
                 SavedEdit::Shift(_) => wanted.image.shift.is_none(),
                 SavedEdit::Cam(..) | SavedEdit::NoCam(..) | SavedEdit::On(..) => {

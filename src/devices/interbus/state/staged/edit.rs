@@ -1,6 +1,6 @@
 //! The edits: what each makes of what is wanted, and why it may not be.
 
-use super::{Ground, Wanted};
+use super::{BaseSource, EditedValues};
 use crate::devices::interbus::profile::{Direction, Edge, Filled, LONGEST_NAME};
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
@@ -140,7 +140,7 @@ pub enum EditError {
 }
 
 /// Returns the values after an edit.
-pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wanted, EditError> {
+pub(super) fn edited(wanted: &EditedValues, edit: &Edit, ground: BaseSource) -> Result<EditedValues, EditError> {
     let mut after = wanted.clone();
     let parameters = &mut after.image.parameters;
     match *edit {
@@ -151,7 +151,7 @@ pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wan
         Edit::Preset(to) => parameters.preset = within(Parameter::Preset, to, last(wanted))?,
         Edit::ZeroShift(to) => parameters.zero_shift = within(Parameter::ZeroShift, to, last(wanted))?,
         Edit::Shift(shift) => {
-            if ground == Ground::Encoder && wanted.image.shift.is_none() {
+            if ground == BaseSource::Encoder && wanted.image.shift.is_none() {
                 return Err(EditError::ShiftNotRead);
             }
             after.image.shift = Some(shift);
@@ -213,7 +213,7 @@ pub(super) fn edited(wanted: &Wanted, edit: &Edit, ground: Ground) -> Result<Wan
     Ok(after)
 }
 
-fn set_gear(after: &mut Wanted, steps: u32, revolutions: u32) -> Result<(), EditError> {
+fn set_gear(after: &mut EditedValues, steps: u32, revolutions: u32) -> Result<(), EditError> {
     let gear = Gear::new(steps, revolutions)?;
     after.image.parameters.steps = gear.steps();
     after.image.parameters.revolutions = gear.turns();
@@ -225,30 +225,30 @@ fn within(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError>
 }
 
 /// The last position of the measuring range.
-const fn last(wanted: &Wanted) -> u32 {
+const fn last(wanted: &EditedValues) -> u32 {
     wanted.range().saturating_sub(1)
 }
 
-fn position(edge: Edge, to: u32, wanted: &Wanted) -> Result<Value, EditError> {
+fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditError> {
     let last = last(wanted);
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
 /// A program to be changed. A profile begins to say one with its first edit.
 pub(super) fn program_mut(
-    after: &mut Wanted,
+    after: &mut EditedValues,
     number: ProgramNumber,
-    ground: Ground,
+    ground: BaseSource,
 ) -> Result<&mut Program, EditError> {
     let own = after.image.program_mut(number).ok_or(EditError::NotRead(number))?;
     match ground {
-        Ground::Encoder => own.as_mut().ok_or(EditError::NotRead(number)),
-        Ground::Profile => Ok(own.get_or_insert_default()),
+        BaseSource::Encoder => own.as_mut().ok_or(EditError::NotRead(number)),
+        BaseSource::Profile => Ok(own.get_or_insert_default()),
     }
 }
 
 /// Moves every cam of a program.
-fn move_cams(after: &mut Wanted, program: ProgramNumber, to: impl Fn(Cam) -> Cam) -> Result<(), EditError> {
+fn move_cams(after: &mut EditedValues, program: ProgramNumber, to: impl Fn(Cam) -> Cam) -> Result<(), EditError> {
     let last = last(after);
     let own = after.image.program_mut(program).and_then(Option::as_mut).ok_or(EditError::NotRead(program))?;
     let mask = own.mask;
@@ -263,7 +263,7 @@ fn move_cams(after: &mut Wanted, program: ProgramNumber, to: impl Fn(Cam) -> Cam
     Ok(())
 }
 
-fn fill(after: &mut Wanted, filled: &Filled, ground: Ground) -> Result<(), EditError> {
+fn fill(after: &mut EditedValues, filled: &Filled, ground: BaseSource) -> Result<(), EditError> {
     for cam in filled.cams.iter().flatten() {
         position(Edge::Start, cam.start.get(), after)?;
         position(Edge::Stop, cam.stop.get(), after)?;

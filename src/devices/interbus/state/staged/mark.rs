@@ -1,6 +1,6 @@
 //! The problems of the edited values, with their location.
 
-use super::Wanted;
+use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
 
@@ -56,7 +56,7 @@ impl Mark {
     }
 }
 
-impl Wanted {
+impl EditedValues {
     /// All that is not right in it.
     pub fn marks(&self) -> Vec<Mark> {
         let parameters = &self.image.parameters;

@@ -1,6 +1,6 @@
 //! Merges edits with new values of the encoder or the profile.
 
-use super::Wanted;
+use super::EditedValues;
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber};
 
@@ -14,7 +14,7 @@ pub(super) fn over(known: &Image, read: Image) -> Image {
 }
 
 /// Keeps what was changed against what was said before; all else is as it is said now.
-pub(super) fn rebase(own: &mut Wanted, before: &Wanted, now: &Wanted) {
+pub(super) fn rebase(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
     follow(&mut parameters.steps, &was.steps, &is.steps);
     follow(&mut parameters.revolutions, &was.revolutions, &is.revolutions);

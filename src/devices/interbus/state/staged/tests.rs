@@ -1,6 +1,6 @@
 //! Edits, steps and drafts of a K3 encoder.
 
-use super::{Differs, Edit, EditError, Mark, SavedEdit, Staged, ValueId, Wanted};
+use super::{Differs, Edit, EditError, EditedValues, Mark, SavedEdit, Staged, ValueId};
 use crate::app::PendingEdits;
 use crate::devices::interbus::profile::{Direction, Edge, Filled, Image, Names, Parameters};
 use crate::devices::interbus::protocol::{
@@ -282,7 +282,7 @@ fn a_profile_can_be_made_to_say_what_it_does_not_say() {
     let mut other = Staged::of_profile(Image::of(parameters(1000, 1)), Names::default());
     other.take_draft(kept);
     assert_eq!(other.wanted(), staged.wanted());
-    let Wanted { image, names } = staged.wanted().unwrap().clone();
+    let EditedValues { image, names } = staged.wanted().unwrap().clone();
     staged.saved(image, names);
     assert!(!staged.is_dirty() && staged.undo() && staged.is_dirty(), "what was saved can still be undone");
 }

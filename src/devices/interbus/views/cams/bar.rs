@@ -30,8 +30,8 @@ pub(super) fn bar_ui(
     ui.horizontal_wrapped(|ui| {
         ui.label(theme.label(say(theme, "ib_cams.program")));
         for own in ProgramNumber::all() {
-            let says = encoder.staged.program(own);
-            let ink = match says {
+            let content = encoder.staged.program(own);
+            let ink = match content {
                 None => theme.palette.muted,
                 _ if marks.iter().any(|mark| mark.program() == Some(own)) => theme.palette.warn,
                 _ if encoder.staged.is_program_edited(own) => theme.palette.staged,

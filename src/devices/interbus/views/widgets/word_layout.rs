@@ -206,10 +206,10 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     let cells = Cells::new(ui.available_width());
     let (outer, response) = ui.allocate_exact_size(cells.size(), Sense::hover());
     let cells = cells.at(outer.min);
-    let told: Vec<String> = layout.groups().iter().map(|group| tells(theme, layout, *group)).collect();
+    let values: Vec<String> = layout.groups().iter().map(|group| tells(theme, layout, *group)).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, layout.label);
-        info.current_text_value = Some(told.join(", "));
+        info.current_text_value = Some(values.join(", "));
         info
     });
     let base = response.id;
@@ -218,7 +218,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
         let own = ui.interact(cells.word(bit), base.with(bit), Sense::hover());
         own.on_hover_text(theme.words(&layout.says(bit)));
     }
-    for (group, words) in layout.groups().into_iter().zip(&told) {
+    for (group, words) in layout.groups().into_iter().zip(&values) {
         name(ui, theme, layout, &cells, group);
         let Some(run) = cells.runs(group.high, group.low).into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))
         else {

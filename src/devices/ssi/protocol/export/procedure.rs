@@ -43,7 +43,7 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    fn say(&mut self, text: &str) {
+    fn comment(&mut self, text: &str) {
         self.lines.push(self.dialect.comment(text));
     }
 
@@ -67,7 +67,7 @@ impl Writer<'_> {
     fn frame(&mut self, layout: &Layout) {
         let d = self.dialect;
         let all = ones(layout.clocks());
-        self.say("the frame as it was sent");
+        self.comment("the frame as it was sent");
         self.set("word", &d.and("frame", &d.hex(all)));
         self.set("flags", &d.hex(0));
         self.flag(&self.is("word", all), Flags::ONES);
@@ -79,7 +79,7 @@ impl Writer<'_> {
             self.set("word", &d.xor("word", &d.hex(all)));
         }
         if let Some(repeat) = layout.descriptor().repeat {
-            self.say("its repetition");
+            self.comment("its repetition");
             let behind = layout.clocks() - repeat.word;
             let first = d.left(&d.right("word", behind), behind);
             self.set("fold", &d.xor(&d.or(&first, &d.right(&first, repeat.word + repeat.gap)), "word"));
@@ -94,7 +94,7 @@ impl Writer<'_> {
         let d = self.dialect;
         let descriptor = layout.descriptor();
         if let Some(parity) = descriptor.parity {
-            self.say("parity");
+            self.comment("parity");
             let (bit, before) = layout.parity;
             self.set("fold", &d.and("word", &d.hex(bit | before)));
             for bits in [32, 16, 8, 4, 2, 1] {
@@ -107,12 +107,12 @@ impl Writer<'_> {
             self.ungray_inside(layout);
         }
         for (index, (bit, own)) in layout.errors.iter().zip(&descriptor.errors).enumerate() {
-            self.say(&own.name);
+            self.comment(&own.name);
             let level = if own.active_low { 0 } else { *bit };
             self.flag(&d.equal(&d.and("word", &d.hex(*bit)), &d.hex(level)), Flags::error(index));
         }
         if descriptor.shift_right {
-            self.say("back by the clock by which it comes later");
+            self.comment("back by the clock by which it comes later");
             let top = ones(1) << (descriptor.area - 1) << layout.behind_area;
             self.flag(&self.any_of("word", top), Flags::PADDING);
             let area = ones(descriptor.area) << layout.behind_area;
@@ -126,7 +126,7 @@ impl Writer<'_> {
             }
         }
         if layout.zeros != 0 {
-            self.say("what is always 0");
+            self.comment("what is always 0");
             self.flag(&self.any_of("word", layout.zeros), Flags::PADDING);
         }
     }
@@ -135,7 +135,7 @@ impl Writer<'_> {
     fn ungray_inside(&mut self, layout: &Layout) {
         let d = self.dialect;
         let (bits, behind) = layout.gray;
-        self.say("Gray, zeros included");
+        self.comment("Gray, zeros included");
         self.set("fold", &d.and(&d.right("word", behind), &d.hex(ones(bits))));
         self.ungray("fold", bits);
         let rest = d.and("word", &d.hex(!(ones(bits) << behind)));
@@ -151,7 +151,7 @@ impl Writer<'_> {
     fn code(&mut self, layout: &Layout) {
         let d = self.dialect;
         let coding = layout.coding();
-        self.say("the position's bits");
+        self.comment("the position's bits");
         let part = |part: &crate::devices::ssi::protocol::layout::Part| {
             d.left(&d.and(&d.right("word", part.in_word), &d.hex(part.mask)), part.in_code)
         };
@@ -159,7 +159,7 @@ impl Writer<'_> {
         let code = if high.mask == 0 { part(low) } else { d.or(&part(high), &part(low)) };
         self.set("code", &code);
         if matches!(coding.code(), Code::Gray | Code::GrayExcess) {
-            self.say("Gray");
+            self.comment("Gray");
             self.ungray("code", coding.bits());
         }
         self.set("position", &d.number("code"));
@@ -171,7 +171,7 @@ impl Writer<'_> {
                 self.set("position", &format!("position - {offset}"));
             }
             Code::Bcd => {
-                self.say("BCD");
+                self.comment("BCD");
                 self.set("position", "0");
                 for digit in (0..coding.bits() / 4).rev() {
                     self.set("digit", &d.and(&d.right("code", 4 * digit), &d.hex(0xF)));
@@ -196,7 +196,7 @@ impl Writer<'_> {
             Range::Bits { singleturn, .. } => Some(1_u64 << singleturn),
             Range::Steps { per_turn, .. } => Some(u64::from(per_turn)),
             Range::RoundAxis { steps, revolutions: Fraction { numerator, denominator } } => {
-                self.say(&format!("{steps} steps over {numerator}/{denominator} turns"));
+                self.comment(&format!("{steps} steps over {numerator}/{denominator} turns"));
                 let turn = u64::from(steps) * u64::from(denominator);
                 self.set("turns", &d.divided(&format!("position * {numerator}"), turn));
                 let first = d.divided(&format!("turns * {turn} + {}", numerator - 1), numerator.into());
@@ -204,14 +204,14 @@ impl Writer<'_> {
                 None
             }
             Range::Length { step_nanometres, .. } => {
-                self.say(&format!("a length in steps of {step_nanometres} nm"));
+                self.comment(&format!("a length in steps of {step_nanometres} nm"));
                 self.set("turns", "0");
                 self.set("steps", "position");
                 None
             }
         };
         if let Some(per_turn) = per_turn {
-            self.say("turns and steps within one");
+            self.comment("turns and steps within one");
             self.set("turns", &d.divided("position", per_turn));
             self.set("steps", &d.rest("position", per_turn));
         }
@@ -220,7 +220,7 @@ impl Writer<'_> {
         let stuck = Flags::ONES.with(Flags::ZEROS);
         let invalid = self.any_of("flags", layout.invalid().0.into());
         let no_position = d.both(&self.any_of("flags", stuck.0.into()), &self.any_of("flags", none.0.into()));
-        self.say("an error, or a line that is stuck");
+        self.comment("an error, or a line that is stuck");
         self.set("valid", &d.both(&d.negated(&invalid), &d.negated(&no_position)));
     }
 }

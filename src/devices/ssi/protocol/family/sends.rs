@@ -27,7 +27,7 @@ impl Family {
     /// The settings with which this family sends just this frame, as few as possible; `None`: it cannot. Direction and
     /// preset are not in a frame, and are left as delivered.
     pub fn settings_of(&self, frame: &Descriptor) -> Option<Settings> {
-        let asked = self.asked(frame);
+        let asked = self.shown_settings(frame);
         let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
         let places = [ErrorPlace::None, ErrorPlace::Fix, ErrorPlace::Following];
         let tried = aligns.into_iter().flat_map(|align| places.map(|place| (align, place)));
@@ -52,7 +52,7 @@ impl Family {
     }
 
     /// Returns the settings that a frame shows: all but the alignment of its bits.
-    fn asked(&self, frame: &Descriptor) -> Settings {
+    fn shown_settings(&self, frame: &Descriptor) -> Settings {
         let asked = Settings {
             code: Some(frame.code),
             coded: Some(frame.coded),

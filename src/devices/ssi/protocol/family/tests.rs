@@ -41,7 +41,7 @@ fn a_broken_family_is_told_where() {
         let (families, errors) = Families::read([("own.ron", own.as_str()), Families::BUILT_IN[1]]);
         let [error] = errors.as_slice() else { panic!("{new}: {errors:?}") };
         assert_eq!((error.file.as_str(), error.line), ("own.ron", line), "{new}: {error}");
-        assert!(error.what.to_string().starts_with(what), "{error}");
+        assert!(error.problem.to_string().starts_with(what), "{error}");
         assert_eq!(families.iter().map(|family| family.key.as_str()).collect::<Vec<_>>(), ["ahm36"]);
     }
 }

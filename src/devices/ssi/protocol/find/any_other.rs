@@ -1,10 +1,10 @@
 //! An encoder of no family: usual widths, and what is always 1, spoke or is not explained as bits of their own.
 
-use super::ends::unusual;
+use super::code_ends::unusual;
+use super::frame_set::FrameSet;
 use super::members::{ANY_OTHER, EXCHANGED, PADDED, Take, goes_over_zero, sent_parity, sum};
 use super::plausible::{shares, widths};
 use super::reading::Read;
-use super::seen::Seen;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
 use crate::devices::ssi::protocol::layout::Layout;
@@ -22,7 +22,7 @@ const PARITY: f64 = 0.5;
 pub(super) fn any_other(
     take: &mut Take<'_>,
     read: &Read,
-    words: &Seen,
+    words: &FrameSet,
     (clocks, repeat): (u8, Option<Repeat>),
     inverted: bool,
 ) {
@@ -108,7 +108,7 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
 
 /// Bits beside the position: those that are always 1 (nothing may go over a bit that is always 0), those that spoke, and
 /// those that are not explained.
-fn fixed_bits(words: &Seen, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
+fn fixed_bits(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;
     let mut bits = Vec::new();
     for (clock, bit) in words.bits() {

@@ -1,10 +1,10 @@
 //! The layouts that read frames in a certain way: what families can be set to, and any other of usual widths.
 
 use super::any_other::any_other;
+use super::frame_set::FrameSet;
 use super::of_family::of_family;
 use super::probe::{Probe, Trial};
 use super::reading::{Read, Reading};
-use super::seen::Seen;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
@@ -34,7 +34,7 @@ pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 
 pub(super) fn members(
     probe: &Probe<'_>,
     read: &Read,
-    words: &Seen,
+    words: &FrameSet,
     repeat: Option<Repeat>,
     families: Option<&Families>,
 ) -> Vec<Member> {

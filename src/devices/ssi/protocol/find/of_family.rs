@@ -1,9 +1,9 @@
 //! Finds the settings of a family whose position ends where the reading does.
 
+use super::frame_set::FrameSet;
 use super::members::{EXCHANGED, PADDED, Take, goes_over_zero, sum};
 use super::plausible::widths;
 use super::reading::Read;
-use super::seen::Seen;
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor};
 use crate::devices::ssi::protocol::family::{Advice, Align, ErrorPlace, Family, Settings};
@@ -17,7 +17,7 @@ const CHANGED: f64 = 0.8;
 pub(super) fn of_family(
     take: &mut Take<'_>,
     read: &Read,
-    words: &Seen,
+    words: &FrameSet,
     (place, family): (usize, &Family),
     inverted: bool,
 ) {

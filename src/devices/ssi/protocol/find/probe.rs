@@ -1,9 +1,9 @@
 //! Frames that a layout is tried with before it counts: it has to see the same motion in them as the way in which they were
 //! read.
 
+use super::frame_set::FrameSet;
 use super::motion::nearest;
 use super::reading::Read;
-use super::seen::Seen;
 use crate::devices::ssi::protocol::descriptor::{Meaning, Repeat};
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 
@@ -24,7 +24,7 @@ pub(super) struct Trial {
 
 /// Frames with the steps between them.
 pub(super) struct Probe<'a> {
-    seen: &'a Seen,
+    seen: &'a FrameSet,
     read: &'a Read,
     /// Places of frames whose next one follows evenly, and whether the end of the range is passed there.
     pairs: Vec<(usize, bool)>,
@@ -32,7 +32,7 @@ pub(super) struct Probe<'a> {
 
 impl<'a> Probe<'a> {
     /// `read` was made of `words`: the frames of `seen`, or the first words in them.
-    pub(super) fn new(seen: &'a Seen, words: &Seen, repeat: Option<Repeat>, read: &'a Read) -> Self {
+    pub(super) fn new(seen: &'a FrameSet, words: &FrameSet, repeat: Option<Repeat>, read: &'a Read) -> Self {
         let again = |frame: u64| repeat.is_none_or(|repeat| seen.is_repeated(frame, repeat));
         let usual = |word: u64| {
             words.bits().all(|(clock, bit)| {

@@ -3,9 +3,9 @@
 
 use std::ops::RangeInclusive;
 
-use super::ends::{ends, unusual};
+use super::code_ends::{ends, unusual};
+use super::frame_set::{FrameSet, entropy};
 use super::motion::Motion;
-use super::seen::{Seen, entropy};
 use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
@@ -124,7 +124,7 @@ impl Reading {
     }
 
     /// Bits beside the position that are constant have their usual values in this frame.
-    fn is_usual(&self, seen: &Seen, index: usize) -> bool {
+    fn is_usual(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
         let constant = |clock: &u8| !self.has(*clock) && !seen.bit(*clock).moves;
@@ -132,14 +132,14 @@ impl Reading {
     }
 
     /// The last run of clocks up to the lowest bit that never moved.
-    pub(super) fn unmoved(&self, seen: &Seen) -> Option<(u8, u8)> {
+    pub(super) fn unmoved(&self, seen: &FrameSet) -> Option<(u8, u8)> {
         let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
         let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
         Some((from, to))
     }
 
     /// Returns the information in everything but the motion, in bits, and the unexplained clocks.
-    fn beside(&self, seen: &Seen) -> (f64, Vec<u8>) {
+    fn other_information(&self, seen: &FrameSet) -> (f64, Vec<u8>) {
         let frames = seen.words().len();
         let mut bits = 0.0;
         let mut unexplained = Vec::new();
@@ -167,7 +167,7 @@ impl Reading {
     }
 
     /// The parity bit behind the position, where there is one.
-    fn parity_behind(&self, seen: &Seen) -> Option<Parity> {
+    fn parity_behind(&self, seen: &FrameSet) -> Option<Parity> {
         let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
         let frames = seen.words().len();
         let fits = |even| right(seen, Parity { clock, even }) * 100 >= PARITY_PERCENT * frames;
@@ -176,10 +176,10 @@ impl Reading {
 }
 
 impl Read {
-    pub(super) fn new(seen: &Seen, reading: Reading) -> Self {
+    pub(super) fn new(seen: &FrameSet, reading: Reading) -> Self {
         let numbers = reading.numbers(seen.words(), seen.clocks);
         let motion = Motion::of(&numbers, reading.round());
-        let (bits, unexplained) = reading.beside(seen);
+        let (bits, unexplained) = reading.other_information(seen);
         let mut read = Read { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
         // Disturbed frames pass no end, and no end is where a higher bit changes, be it for a moment.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
@@ -202,12 +202,12 @@ impl Read {
 }
 
 /// Frames in which a parity is right.
-fn right(seen: &Seen, parity: Parity) -> usize {
+fn right(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
 }
 
 /// The ways in which the shaft turned most evenly, the best first.
-pub(super) fn readings(seen: &Seen) -> Vec<Read> {
+pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     let frames = seen.words().len();
     let sample = sample(seen.words());
     let mut tried: Vec<(f64, Reading)> = Vec::new();
@@ -216,7 +216,7 @@ pub(super) fn readings(seen: &Seen) -> Vec<Read> {
         let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
         let whole = Motion::of(&numbers, reading.round()).bits * frames as f64 / sample.len().max(1) as f64;
-        tried.push((whole + reading.beside(seen).0, reading));
+        tried.push((whole + reading.other_information(seen).0, reading));
     }
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut all: Vec<Read> = Vec::new();
@@ -239,7 +239,7 @@ pub(super) fn readings(seen: &Seen) -> Vec<Read> {
 }
 
 /// A bit before the position changed just where the numbers came to an end: it is their highest.
-fn leaves_out_highest(seen: &Seen, read: &Read) -> bool {
+fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
     let round = read.reading.round();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
     let Some(clock) = moving.filter(|_| round != 0) else { return false };
@@ -255,7 +255,7 @@ fn leaves_out_highest(seen: &Seen, read: &Read) -> bool {
 }
 
 /// Returns every possible layout: from each clock that moved first to each that could be the lowest bit.
-fn ways(seen: &Seen) -> Vec<Reading> {
+fn ways(seen: &FrameSet) -> Vec<Reading> {
     let moving: Vec<u8> = seen.bits().filter(|(_, bit)| bit.moves).map(|(clock, _)| clock).collect();
     let often = LAST_PERMILLE * seen.words().len() / 1000;
     let lowest: Vec<u8> =
@@ -284,7 +284,7 @@ fn ways(seen: &Seen) -> Vec<Reading> {
 }
 
 /// The longest run of clocks within the position that did not move.
-fn gap(seen: &Seen, first: u8, last: u8) -> Option<(u8, u8)> {
+fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
     let mut longest: Option<(u8, u8)> = None;
     let mut from = None;
     for clock in first..=last {

@@ -44,7 +44,7 @@ fn the_class_of_every_family_comes_first() {
             let truth = layout(&text);
             let search = find(&turning(&truth, speed), truth.clocks(), &families);
             // Where the end of the range is not passed, it stays open whether higher bits are the position's.
-            assert!(matches!(search.doubt, None | Some(Doubt::Open)), "{text} at {speed}: {:?}", search.doubt);
+            assert!(matches!(search.doubt, None | Some(Uncertainty::Open)), "{text} at {speed}: {:?}", search.doubt);
             let first = &search.classes[0];
             let named =
                 first.members.iter().filter(|member| member.family.as_ref().is_some_and(|(key, _)| *key == family.key));
@@ -72,7 +72,7 @@ fn settings_are_found_too() {
     for text in settings {
         let truth = layout(text);
         let search = find(&turning(&truth, 1.3), truth.clocks(), &families);
-        assert_eq!(search.doubt, Some(Doubt::Open), "{text}");
+        assert_eq!(search.doubt, Some(Uncertainty::Open), "{text}");
         let first = &search.classes[0];
         assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)), "{text}");
     }
@@ -103,7 +103,7 @@ fn a_standing_shaft_says_nothing() {
     for family in families.iter() {
         let truth = layout(&family.key);
         let search = find(&turning(&truth, 0.0), truth.clocks(), &families);
-        assert_eq!(search.doubt, Some(Doubt::Standing), "{}", family.key);
+        assert_eq!(search.doubt, Some(Uncertainty::Standing), "{}", family.key);
         assert_eq!(search.classes, []);
     }
 }
@@ -113,10 +113,10 @@ fn noise_and_stuck_lines_are_no_layout() {
     let families = Families::built_in();
     let mut rng = Rng::with_seed(3);
     let noise: Vec<u64> = (0..2000).map(|_| rng.u64(..)).collect();
-    assert_eq!(find(&noise, 25, &families).doubt, Some(Doubt::Nothing));
-    assert_eq!(find(&[0; 100], 25, &families).doubt, Some(Doubt::Stuck { high: false }));
-    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).doubt, Some(Doubt::Stuck { high: true }));
-    assert_eq!(find(&[], 25, &families).doubt, Some(Doubt::Standing));
+    assert_eq!(find(&noise, 25, &families).doubt, Some(Uncertainty::Nothing));
+    assert_eq!(find(&[0; 100], 25, &families).doubt, Some(Uncertainty::Stuck { high: false }));
+    assert_eq!(find(&[0x1FF_FFFF; 100], 25, &families).doubt, Some(Uncertainty::Stuck { high: true }));
+    assert_eq!(find(&[], 25, &families).doubt, Some(Uncertainty::Standing));
 }
 
 /// Frames of an encoder that no family is: gray excess whose end was passed, and a parity bit.
@@ -138,7 +138,7 @@ fn other_encoders() {
     let parity = crate::devices::ssi::protocol::Parity { clock: 21, even: true };
     let with_parity = Layout::new(Descriptor { clocks: 21, parity: Some(parity), ..Descriptor::plain(0, 20) }).unwrap();
     let search = find(&turning(&with_parity, 2.7), 21, &families);
-    assert_eq!(search.doubt, Some(Doubt::Open));
+    assert_eq!(search.doubt, Some(Uncertainty::Open));
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
@@ -156,7 +156,7 @@ fn disturbed_frames_do_not_hide_the_layout() {
     let search = find(&frames, 27, &Families::built_in());
     let first = &search.classes[0];
     // The disturbed bit is one of turns that do not change.
-    assert_eq!((search.doubt, first.evidence.misfits), (Some(Doubt::Open), 40));
+    assert_eq!((search.doubt, first.evidence.misfits), (Some(Uncertainty::Open), 40));
     assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)));
 }
 

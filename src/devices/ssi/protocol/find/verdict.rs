@@ -1,10 +1,10 @@
 //! The verdict on the classes: the doubt, the quality of each, and what would decide.
 
+use super::frame_set::FrameSet;
 use super::members::{Member, never_odd};
 use super::probe::Trial;
 use super::reading::Read;
-use super::seen::Seen;
-use super::{CLASSES, Class, Doubt, Evidence, Group, Open, Proposal, WEIGHT_BITS};
+use super::{CLASSES, Class, Evidence, Group, Open, Proposal, Uncertainty, WEIGHT_BITS};
 use crate::devices::ssi::protocol::range::Range;
 
 /// Bits by which the first class has to be ahead of the next.
@@ -24,21 +24,21 @@ const SURE_DIFFERENT: usize = 64;
 const MEMBERS: usize = 200;
 
 /// Returns why the first group is not certain.
-pub(super) fn doubt(words: &Seen, groups: &[Group]) -> Option<Doubt> {
-    let Some(first) = groups.first() else { return Some(Doubt::Nothing) };
+pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
+    let Some(first) = groups.first() else { return Some(Uncertainty::Nothing) };
     let frames = words.words().len();
     if !is_even(&first.read, frames, EVEN) {
-        return Some(Doubt::Nothing);
+        return Some(Uncertainty::Nothing);
     }
     if groups.get(1).is_some_and(|next| next.bits - first.bits < LEAD_BITS) {
-        return Some(Doubt::Close);
+        return Some(Uncertainty::Close);
     }
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
     let sure = sure && !jumps_alike(&first.read) && words.different() >= SURE_DIFFERENT;
     // However improbable the others are.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven(words, first).is_empty();
-    (!proven).then_some(Doubt::Open)
+    (!proven).then_some(Uncertainty::Open)
 }
 
 /// Jumps of the same size are no disturbances: the code is another.
@@ -59,7 +59,7 @@ fn is_even(read: &Read, frames: usize, part: f64) -> bool {
 }
 
 /// Returns what keeps a group from being certain.
-fn unproven(words: &Seen, group: &Group) -> Vec<Open> {
+fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
     let Group { read, members, .. } = group;
     let reading = &read.reading;
     let mut open = Vec::new();
@@ -122,7 +122,7 @@ pub(super) fn is_varied(read: &Read) -> bool {
 }
 
 /// The groups as they are shown.
-pub(super) fn classes(words: &Seen, groups: Vec<Group>) -> Vec<Class> {
+pub(super) fn classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
     let mut last = 1.0_f64;
     let mut classes = Vec::new();
     for group in groups.into_iter().take(CLASSES) {
@@ -136,7 +136,7 @@ pub(super) fn classes(words: &Seen, groups: Vec<Group>) -> Vec<Class> {
     classes
 }
 
-fn evidence(words: &Seen, group: &Group, most: f64) -> Evidence {
+fn evidence(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     let Group { read, members, .. } = group;
     let frames = words.words().len();
     let random = f64::from(read.reading.width()) * frames as f64;
@@ -158,7 +158,7 @@ fn evidence(words: &Seen, group: &Group, most: f64) -> Evidence {
 }
 
 /// Returns what would separate the members, or prove them.
-fn open(words: &Seen, group: &Group) -> Vec<Open> {
+fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
     let mut open = unproven(words, group);
     let members = &group.members;
     let differ = |what: fn(&Member) -> Vec<u8>| {

@@ -46,15 +46,15 @@ pub enum LayoutError {
         /// The clock.
         clock: u8,
         /// The first content.
-        first: Taker,
+        first: ClockUse,
         /// The second content.
-        second: Taker,
+        second: ClockUse,
     },
     /// A bit behind the last clock.
     #[error("{name} is on clock {clock}, beyond the {clocks} clocks of the frame")]
     Behind {
         /// The bit.
-        name: Taker,
+        name: ClockUse,
         /// Its clock.
         clock: u8,
         /// Clocks of the frame.
@@ -64,7 +64,7 @@ pub enum LayoutError {
     #[error("at most {limit} {what}, not {count}")]
     Many {
         /// Of what.
-        what: Several,
+        what: RepeatedPart,
         /// Most of them.
         limit: usize,
         /// Their number.
@@ -77,13 +77,13 @@ pub enum LayoutError {
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
     Inside {
         /// The bit.
-        name: Taker,
+        name: ClockUse,
         /// Its clock.
         clock: u8,
         /// Clocks of the area.
         area: u8,
         /// The operation on the clocks.
-        done: AsAWhole,
+        done: WordOperation,
     },
     /// The lowest bit is lost, and the code does not bear it.
     #[error("shifting right pushes the lowest bit out, and without it a word of this code is not a position")]
@@ -108,7 +108,7 @@ pub enum LayoutError {
 
 /// A content that takes a clock.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Taker {
+pub enum ClockUse {
     /// The position.
     #[error("the position")]
     Position,
@@ -122,7 +122,7 @@ pub enum Taker {
 
 /// A part of which a frame has several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Several {
+pub enum RepeatedPart {
     /// Error bits.
     #[error("error bits")]
     ErrorBits,
@@ -133,7 +133,7 @@ pub enum Several {
 
 /// An operation on several clocks together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum AsAWhole {
+pub enum WordOperation {
     /// They are one code word.
     #[error("coded")]
     Coded,
@@ -145,7 +145,7 @@ pub enum AsAWhole {
 /// The clocks of a word and who has taken them.
 struct Clocks {
     clocks: u8,
-    taken: Vec<(u8, Taker)>,
+    taken: Vec<(u8, ClockUse)>,
 }
 
 pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
@@ -179,18 +179,18 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     let mut taken = Clocks { clocks: word, taken: Vec::new() };
     let position = placed(&parts, ones(coding.bits()));
     for clock in (1..=word).filter(|clock| position >> (word - clock) & 1 == 1) {
-        taken.take(clock, Taker::Position)?;
+        taken.take(clock, ClockUse::Position)?;
     }
     for bit in &descriptor.errors {
-        taken.take(bit.clock, Taker::Error(bit.name.clone()))?;
+        taken.take(bit.clock, ClockUse::Error(bit.name.clone()))?;
         let done = match descriptor.coded {
-            Coded::Area => Some(AsAWhole::Coded),
-            _ if descriptor.shift_right => Some(AsAWhole::Shifted),
+            Coded::Area => Some(WordOperation::Coded),
+            _ if descriptor.shift_right => Some(WordOperation::Shifted),
             _ => None,
         };
         if let Some(done) = done.filter(|_| bit.clock <= descriptor.area) {
             return Err(LayoutError::Inside {
-                name: Taker::Error(bit.name.clone()),
+                name: ClockUse::Error(bit.name.clone()),
                 clock: bit.clock,
                 area: descriptor.area,
                 done,
@@ -203,14 +203,14 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         Coded::AreaAndErrors => descriptor.errors.iter().map(|bit| bit.clock).max().unwrap_or(0).max(descriptor.area),
     };
     if let Some(Parity { clock, .. }) = descriptor.parity {
-        taken.take(clock, Taker::Parity)?;
+        taken.take(clock, ClockUse::Parity)?;
         // It is made of what is sent, when all that is done.
-        let inside = |done, area| Err(LayoutError::Inside { name: Taker::Parity, clock, area, done });
+        let inside = |done, area| Err(LayoutError::Inside { name: ClockUse::Parity, clock, area, done });
         if clock <= coded_clocks {
-            return inside(AsAWhole::Coded, coded_clocks);
+            return inside(WordOperation::Coded, coded_clocks);
         }
         if descriptor.shift_right && clock <= descriptor.area {
-            return inside(AsAWhole::Shifted, descriptor.area);
+            return inside(WordOperation::Shifted, descriptor.area);
         }
     }
     let in_word = |clock: u8| 1_u64 << (word - clock);
@@ -221,8 +221,8 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
         (bit, ones(word) & !(bit | (bit - 1)))
     });
     let used = errors.iter().fold(position | parity.0, |used, bit| used | bit);
-    many(Several::ErrorBits, 8, descriptor.errors.len())?;
-    many(Several::Patterns, 4, descriptor.patterns.len())?;
+    many(RepeatedPart::ErrorBits, 8, descriptor.errors.len())?;
+    many(RepeatedPart::Patterns, 4, descriptor.patterns.len())?;
     let patterns = descriptor.patterns.iter().map(|pattern| match pattern.word {
         Word::Ones => Ok(ones(clocks)),
         Word::Bits(word) if word > ones(clocks) => Err(LayoutError::Pattern { word, clocks }),
@@ -279,7 +279,7 @@ fn placed(parts: &[Part; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }
 
-fn many(what: Several, limit: usize, count: usize) -> Result<(), LayoutError> {
+fn many(what: RepeatedPart, limit: usize, count: usize) -> Result<(), LayoutError> {
     if count > limit { Err(LayoutError::Many { what, limit, count }) } else { Ok(()) }
 }
 
@@ -293,7 +293,7 @@ fn invalid(descriptor: &Descriptor) -> Flags {
 }
 
 impl Clocks {
-    fn take(&mut self, clock: u8, name: Taker) -> Result<(), LayoutError> {
+    fn take(&mut self, clock: u8, name: ClockUse) -> Result<(), LayoutError> {
         if clock == 0 || clock > self.clocks {
             return Err(LayoutError::Behind { name, clock, clocks: self.clocks });
         }

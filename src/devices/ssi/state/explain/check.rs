@@ -32,16 +32,16 @@ fn finding(finding: &CheckFinding) -> Text {
             .text("ssi_check.other_clock")
             .with_number("asked", f64::from(*asked) / 1000.0, 0)
             .with_number("khz", f64::from(*got) / 1000.0, 0),
-        CheckFinding::Supply { wished, measured, milliampere } => TEXTS
+        CheckFinding::Supply { requested, measured, milliampere } => TEXTS
             .text("ssi_check.supplies")
-            .with_number("wished", f64::from(*wished) / 1000.0, 1)
+            .with_number("wished", f64::from(*requested) / 1000.0, 1)
             .with_number("volts", f64::from(*measured) / 1000.0, 2)
             .with("milliampere", milliampere),
         CheckFinding::SuppliedElsewhere => TEXTS.text("ssi_check.elsewhere"),
         CheckFinding::Words { taken, different } => {
             TEXTS.text("ssi_check.words").with("taken", taken).with("different", different)
         }
-        CheckFinding::Said { what, count } => {
+        CheckFinding::Said { finding: what, count } => {
             TEXTS.text("ssi_check.said").with("count", count).with_text("what", said(what))
         }
         CheckFinding::Fits => TEXTS.text("ssi_check.fits"),

@@ -16,7 +16,7 @@ pub fn note(family: &Family, words: &str) -> Text {
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<FamilyError>() {
-        Some(FamilyError { file, line, column, what }) => {
+        Some(FamilyError { file, line, column, problem: what }) => {
             TEXTS.text("store.ssi_family").with("path", file).with_text("why", syntax(*line, *column, problem(what)))
         }
         None => general::store(error),

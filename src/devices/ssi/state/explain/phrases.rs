@@ -7,7 +7,7 @@ use crate::app::explain::{document, in_both_languages, url};
 use crate::app::{DeviceType, Kinds};
 use crate::devices::ssi::procedures::Station;
 use crate::devices::ssi::profile::SsiProfile;
-use crate::devices::ssi::protocol::{LayoutError, Several, Taker};
+use crate::devices::ssi::protocol::{ClockUse, LayoutError, RepeatedPart};
 use crate::devices::ssi::state::Encoder;
 use crate::devices::ssi::state::explain::layout;
 use crate::link::Query;
@@ -72,14 +72,14 @@ fn a_wrong_profile_is_told_in_both_languages() {
 fn phrases_within_a_phrase_are_told_in_german_too() {
     let cases = [
         (
-            LayoutError::Overlap { clock: 14, first: Taker::Position, second: Taker::Error("ERROR".to_owned()) },
+            LayoutError::Overlap { clock: 14, first: ClockUse::Position, second: ClockUse::Error("ERROR".to_owned()) },
             "Takt 14 wird von der Position und von ERROR beansprucht",
         ),
         (
-            LayoutError::Behind { name: Taker::Parity, clock: 30, clocks: 15 },
+            LayoutError::Behind { name: ClockUse::Parity, clock: 30, clocks: 15 },
             "Takt 30 mit dem Paritätsbit liegt hinter den 15 Takten",
         ),
-        (LayoutError::Many { what: Several::Patterns, limit: 32, count: 33 }, "höchstens 32 Muster, nicht 33"),
+        (LayoutError::Many { what: RepeatedPart::Patterns, limit: 32, count: 33 }, "höchstens 32 Muster, nicht 33"),
     ];
     for (error, german) in cases {
         let words = layout(&error).words(German);

@@ -4,8 +4,8 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
-    AsAWhole, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, SettingName, SettingsError,
-    Several, Taker,
+    ClockUse, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, RepeatedPart, SettingName,
+    SettingsError, WordOperation,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
@@ -142,16 +142,16 @@ pub(super) fn layout_reason(error: &LayoutError) -> Text {
         }
         LayoutError::Many { what, limit, count } => {
             let what = TEXTS.text(match what {
-                Several::ErrorBits => "ssi_reason.error_bits",
-                Several::Patterns => "ssi_reason.patterns",
+                RepeatedPart::ErrorBits => "ssi_reason.error_bits",
+                RepeatedPart::Patterns => "ssi_reason.patterns",
             });
             TEXTS.text("ssi_reason.many").with("limit", limit).with_text("what", what).with("count", count)
         }
         LayoutError::NotGray => TEXTS.text("ssi_reason.not_gray"),
         LayoutError::Inside { name, clock, area, done } => {
             let id = match done {
-                AsAWhole::Coded => "ssi_reason.inside_coded",
-                AsAWhole::Shifted => "ssi_reason.inside_shifted",
+                WordOperation::Coded => "ssi_reason.inside_coded",
+                WordOperation::Shifted => "ssi_reason.inside_shifted",
             };
             TEXTS.text(id).with_text("name", taker(name)).with("clock", clock).with("area", area)
         }
@@ -184,11 +184,11 @@ fn code_reason(error: &CodeError) -> Text {
     }
 }
 
-fn taker(taker: &Taker) -> Text {
+fn taker(taker: &ClockUse) -> Text {
     match taker {
-        Taker::Position => TEXTS.text("ssi_reason.position"),
-        Taker::Parity => TEXTS.text("ssi_reason.parity"),
-        Taker::Error(name) => plain(name),
+        ClockUse::Position => TEXTS.text("ssi_reason.position"),
+        ClockUse::Parity => TEXTS.text("ssi_reason.parity"),
+        ClockUse::Error(name) => plain(name),
     }
 }
 

@@ -240,7 +240,7 @@ fn positions_of_steps_move_as_a_whole() {
 fn cells_tell_what_they_say() {
     let strip = family("afs60", &Settings { singleturn: Some(13), clocks: Some(18), ..Settings::default() });
     // 1234h, ERRSI, and a 1 on clock 18, which is always 0.
-    let shown = strip.shown(0x91A2 << 2 | 1);
+    let shown = strip.cells_of(0x91A2 << 2 | 1);
     let tells: Vec<_> = (1..).zip(&shown).filter_map(|(clock, cell)| cell.tells.map(|tells| (clock, tells))).collect();
     assert_eq!(tells, [(15, Meaning::Invalid), (18, Meaning::Warning)]);
     let bits: String = shown.iter().map(|cell| if cell.bit { '1' } else { '0' }).collect();

@@ -53,13 +53,18 @@ fn a_burst_without_a_break() {
 #[test]
 fn when_a_position_is_made() {
     let synchronous = diagram("ahm36", 400e3, 200.0, true);
-    let marks: Vec<_> = synchronous.marks().iter().map(|mark| (mark.what, micros(mark.at))).collect();
+    let marks: Vec<_> = synchronous.marks().iter().map(|mark| (mark.event, micros(mark.at))).collect();
     // 27 clocks take 67.5 µs.
-    let expected = [(Moment::Latched, 0.0), (Moment::Started, 87.5), (Moment::Ready, 212.5), (Moment::Next, 267.5)];
+    let expected = [
+        (TimingEvent::Latched, 0.0),
+        (TimingEvent::Started, 87.5),
+        (TimingEvent::Ready, 212.5),
+        (TimingEvent::Next, 267.5),
+    ];
     assert_eq!(marks, expected);
     assert_eq!(said(&synchronous)[4..], ["Pause at least: 150 µs", "Next position in progress: 125 µs"]);
     let first_edge = diagram("atm60", 500e3, 300.0, true);
-    assert_eq!(first_edge.marks()[0], Mark { what: Moment::Taken, at: 0.0 });
+    assert_eq!(first_edge.marks()[0], TimingMark { event: TimingEvent::Taken, at: 0.0 });
     assert_eq!(said(&first_edge)[3], "tm = 150 µs");
     assert_eq!(diagram("ahm36", 400e3, 200.0, false).marks().len(), 2);
 }

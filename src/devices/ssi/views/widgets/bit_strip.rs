@@ -80,11 +80,11 @@ pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Opt
     // The frame is drawn as it would become; the handles stay where they are in the present frame.
     let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
-    let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.shown(frame)).unwrap_or_default();
+    let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cells_of(frame)).unwrap_or_default();
     let room = ui.available_width();
     let rows = Rows::new(room, model.strip.layout().clocks());
-    let told = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
-    let (tags, levels) = names::tags(ui, theme, shown, &rows, told);
+    let meaning_of = |field: &strip::Field| tells(&cells, field.first..=field.last).filter(|_| field.is_single());
+    let (tags, levels) = names::tags(ui, theme, shown, &rows, meaning_of);
     let clocks = shown.layout().clocks();
     let sized = rows.clone().at(egui::Pos2::ZERO, &levels);
     let (outer, _) = ui.allocate_exact_size(sized.size(clocks), Sense::hover());

@@ -75,7 +75,7 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
 
     let breaks = axis.breaks();
     let left_out = (0..breaks.len()).map(|piece| caption(&left_out(diagram.broken(piece)), muted));
-    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.what.words(), text)));
+    let moments = diagram.marks().iter().map(|mark| (axis.x(mark.at), caption(&mark.event.words(), text)));
     let mut flags: Vec<(f32, Arc<Galley>, bool)> = moments.map(|(x, galley)| (x, galley, true)).collect();
     flags.extend(breaks.iter().zip(left_out).map(|(gap, galley)| (gap.center(), galley, false)));
     flags.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -91,10 +91,10 @@ fn draw(ui: &mut Ui, theme: &Theme, model: &TimingDiagram<'_>) {
     let count = |put: &[Put]| put.iter().map(|put| put.level + 1).max().unwrap_or(0) as f32;
     let heights = [count(&flags_put) * WORDS + 4.0, ROW, 8.0, ROW, WORDS + 4.0, count(&bars_put) * LANE];
     let (outer, response) = ui.allocate_exact_size(Vec2::new(width, heights.iter().sum()), Sense::hover());
-    let told: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
+    let values: Vec<String> = diagram.spans().iter().map(|span| theme.words(&diagram.words(span))).collect();
     response.widget_info(|| {
         let mut info = WidgetInfo::labeled(Role::Image, true, model.label);
-        info.current_text_value = Some(told.join(", "));
+        info.current_text_value = Some(values.join(", "));
         info
     });
     if ui.is_rect_visible(outer) {
@@ -190,7 +190,7 @@ impl Picture<'_> {
         if let Some(first) = bits.first() {
             self.painter.hline(from..=self.x(first.from), row.min, stroke);
         }
-        let shown: Vec<CellState> = self.model.frame.map(|frame| diagram.strip().shown(frame)).unwrap_or_default();
+        let shown: Vec<CellState> = self.model.frame.map(|frame| diagram.strip().cells_of(frame)).unwrap_or_default();
         for (number, bit) in bits.iter().enumerate() {
             let cell = diagram.strip().cells().get(number);
             let field = cell.and_then(|cell| diagram.strip().fields().get(cell.field));

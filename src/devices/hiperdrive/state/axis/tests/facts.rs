@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 
 /// Back to the step that does not hold any more: by a press, and not before.
 #[track_caller]
-fn back_to(axis: &mut Axis, seen: &Seen, step: AxisStep) {
+fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
     axis.look(seen);
     assert_eq!((axis.step(), axis.fallen()), (shown, Some(step)), "the page is left by a press alone");
@@ -40,7 +40,7 @@ fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
 fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
     let (mut axis, mut seen) = until_test();
     // Everything is gone.
-    seen = Seen { controlled: true, pitch: seen.pitch, ..fresh() };
+    seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
     back_to(&mut axis, &seen, AxisStep::Request);
     assert!(AxisStep::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));
     // Nothing is concluded from a drive that does not answer.
@@ -62,7 +62,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     };
     let done = |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
     // Changed by somebody else, on another page, by another master: the drive has it, and that counts.
-    type Case<'c> = (&'c str, fn(&mut Seen), AxisStep);
+    type Case<'c> = (&'c str, fn(&mut DriveFacts), AxisStep);
     let cases: [Case<'_>; 5] = [
         ("a limit", |seen| seen.limits = Some((-1000, 2001)), AxisStep::Confirm),
         ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), AxisStep::Reference),
@@ -85,7 +85,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     (0..3).for_each(|_| axis.back(&seen));
     assert_eq!((axis.step(), done(&axis)), (AxisStep::Reference, 6));
     axis.edit(Entries { reference: "15".to_owned(), ..axis.entries().clone() });
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::SetPosition(1472));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::SetPosition(1472));
     next(&mut axis, &seen, AxisStep::Lower);
     assert_eq!(done(&axis), 5);
     assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
@@ -96,7 +96,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
     next(&mut axis, &seen, AxisStep::Upper);
     assert!(axis.outcome(TestTarget::Middle).is_none() && axis.may_go_on(&seen).is_err());
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(158, -900), (160, 2000)]));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.fallen(), None, "the review of their plan confirms them");
     // Who only looks back and goes on loses nothing.
@@ -140,9 +140,10 @@ fn only_motion_under_a_held_pad_is_a_jog() {
 /// Issue 21.6 (e): a connection that was lost and found again is no proof that the supply was off.
 #[test]
 fn a_restart_is_read_or_said() {
-    let found =
-        |axis: &Axis, seen: &Seen| words::found(axis, AxisStep::PowerCycle, seen).unwrap().words(Language::English);
-    let again = |axis: &mut Axis, seen: &Seen| {
+    let found = |axis: &Axis, seen: &DriveFacts| {
+        words::found(axis, AxisStep::PowerCycle, seen).unwrap().words(Language::English)
+    };
+    let again = |axis: &mut Axis, seen: &DriveFacts| {
         axis.lose();
         axis.surveyed(seen, false);
     };
@@ -194,7 +195,7 @@ fn a_fault_is_told_and_acknowledged_in_the_run() {
         assert!(words::fault(&seen).unwrap().words(Language::English).starts_with("Fault 8300: "));
         assert_eq!(axis.may_move(&seen).unwrap_err().id(), why);
         assert_eq!(axis.ask(Button::Go(TestTarget::Middle), &seen).unwrap_err().id(), why);
-        assert_eq!(axis.ask(Button::Acknowledge, &seen), Ok(Ask::Acknowledge));
+        assert_eq!(axis.ask(Button::Acknowledge, &seen), Ok(DriveRequest::Acknowledge));
     }
 }
 
@@ -209,10 +210,10 @@ fn what_is_other_than_saved_is_told_and_written_back() {
     assert!(told.contains("154 is 400 instead of 256") && told.contains("156 is 256 instead of 1"), "{told}");
     assert!(told.contains("198 is 128 instead of 0 (set the position again") && !told.contains("158"), "{told}");
     let back = vec![(154, 256), (156, 1)];
-    assert_eq!(axis.ask(Button::Recall, &seen), Ok(Ask::Restore(back.clone())));
-    axis.begin(Ask::Restore(back), &seen);
+    assert_eq!(axis.ask(Button::Recall, &seen), Ok(DriveRequest::Restore(back.clone())));
+    axis.begin(DriveRequest::Restore(back), &seen);
     axis.written();
-    let returned = |seen: &Seen| words::returned(&axis, seen).unwrap().words(Language::English);
+    let returned = |seen: &DriveFacts| words::returned(&axis, seen).unwrap().words(Language::English);
     assert!(returned(&seen).contains("0 of 2"), "nothing was read yet");
     seen.values.extend([(154, 256), (156, 1)]);
     assert!(returned(&seen).contains("2 of 2 parameters have their previous values"));
@@ -233,7 +234,7 @@ fn what_is_other_than_saved_is_told_and_written_back() {
 #[test]
 fn millimetres_come_with_a_spindle() {
     let (mut axis, mut seen) = (run(), fresh());
-    let position = |seen: &Seen| words::millimetres(seen.ruler(), 400).words(Language::English);
+    let position = |seen: &DriveFacts| words::millimetres(seen.ruler(), 400).words(Language::English);
     press(&mut axis, &mut seen, Button::Do);
     next(&mut axis, &seen, AxisStep::Scale);
     // A drive with 400 steps a turn, of whatever spindle: nothing is proposed that would fit it by accident.

@@ -10,14 +10,14 @@ const STANDS: u16 = 0x2A37;
 const MOVES: u16 = 0x0A37;
 
 /// A reading at that moment of the session.
-fn read(seen: &mut Seen, ms: u64, position: i32, word: u16) {
+fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
     at(seen, position);
     seen.actual = seen.actual.map(|own| Actual { status: StatusWord::new(word), ..own });
     seen.actual_at = Some(Moment::START + Duration::from_millis(ms));
 }
 
 /// In the test, read at 10 s: the axis stands at 2000, with 400 steps a turn.
-fn standing() -> (Axis, Seen) {
+fn standing() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_test();
     read(&mut seen, 10_000, 2000, STANDS);
     axis.look(&seen);
@@ -62,7 +62,7 @@ fn a_position_that_jumps_at_a_standstill_is_another_reference() {
 /// Issue 21.6 (c): what is known to change the position is no jump.
 #[test]
 fn a_position_that_is_changed_from_here_is_no_jump() {
-    type Case<'c> = (&'c str, fn(&mut Seen));
+    type Case<'c> = (&'c str, fn(&mut DriveFacts));
     let cases: [Case<'_>; 3] = [
         ("moved by a person, between two looks", |seen| seen.ended = Some((9, Ended::Arrived))),
         ("it moves still", |seen| seen.moves = true),
@@ -104,7 +104,8 @@ fn a_position_that_changed_unseen_is_told_and_not_guessed() {
     assert_eq!((axis.fallen(), words::unexplained(&axis, &seen)), (None, None), "5° are 5.6 steps");
     let (mut axis, mut seen) = again(2000 - 348);
     assert_eq!(axis.fallen(), None, "it may have been moved");
-    let told = |axis: &Axis, seen: &Seen| words::unexplained(axis, seen).map(|text| text.words(Language::English));
+    let told =
+        |axis: &Axis, seen: &DriveFacts| words::unexplained(axis, seen).map(|text| text.words(Language::English));
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
     // Nobody has set or confirmed a reference yet: nothing counts by it.
     let (mut early, mut fresh) = until_jog();

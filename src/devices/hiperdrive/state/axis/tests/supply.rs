@@ -11,7 +11,7 @@ fn a_mark_that_was_not_written_takes_nothing_back() {
         axis.begin(ask, &seen);
         axis.not_written(begun);
         assert_eq!((axis.is_saved(), axis.is_partly_written()), (true, false), "{begun}");
-        assert_eq!(axis.ask(Button::Do, &seen), Ok(Ask::Try(vec![(182, 1001)])), "{begun}: once more");
+        assert_eq!(axis.ask(Button::Do, &seen), Ok(DriveRequest::Try(vec![(182, 1001)])), "{begun}: once more");
     }
 }
 
@@ -28,7 +28,7 @@ fn a_mark_that_was_cut_off_is_read() {
         axis.look(&seen);
         (axis, seen)
     };
-    let off_and_on = |axis: &mut Axis, seen: &mut Seen| {
+    let off_and_on = |axis: &mut Axis, seen: &mut DriveFacts| {
         axis.lose();
         seen.values.insert(182, 1000);
         axis.surveyed(seen, false);
@@ -44,7 +44,7 @@ fn a_mark_that_was_cut_off_is_read() {
     // It has not: the check can be prepared once more, without leaving the step.
     let (mut axis, mut seen) = cut_off(1000);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
-    assert_eq!(press(&mut axis, &mut seen, Button::Do), Ask::Try(vec![(182, 1001)]));
+    assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(182, 1001)]));
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(off_and_on(&mut axis, &mut seen), (Restart::Read, true, true));
 }

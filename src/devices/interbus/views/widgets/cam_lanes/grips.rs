@@ -61,7 +61,7 @@ impl Lanes<'_> {
             let id = self.base.with("whole").with((lane.cam, is_widest));
             let response = self.ui.interact(rect, id, self.sense(shown, is_widest));
             if is_widest {
-                event = self.tell(lane, &response).or(event);
+                event = self.describe(lane, &response).or(event);
                 event = self.model.keys(self.ui, &response, hold, self.apart()).or(event);
                 event = self.follow(&response, *stretch).or(event);
             }
@@ -83,7 +83,7 @@ impl Lanes<'_> {
         event
     }
 
-    fn tell(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
+    fn describe(&self, lane: &Lane, response: &Response) -> Option<CamEvent> {
         response.widget_info(|| {
             let label = self.theme.words(&words::cam(lane));
             let mut info = WidgetInfo::labeled(Role::Slider, self.ui.is_enabled(), label);

@@ -124,11 +124,11 @@ pub(super) fn tags(
     theme: &Theme,
     strip: &Strip,
     rows: &Rows,
-    told: impl Fn(&Field) -> Option<Meaning>,
+    meaning_of: impl Fn(&Field) -> Option<Meaning>,
 ) -> (Vec<Tag>, Vec<usize>) {
     let galley = |own: &Field, words: String| {
         let size = theme.sizes.caption;
-        let (font, words) = match told(own) {
+        let (font, words) = match meaning_of(own) {
             Some(meaning) => (theme.strong(size), format!("{} {words}", controls::verdict(theme, verdict(meaning)).0)),
             None => (FontId::proportional(size), words),
         };

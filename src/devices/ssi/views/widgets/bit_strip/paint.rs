@@ -41,8 +41,8 @@ impl StripContext<'_> {
                 self.bracket(field, Rows::lane(run));
             }
             let (run, _) = widest(self.rows, field);
-            let told = tells(self.cells, field.first..=field.last).filter(|_| field.is_single());
-            let colour = told.map_or(self.theme.palette.muted.into(), |meaning| colour(self.theme, meaning));
+            let worst = tells(self.cells, field.first..=field.last).filter(|_| field.is_single());
+            let colour = worst.map_or(self.theme.palette.muted.into(), |meaning| colour(self.theme, meaning));
             tag.paint(painter, self.theme, (self.rows, Rows::lane(run)), colour);
         }
         let is_focused = self.ui.memory(|memory| memory.has_focus(self.base.with("cells")));
@@ -61,11 +61,11 @@ impl StripContext<'_> {
         let (theme, painter) = (self.theme, self.ui.painter());
         let cell = self.rows.cell(clock);
         let shown = self.shown_at(clock);
-        let told = shown.and_then(|cell| cell.tells);
+        let cell_meaning = shown.and_then(|cell| cell.tells);
         let blank = self.number(clock).map_or_else(String::new, |bit| bit.to_string());
-        let ink = told.map_or_else(|| ink(theme, field.kind), |meaning| colour(theme, meaning));
+        let ink = cell_meaning.map_or_else(|| ink(theme, field.kind), |meaning| colour(theme, meaning));
         let bit = shown.map(|cell| cell.bit);
-        BitCell { ink, bit, blank: &blank, alarm: told.is_some() }.paint(painter, theme, cell);
+        BitCell { ink, bit, blank: &blank, alarm: cell_meaning.is_some() }.paint(painter, theme, cell);
         let is_selected = self.model.selected == Some(clock);
         let colour = if is_selected { theme.palette.text } else { theme.palette.muted };
         let font = FontId::monospace(theme.sizes.caption);

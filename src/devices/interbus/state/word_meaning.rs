@@ -11,7 +11,7 @@ use crate::devices::interbus::state::explain as explained;
 
 /// The facts about an encoder that its IN words depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Known {
+pub struct WordContext {
     pub mode: Mode,
     /// The value being read out.
     pub read_out: Option<ReadOut>,
@@ -19,27 +19,27 @@ pub struct Known {
     pub shift: Option<WindowShift>,
 }
 
-impl Known {
+impl WordContext {
     /// Returns the facts about the encoder that a command is meant for.
     pub fn of(command: Command, shift: Option<WindowShift>) -> Self {
         let read_out = if let Command::ReadOut(what) = command { Some(what) } else { None };
-        Known { mode: mode_of(command), read_out, shift }
+        WordContext { mode: mode_of(command), read_out, shift }
     }
 }
 
 /// Returns the request of an OUT word in a mode, or that it must not be sent.
 pub fn out(word: u32, mode: Mode) -> Text {
     match Command::in_mode(word, mode) {
-        Ok(command) => asked(command),
+        Ok(command) => command_text(command),
         Err(refused) if matches!(refused.command, Command::Unknown(_)) => TEXTS.text("ib_word.unknown"),
         Err(refused) => TEXTS
             .text("ib_word.illegal")
             .with_text("mode", words::mode(refused.mode))
-            .with_text("elsewhere", asked(refused.command)),
+            .with_text("elsewhere", command_text(refused.command)),
     }
 }
 
-pub fn asked(command: Command) -> Text {
+pub fn command_text(command: Command) -> Text {
     let cam = |id, number: u8| TEXTS.text(id).with("cam", number);
     match command {
         Command::Normal => TEXTS.text("ib_word.normal"),
@@ -74,7 +74,7 @@ pub fn mode_of(command: Command) -> Mode {
 }
 
 /// Returns the meaning of an IN word.
-pub fn word_text(word: u32, known: &Known) -> Text {
+pub fn word_text(word: u32, known: &WordContext) -> Text {
     let reply = Reply::parse(word);
     match reply {
         Reply::Run { value, .. } => match known.mode {
@@ -126,7 +126,7 @@ fn error(error: ErrorWord) -> Text {
 fn echo(reply: Reply, mode: Mode) -> Text {
     let in_mode = if mode == Mode::Cam { Mode::Cam } else { Mode::Parameterisation };
     match reply.echoed(in_mode) {
-        Some(command) => TEXTS.text("ib_word.echo").with_text("command", asked(command)),
+        Some(command) => TEXTS.text("ib_word.echo").with_text("command", command_text(command)),
         None if matches!(reply, Reply::Busy { .. }) => TEXTS.text("ib_word.busy"),
         None => TEXTS.text("ib_word.other_echo"),
     }
@@ -154,8 +154,8 @@ mod tests {
     use super::*;
     use crate::app::Language;
 
-    fn known(mode: Mode) -> Known {
-        Known { mode, read_out: None, shift: WindowShift::new(0) }
+    fn known(mode: Mode) -> WordContext {
+        WordContext { mode, read_out: None, shift: WindowShift::new(0) }
     }
 
     /// Words of reference 3, 5 and 7.
@@ -186,7 +186,7 @@ mod tests {
         ] {
             assert_eq!(english(word_text(word, &known(mode))), says, "{word:08X}");
         }
-        let temperature = Known { read_out: Some(ReadOut::TEMPERATURE), ..known(Mode::ReadOut) };
+        let temperature = WordContext { read_out: Some(ReadOut::TEMPERATURE), ..known(Mode::ReadOut) };
         assert_eq!(english(word_text(0xA1FF_FF9C, &temperature)), "temperature: -10.0 °C");
         assert_eq!(word_text(0xA1FF_FF9C, &temperature).words(Language::German), "Temperatur: -10,0 °C");
         assert!(stray(0x0412_3456).is_some() && stray(0x0012_3456).is_none() && stray(0xC200_00FF).is_none());

@@ -9,7 +9,7 @@ use crate::units::Moment;
 
 /// The known facts of the drive at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Seen {
+pub struct DriveFacts {
     /// The device answers.
     pub connected: bool,
     /// It is asked for something, or a review is open.
@@ -53,7 +53,7 @@ pub struct Seen {
     pub error: Option<ErrorCode>,
 }
 
-impl Seen {
+impl DriveFacts {
     /// Returns whether its data are reliable.
     pub(super) fn is_settled(&self) -> bool {
         self.connected && !self.busy && !self.stale

@@ -1,7 +1,7 @@
 //! The results of the set-up, step by step. Each keeps the facts of the drive that it depends on. If one of them
 //! changes, whoever changed it, the result is void, and with it all later ones.
 
-use super::{AxisStep, Seen};
+use super::{AxisStep, DriveFacts};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
@@ -16,7 +16,7 @@ pub(super) struct Origin {
 
 /// The facts on which results rest, at a moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Basis {
+pub(super) struct Preconditions {
     pub(super) requested: Option<bool>,
     pub(super) scale: Option<PositionScale>,
     pub(super) pitch: Option<Length>,
@@ -30,23 +30,23 @@ pub(super) struct Basis {
 
 /// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Made {
-    on: Basis,
+struct StepOutcome {
+    on: Preconditions,
     /// It was left out.
     skipped: bool,
 }
 
 /// Results, from the first step on without a gap.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Chain(Vec<Made>);
+pub(super) struct StepOutcomes(Vec<StepOutcome>);
 
 impl Origin {
-    pub(super) fn of(seen: &Seen, jumps: u32) -> Self {
+    pub(super) fn of(seen: &DriveFacts, jumps: u32) -> Self {
         Origin { set: seen.values.get(&REFERENCE).copied(), times: seen.times_set, jumps }
     }
 }
 
-impl Chain {
+impl StepOutcomes {
     /// The first step that has no result; `None`: all of them have.
     pub(super) fn end(&self) -> Option<AxisStep> {
         AxisStep::ALL.get(self.0.len()).copied()
@@ -63,8 +63,8 @@ impl Chain {
     }
 
     /// A step has a result now. The same as before leaves those behind it; another one lets them fall: true.
-    pub(super) fn make(&mut self, step: AxisStep, on: Basis, skipped: bool) -> bool {
-        let made = Made { on, skipped };
+    pub(super) fn make(&mut self, step: AxisStep, on: Preconditions, skipped: bool) -> bool {
+        let made = StepOutcome { on, skipped };
         let before = self.0.get(step.index()).copied();
         if before.is_some_and(|before| before.skipped == skipped && is_same(step, &before.on, &on)) {
             return false;
@@ -77,9 +77,9 @@ impl Chain {
     }
 
     /// Lets fall what does not rest on the facts of now any more: the first step of those.
-    pub(super) fn fall(&mut self, now: &Basis) -> Option<AxisStep> {
-        let stands = |(step, made): (&AxisStep, &Made)| stands(*step, &made.on, now);
-        let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| stands(*own)).count();
+    pub(super) fn fall(&mut self, now: &Preconditions) -> Option<AxisStep> {
+        let holds = |(step, made): (&AxisStep, &StepOutcome)| is_unchanged(*step, &made.on, now);
+        let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| holds(*own)).count();
         let fallen = (left < self.0.len()).then(|| AxisStep::ALL.get(left).copied()).flatten();
         self.0.truncate(left);
         fallen
@@ -87,7 +87,7 @@ impl Chain {
 }
 
 /// Returns whether the drive's own facts of a step are unchanged. Those of earlier steps are checked there.
-fn stands(step: AxisStep, on: &Basis, now: &Basis) -> bool {
+fn is_unchanged(step: AxisStep, on: &Preconditions, now: &Preconditions) -> bool {
     match step {
         AxisStep::Request => now.requested == Some(true),
         AxisStep::Scale => (on.scale, on.pitch) == (now.scale, now.pitch),
@@ -99,6 +99,6 @@ fn stands(step: AxisStep, on: &Basis, now: &Basis) -> bool {
 }
 
 /// Returns whether a result equals the previous one.
-fn is_same(step: AxisStep, before: &Basis, now: &Basis) -> bool {
-    stands(step, before, now) && (step != AxisStep::Lower || before.lower == now.lower)
+fn is_same(step: AxisStep, before: &Preconditions, now: &Preconditions) -> bool {
+    is_unchanged(step, before, now) && (step != AxisStep::Lower || before.lower == now.lower)
 }

@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 
 /// The kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hindrance {
+pub enum WriteFault {
     /// They are refused: not in this state.
     Refused,
     /// The line is lost once one has come: it counts, and nothing more gets through.
@@ -14,14 +14,14 @@ pub enum Hindrance {
 
 /// The present fault, and whether the line was lost by it.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Hindered {
-    what: Option<(ParameterNumber, Hindrance)>,
+pub(super) struct ActiveWriteFault {
+    fault: Option<(ParameterNumber, WriteFault)>,
     is_cut_off: bool,
 }
 
-impl Hindered {
-    pub(super) const fn by(what: Option<(ParameterNumber, Hindrance)>) -> Self {
-        Hindered { what, is_cut_off: false }
+impl ActiveWriteFault {
+    pub(super) const fn by(what: Option<(ParameterNumber, WriteFault)>) -> Self {
+        ActiveWriteFault { fault: what, is_cut_off: false }
     }
 
     pub(super) const fn is_cut_off(&self) -> bool {
@@ -30,9 +30,9 @@ impl Hindered {
 
     /// A parameter is about to be written.
     pub(super) fn write(&mut self, number: ParameterNumber) -> Result<(), Refused> {
-        match self.what.filter(|(own, _)| *own == number) {
-            Some((_, Hindrance::Refused)) => return Err(Refused::State),
-            Some((_, Hindrance::CutOff)) => self.is_cut_off = true,
+        match self.fault.filter(|(own, _)| *own == number) {
+            Some((_, WriteFault::Refused)) => return Err(Refused::State),
+            Some((_, WriteFault::CutOff)) => self.is_cut_off = true,
             None => {}
         }
         Ok(())

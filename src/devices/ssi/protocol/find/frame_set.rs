@@ -16,7 +16,7 @@ const REPEAT_PERCENT: usize = 10;
 const LEAST_WORD: u8 = 4;
 
 /// Frames of the same number of clocks, in the order of reading.
-pub(super) struct Seen {
+pub(super) struct FrameSet {
     words: Vec<u64>,
     pub(super) clocks: u8,
     bits: Vec<Bit>,
@@ -35,18 +35,18 @@ pub(super) struct Bit {
     pub(super) moves: bool,
 }
 
-impl Seen {
+impl FrameSet {
     pub(super) fn new(frames: &[u64], clocks: u8) -> Self {
         let clocks = clocks.clamp(1, 64);
         let words: Vec<u64> = frames.iter().map(|frame| frame & ones(clocks)).collect();
         let bits = (1..=clocks).map(|clock| Bit::new(&words, clocks - clock)).collect();
-        Seen { words, clocks, bits }
+        FrameSet { words, clocks, bits }
     }
 
     /// The first words of frames that carry each word twice.
     pub(super) fn first_words(&self, repeat: Repeat) -> Self {
         let words: Vec<u64> = self.words.iter().map(|word| word >> (self.clocks - repeat.word)).collect();
-        Seen::new(&words, repeat.word)
+        FrameSet::new(&words, repeat.word)
     }
 
     pub(super) fn words(&self) -> &[u64] {
@@ -74,7 +74,7 @@ impl Seen {
     }
 
     /// Nearly all frames are among a few: the shaft stood or trembled, whatever else disturbances made of it.
-    pub(super) fn stands(&self) -> bool {
+    pub(super) fn is_standing(&self) -> bool {
         let mut counts: Vec<usize> = self.counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
         let few: usize = counts.iter().take(8).sum();

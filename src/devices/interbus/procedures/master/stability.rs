@@ -49,12 +49,12 @@ impl Held {
     }
 
     /// Long enough for an answer that cannot be an old one.
-    pub(super) fn stands(self) -> bool {
+    pub(super) fn is_stable(self) -> bool {
         self.cycles >= STANDS && self.lasts(STANDS_FOR)
     }
 
     /// Long enough for one that could be.
-    pub(super) fn stays(self) -> bool {
+    pub(super) fn is_settled(self) -> bool {
         self.stays_for(STAYS_FOR)
     }
 
