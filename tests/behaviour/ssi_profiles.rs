@@ -153,7 +153,7 @@ fn families_of_the_users_own_are_known_and_broken_ones_told() {
     fs::write(folder.join("broken.ron"), family.replace("codes: [gray]", "codes: [grey]")).unwrap();
     let told = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1"]);
     assert_eq!(told.status, Some(0));
-    for said in ["broken.ron", "line 3, column ", "grey", "the other families are in use"] {
+    for said in ["broken.ron", "line 3, column ", "grey", "the other families can be used"] {
         assert!(told.err.contains(said), "{said}: {}", told.err);
     }
     bench.run(&["ssi", "decode", "--layout", "feder", "0"]).fails(2, &["no family \"feder\"", "feeder ahs36"]);
@@ -179,7 +179,7 @@ fn what_is_no_layout_is_refused_with_entry_and_reason() {
     let bench = Bench::new();
     let file = bench.file("wrong.ron");
     let cases = [
-        (LAYOUT.replace("clock: 13", "clock: 12"), "frame: clock 12 is asked for by the position and by LAMP"),
+        (LAYOUT.replace("clock: 13", "clock: 12"), "frame: clock 12 is used by both the position and LAMP"),
         (LAYOUT.replace("frame:", "preset: 4096, frame:"), "preset: 4096 is not within 0 to 4095"),
         (LAYOUT.replace("frame:", "frame"), "line 5, column "),
         (LAYOUT.replace("clocks: 13, ", ""), "frame.clocks is missing"),

@@ -154,7 +154,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
     let last = layout.coding().last();
     let frame = layout.encode(position, flags).ok_or_else(|| beyond("position", &position.to_string(), last))?;
     if layout.loses_lowest_bit() && position % 2 == 1 {
-        output.remark("Shifting to the right pushes the lowest bit out: the frame is that of the position before.");
+        output.remark("Shifting to the right drops the lowest bit: the frame is that of the preceding position.");
     }
     let clocks = usize::from(layout.clocks());
     let bits = format!("{frame:0clocks$b}");
