@@ -66,7 +66,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     let file = bench.write("with-family.ron", &with_family);
     let drawn = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
     assert!(drawn.out.contains("13 clocks, 130.00 µs"), "{drawn:?}");
-    assert!(drawn.err.contains("No setting of AHM36 SSI makes this frame"), "{drawn:?}");
+    assert!(drawn.err.contains("No settings of AHM36 SSI result in this frame"), "{drawn:?}");
     let of_family = bench.file("of-family.ron");
     bench.run(&["save", "ssi", "--layout", "ahs36,steps=360,code=bcd", "-o", &of_family]);
     let advised = bench.run(&["ssi", "decode", "--layout", &of_family, "0x0"]);

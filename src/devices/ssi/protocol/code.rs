@@ -22,7 +22,8 @@ pub enum Code {
 pub enum CodeError {
     /// Gray excess leaves out as many words before the positions as behind them.
     #[error(
-        "Gray excess needs an even number of steps, not {0}: with an odd number two bits would change at the end of the range"
+        "Gray excess needs an even number of steps, not {0}: with an odd number two bits would change at the end of \
+         the range"
     )]
     Odd(u128),
     /// More than 64 bits.

@@ -129,7 +129,8 @@ mod tests {
         let pulses = "Program 2: Glue has 2 pulses, which use cams 1, 2.";
         assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
         // 228 steps are 10.01953°.
-        let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° lower), stop 10.000° → step 1228 (0.0195° higher)";
+        let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° lower), stop 10.000° → step 1228 \
+                       (0.0195° higher)";
         assert_eq!(says(rounding(&table.rows[0], &scale)), rounded);
         let german = rounding(&table.rows[0], &scale).words(Language::German);
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");

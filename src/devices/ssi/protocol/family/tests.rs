@@ -210,7 +210,8 @@ fn what_a_family_cannot_do_is_refused_with_the_reason() {
         ("ahs36,clocks=14", "ERROR is on clock 15, but the frame has only 14 clocks"),
         (
             "ahs36,steps=359,code=gray-excess",
-            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end of the range",
+            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end \
+             of the range",
         ),
         ("ahs36,st=15", "AHS36 SSI: singleturn bits must be from 1 to 14, not 15"),
         ("ahs36,mt=4", "AHS36 SSI has no multiturn"),

@@ -120,7 +120,8 @@ fn what_cannot_work_is_refused_with_the_reason() {
         (
             "odd gray excess",
             Descriptor { code: Code::GrayExcess, range: Range::Steps { per_turn: 359, turns: 1 }, ..plain() },
-            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end of the range",
+            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end \
+             of the range",
         ),
         (
             "error bit on the position",
