@@ -126,9 +126,9 @@ fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
 #[test]
 fn wires_that_do_not_move_are_told_each_in_a_sentence() {
     let cases = [
-        ("line=open", "nobody acknowledges on the bus (5 tries)"),
-        ("line=low", "the data line stays low (5 tries)"),
-        ("line=high", "the data line stays high (5 tries)"),
+        ("line=open", "no encoder acknowledges on the bus (attempts: 5)"),
+        ("line=low", "the data line stays low (attempts: 5)"),
+        ("line=high", "the data line stays high (attempts: 5)"),
     ];
     for (query, sentence) in cases {
         let mut bus = Bus::new(query);
