@@ -278,7 +278,7 @@ mod tests {
             let own =
                 source.lines().filter_map(|line| line.strip_prefix("    \"")?.split_once("\": (")).map(|row| row.0);
             let own: Vec<&str> = own.collect();
-            assert_eq!(own.len(), rows(source).len(), "a name stands twice in {file}");
+            assert_eq!(own.len(), rows(source).len(), "a name appears twice in {file}");
             for name in own {
                 assert!(names.insert(name), "{name} stands in two files");
             }

@@ -36,7 +36,7 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
         object.insert("line_quality".to_owned(), line_quality(quality));
     }
     output.show(&json, &text.text())?;
-    if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
+    if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()])) }
 }
 
 /// The word for a verdict that scripts rely on.

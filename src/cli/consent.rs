@@ -17,9 +17,7 @@ pub fn require_consent(consent: &Consenting) -> Result<()> {
     if consent.yes || can_ask() {
         return Ok(());
     }
-    Err(Failure::Usage(
-        "this writes to the device: give --yes, or run it on a terminal; nothing was touched".to_owned(),
-    ))
+    Err(Failure::Usage("this writes to the device: add --yes, or run it on a terminal; nothing was changed".to_owned()))
 }
 
 /// Returns whether there is a terminal with a user.
@@ -66,12 +64,12 @@ pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
     }
     let name = path.display();
     if !can_ask() {
-        return Ok(Replaces { message: Some(format!("{name} existed and was replaced.")) });
+        return Ok(Replaces { message: Some(format!("{name} already existed and was replaced.")) });
     }
-    if ask(&format!("{name} exists already. Replace it? [y/N] ")) {
+    if ask(&format!("{name} already exists. Replace it? [y/N] ")) {
         return Ok(Replaces { message: None });
     }
-    Err(Failure::Failed(vec![format!("Not confirmed; {name} is left as it is.")]))
+    Err(Failure::Failed(vec![format!("Not confirmed; {name} was not changed.")]))
 }
 
 /// The message after a file was written.

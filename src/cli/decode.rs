@@ -50,7 +50,7 @@ pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     let more = broken.len().saturating_sub(3);
     if more > 1 {
         broken.truncate(3);
-        broken.push(format!("{more} more are none either."));
+        broken.push(format!("{more} more are not valid either."));
     }
     Err(Failure::Failed(broken))
 }
@@ -59,12 +59,12 @@ pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
 pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {
-        return Err(Failure::Usage("there are no bytes to explain".to_owned()));
+        return Err(Failure::Usage("no bytes to decode were given".to_owned()));
     }
     if parts.len() > 1 && parts.iter().all(|part| part.len() >= 3) { Ok(parts) } else { Ok(vec![parts.concat()]) }
 }
 
 /// The hex bytes of an argument.
 pub(crate) fn bytes(word: &str) -> Result<Vec<u8>> {
-    parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not hex bytes: {why}")))
+    parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not a sequence of hexadecimal bytes: {why}")))
 }

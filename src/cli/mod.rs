@@ -106,7 +106,7 @@ pub fn no_window(why: &str) -> u8 {
 
 fn window(common: Common, profile: Option<PathBuf>) -> Invocation {
     if common.only_master {
-        return Invocation::Command(end(Err(usage("--only-master needs a command; the window asks"))));
+        return Invocation::Command(end(Err(usage("--only-master needs a command; the window asks instead"))));
     }
     if common.json || common.trace.is_some() {
         return Invocation::Command(end(Err(usage(

@@ -63,7 +63,7 @@ impl Output {
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Err(Failure::NobodyReads),
-            Err(error) => Err(Failure::Failed(vec![format!("The result cannot be printed: {error}.")])),
+            Err(error) => Err(Failure::Failed(vec![format!("Could not print the result: {error}.")])),
         }
     }
 
@@ -71,7 +71,7 @@ impl Output {
     pub(super) fn show_written(&self, json: &Value, text: &str) -> Result<(), Failure> {
         self.show(json, text).map_err(|failure| match failure {
             Failure::Failed(lines) => {
-                let written = "The device has been written and read back.".to_owned();
+                let written = "The write to the device was completed and read back.".to_owned();
                 Failure::Failed(std::iter::once(written).chain(lines).collect())
             }
             other => other,

@@ -80,12 +80,12 @@ pub fn text<Base, Op: Operation>(
     }
     let seen = seen.map_or_else(|| "not known".to_owned(), |cycles| format!("at least {cycles}"));
     let limit = limit.map(|limit| format!(", of {limit}")).unwrap_or_default();
-    lines.add("write cycles", format!("{} (seen here so far: {seen}{limit})", plan.write_cycles()));
+    lines.add("write cycles", format!("{} (counted here so far: {seen}{limit})", plan.write_cycles()));
     lines.text()
 }
 
 /// Said of a plan without operations.
-pub(super) const NOTHING: &str = "nothing to write: it is so already\n";
+pub(super) const NOTHING: &str = "nothing to write: the device already has these values\n";
 
 #[derive(Default)]
 pub struct WriteSummary {

@@ -56,7 +56,7 @@ pub fn save_profile(path: &Path, body: Body) -> Result<()> {
 
 pub(super) fn diff(common: &Common, output: &Output, diff: &Diff) -> Result {
     if diff.right.is_some() == common.link.is_some() {
-        return Err(Failure::Usage("diff takes a second file or --link URL, one of them".to_owned()));
+        return Err(Failure::Usage("diff takes either a second file or --link URL".to_owned()));
     }
     let left = load(output, &diff.left)?;
     let kind = output.commands().device(left.kind())?;
@@ -100,7 +100,7 @@ pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
 pub(crate) fn say_mounting_left(output: &Output, items: &[impl Display]) {
     for item in items {
         output.remark(&format!(
-            "{item} belongs to the mounting of another encoder and is left alone; --with-mounting restores it"
+            "{item} belongs to the mounting of another encoder and is not restored; use --with-mounting to restore it"
         ));
     }
 }
@@ -120,7 +120,9 @@ pub fn write_restore(
 /// Returns the options of a restore, for devices without data fields.
 pub fn restore_options(restore: &Restore) -> Result<RestoreOptions> {
     if !restore.copy.is_empty() || !restore.leave.is_empty() {
-        return Err(Failure::Usage("--copy and --leave are for data fields; this device has none".to_owned()));
+        return Err(Failure::Usage(
+            "--copy and --leave are for data fields, which this device does not have".to_owned(),
+        ));
     }
     Ok(RestoreOptions {
         allow_other_device: restore.allow_other_device,

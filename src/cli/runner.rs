@@ -91,7 +91,7 @@ const LEAVING: Duration = Duration::from_secs(4);
 impl<D: Runs> Drop for Runner<D> {
     fn drop(&mut self) {
         if !self.worker.finish(LEAVING) {
-            tracing::warn!("the link could not be left in the orderly way");
+            tracing::warn!("the link could not be closed properly");
         }
     }
 }
@@ -100,7 +100,7 @@ impl<D: Runs> Runner<D> {
     /// Opens the link of the command line.
     pub fn open(common: &Common) -> Result<Self> {
         let Some(url) = &common.link else {
-            return Err(Failure::Usage("this command needs --link URL; without hardware: --link sim:".to_owned()));
+            return Err(Failure::Usage("this command needs --link URL; without hardware, use --link sim:".to_owned()));
         };
         let given = common.given()?;
         if let Some(why) = common.commands.foreign_common_option(D::COMMANDS, &common.own) {
@@ -123,7 +123,7 @@ impl<D: Runs> Runner<D> {
         }
         let patience = SlowReplyNotice::begin(D::reply_pace(&session));
         let worker = Worker::spawn(session, Arc::new(|| ()))
-            .map_err(|error| Failure::Failed(vec![format!("No thread can be started: {error}.")]))?;
+            .map_err(|error| Failure::Failed(vec![format!("Could not start a thread: {error}.")]))?;
         let stopper = worker.stopper();
         let interrupted = Arc::new(AtomicBool::new(false));
         let pressed = interrupted.clone();
@@ -136,7 +136,7 @@ impl<D: Runs> Runner<D> {
             }
             stopper.stop();
         })
-        .map_err(|error| Failure::Failed(vec![format!("Ctrl-C cannot be caught: {error}.")]))?;
+        .map_err(|error| Failure::Failed(vec![format!("Could not install the Ctrl-C handler: {error}.")]))?;
         Ok(Runner { worker, interrupted, patience, remarks: Vec::new(), kept })
     }
 
@@ -233,7 +233,7 @@ impl<D: Runs> JobFailure<D> {
             }
             JobFailure::Interrupted => failed(&Text::new("encoder.cancelled")),
             JobFailure::Lost(error) => failed(&explain::link(&error)),
-            JobFailure::Worker => Failure::Failed(vec!["The session has ended unexpectedly.".to_owned()]),
+            JobFailure::Worker => Failure::Failed(vec!["The session ended unexpectedly.".to_owned()]),
         }
     }
 }
@@ -284,7 +284,7 @@ fn ask_for_other_master(common: &Common) -> Result<()> {
 
 fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     let cannot = |error: std::io::Error| {
-        Failure::Failed(vec![format!("{}: the trace cannot be recorded: {error}.", path.display())])
+        Failure::Failed(vec![format!("{}: could not record the trace: {error}.", path.display())])
     };
     let mut file = BufWriter::new(File::create(path).map_err(cannot)?);
     write_header(&mut file).map_err(cannot)?;
@@ -294,7 +294,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
         // Flushed at each frame, so that a trace is complete however the program ends.
         if works && write_entry(&mut file, entry).and_then(|()| file.flush()).is_err() {
             works = false;
-            tracing::warn!("{name}: the trace is incomplete, writing to it failed");
+            tracing::warn!("{name}: the trace is incomplete because a write to the file failed");
         }
     });
     Ok(())

@@ -55,7 +55,7 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
     let ended = Arc::new(AtomicBool::new(false));
     let end = ended.clone();
     ctrlc::set_handler(move || end.store(true, Ordering::SeqCst))
-        .map_err(|error| Failure::Failed(vec![format!("Interrupts cannot be caught: {error}.")]))?;
+        .map_err(|error| Failure::Failed(vec![format!("Could not install the Ctrl-C handler: {error}.")]))?;
     let mut device = Device { kind: kind.name(), simulated, clock: Arc::new(RealClock::start()) };
     match (&arguments.pty, &arguments.listen) {
         (Some(path), _) => terminal::serve(path, &mut device, &ended)?,
@@ -149,7 +149,7 @@ impl Device {
         let mut out = std::io::stdout().lock();
         writeln!(out, "ready {} {place}", self.kind)
             .and_then(|()| out.flush())
-            .map_err(|error| Failure::Failed(vec![format!("The result cannot be printed: {error}.")]))
+            .map_err(|error| Failure::Failed(vec![format!("Could not print the result: {error}.")]))
     }
 }
 
@@ -201,13 +201,14 @@ fn read_outcome(read: std::io::Result<usize>) -> ReadOutcome {
 
 fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> {
     let cannot = |error: std::io::Error| match error.kind() {
-        ErrorKind::InvalidInput => Failure::Usage(format!("{address}: not HOST:PORT, as in 127.0.0.1:4001")),
+        ErrorKind::InvalidInput => Failure::Usage(format!("{address} is not HOST:PORT, such as 127.0.0.1:4001")),
         ErrorKind::AddrInUse => {
-            let what = "another program listens there; end it, or choose another port";
+            let what = "the address is in use by another program; stop that program, or choose another port";
             Failure::Failed(vec![format!("{address}: {what}.")])
         }
         _ => Failure::Failed(vec![format!(
-            "{address}: cannot listen there: {error}. Give an address of this machine, as 127.0.0.1:4001."
+            "{address}: cannot listen on this address: {error}. Use an address of this computer, such as \
+             127.0.0.1:4001."
         )]),
     };
     let (listener, packets) = match device.simulated.datagrams() {
@@ -282,8 +283,8 @@ mod terminal {
         }
         drop(slave);
         let _link = Link::make(path, Path::new(&name)).map_err(|error| match error.kind() {
-            ErrorKind::AlreadyExists => cannot("there is something already; remove it, or choose another path".into()),
-            ErrorKind::NotFound => cannot("its folder does not exist; create it, or choose another path".into()),
+            ErrorKind::AlreadyExists => cannot("the path already exists; remove it, or choose another path".into()),
+            ErrorKind::NotFound => cannot("the folder does not exist; create it, or choose another path".into()),
             _ => cannot(error.to_string()),
         })?;
         device.ready(&path.display().to_string())?;
@@ -370,6 +371,6 @@ mod terminal {
     use super::{Device, Failure, Result};
 
     pub(super) fn serve(_path: &Path, _device: &mut Device, _ended: &AtomicBool) -> Result<()> {
-        Err(Failure::Usage("there are no pseudo-terminals on this system: use --listen ADDR".to_owned()))
+        Err(Failure::Usage("this system has no pseudo-terminals: use --listen ADDR".to_owned()))
     }
 }

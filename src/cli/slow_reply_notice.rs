@@ -56,19 +56,21 @@ impl Pace {
     fn words(&self) -> Option<String> {
         let (timeout, longest) = (self.timeout, self.replies.longest());
         let more = if timeout < self.longest {
-            format!("timeout={} in the link gives a reply more time.", self.longest.as_millis())
+            format!("Set timeout={} in the link to allow more time for a reply.", self.longest.as_millis())
         } else {
-            "Look at the load of the network.".to_owned()
+            "Check the load of the network.".to_owned()
         };
         let ms = |time: Duration| format!("{} ms", time.as_millis());
         match self.replies.usual() {
-            None => Some(format!("The device has not answered yet, and is asked again every {}. {more}", ms(timeout))),
+            None => {
+                Some(format!("The device has not answered yet; the request is repeated every {}. {more}", ms(timeout)))
+            }
             Some(usual) if usual < SLOW => None,
             Some(usual) if longest < timeout / 2 => {
                 Some(format!("The device answers slowly: a reply takes {}.", ms(usual)))
             }
             Some(_) => Some(format!(
-                "The device answers slowly: a reply takes up to {}, and {} are waited for. {more}",
+                "The device answers slowly: a reply takes up to {}, the time limit is {}. {more}",
                 ms(longest),
                 ms(timeout)
             )),
@@ -93,15 +95,15 @@ mod tests {
         assert_eq!(message(1000, &[299, 301]).unwrap(), "The device answers slowly: a reply takes 300 ms.");
         assert_eq!(
             message(1000, &[600, 800]).unwrap(),
-            "The device answers slowly: a reply takes up to 800 ms, and 1000 ms are waited for. \
-             timeout=2000 in the link gives a reply more time."
+            "The device answers slowly: a reply takes up to 800 ms, the time limit is 1000 ms. \
+             Set timeout=2000 in the link to allow more time for a reply."
         );
         assert_eq!(
             message(1000, &[]).unwrap(),
-            "The device has not answered yet, and is asked again every 1000 ms. \
-             timeout=2000 in the link gives a reply more time."
+            "The device has not answered yet; the request is repeated every 1000 ms. \
+             Set timeout=2000 in the link to allow more time for a reply."
         );
-        assert!(message(2000, &[1500]).unwrap().ends_with("are waited for. Look at the load of the network."));
+        assert!(message(2000, &[1500]).unwrap().ends_with("Check the load of the network."));
     }
 
     #[test]

@@ -55,14 +55,14 @@ pub trait ByteLink: Send {
     /// When the line is gone.
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError>;
 
-    /// Sets speed and parity from now on.
+    /// Sets baud rate and parity from now on.
     ///
     /// # Errors
     /// When the line is gone or cannot be set so.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
     /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
-    /// not visible here: a reply through it proves nothing about speed and parity.
+    /// not visible here: a reply through it proves nothing about baud rate and parity.
     fn sets_format(&self) -> bool {
         true
     }

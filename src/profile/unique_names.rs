@@ -1,4 +1,4 @@
-//! Names that stand twice in a structure of a profile. The `ron` crate keeps the last of them without a word; in a file
+//! Names that appear twice in a structure of a profile. The `ron` crate keeps the last of them without a word; in a file
 //! edited by hand that would drop the other.
 
 use std::cell::RefCell;
@@ -11,7 +11,7 @@ use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visi
 /// Any RON in which no structure has a name twice; the content itself is not kept.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
-    /// The name that stands twice, where one does.
+    /// The name that appears twice, if any.
     pub(super) twice: &'t RefCell<Option<String>>,
 }
 
@@ -39,7 +39,7 @@ impl<'de> Visitor<'de> for UniqueNames<'_> {
             };
             if !seen.insert(key) {
                 *self.twice.borrow_mut() = Some(name);
-                return Err(A::Error::custom("a name stands twice"));
+                return Err(A::Error::custom("a name appears twice"));
             }
             map.next_value_seed(self)?;
         }

@@ -26,7 +26,7 @@ fn a_calibration_runs_both_ways() {
     let (Some(kit), Some(adapter)) = (bench.kit(&turning), bench.adapter(&turning)) else { return };
     for encoder in [&kit, &adapter] {
         let ran = ask(&bench, encoder, &["do", "biss", "calibrate"]);
-        assert!(ran.err.contains("does not need this encoder"), "{ran:?}");
+        assert!(ran.err.contains("to turn without this encoder"), "{ran:?}");
         let told = ran.json();
         let result = &told["results"][0];
         assert_eq!((&told["write_cycles"], &result["result"]), (&json!(1), &json!("calibrated")), "{told}");
@@ -163,14 +163,14 @@ fn on_a_terminal_somebody_says_what_turns_the_motor() {
     let Some(encoder) = bench.kit(&["--rpm", "-500", "--reverse"]) else { return };
     let command = ["do", "biss", "calibrate", "--link", &encoder.url];
     for (answers, words) in [
-        ("2\n", "closes its loop on this encoder"),
+        ("2\n", "uses this encoder as feedback"),
         ("\n", "nothing was done"),
         ("1\nn\n", "nothing was written"),
-        ("1\n\n", "table of the calibration is lost"),
+        ("1\n\n", "calibration table is lost"),
     ] {
         let ran = asked(&bench, &command, answers);
         assert_eq!(ran.status, Some(1), "{ran:?}");
-        assert!(ran.out.contains("What turns the motor?") && ran.out.contains(words), "{words}: {ran:?}");
+        assert!(ran.out.contains("How is the motor driven?") && ran.out.contains(words), "{words}: {ran:?}");
         assert_eq!(written(&encoder), [""; 0]);
     }
     let ran = asked(&bench, &command, "1\ny\n");

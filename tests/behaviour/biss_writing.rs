@@ -375,7 +375,10 @@ fn on_a_terminal_leading_back_is_asked_for() {
     let lead_back = ["do", "biss", "lead-back", "--link", &encoder.url];
     for no in ["n\n", "\n"] {
         let ran = asked(&bench, &lead_back, no);
-        assert!(ran.status == Some(1) && ran.out.contains("not saved") && ran.out.contains("left as it is"), "{ran:?}");
+        assert!(
+            ran.status == Some(1) && ran.out.contains("not saved") && ran.out.contains("was not changed"),
+            "{ran:?}"
+        );
     }
     assert_eq!(encoder.requests(), [""; 0]);
     assert_eq!(asked(&bench, &lead_back, "y\n").status, Some(0));

@@ -129,7 +129,7 @@ fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
     for no in ["n\n", "\n"] {
         let ran = asked(&bench, &save, no);
         assert_eq!(ran.status, Some(1), "{ran:?}");
-        assert!(ran.out.contains("exists already") && ran.out.contains("left as it is"), "{ran:?}");
+        assert!(ran.out.contains("already exists") && ran.out.contains("was not changed"), "{ran:?}");
         assert_eq!(bench.read("layout.ron"), "dear");
     }
     assert_eq!(asked(&bench, &save, "y\n").status, Some(0));

@@ -147,6 +147,6 @@ fn a_search_is_interrupted() {
         let ran = ended(child, Instant::now());
         assert_eq!(ran.out.contains("address 40h at 9600"), found, "{ran:?}");
         assert!(ran.took < Duration::from_secs(5), "{ran:?}");
-        assert!(ran.status == Some(1) && ran.err.contains("Cancelled: the search was cut short"), "{ran:?}");
+        assert!(ran.status == Some(1) && ran.err.contains("Cancelled: the search is incomplete"), "{ran:?}");
     }
 }

@@ -51,7 +51,7 @@ fn a_line_that_is_never_silent_ends_a_command_within_ten_seconds() {
     // A search would disturb whoever talks there.
     bench
         .run(&["find", "hiperface", "--only-master", "--link", &server(talk)])
-        .fails(1, &["talks", "nothing was sent"]);
+        .fails(1, &["sends on this line", "nothing was sent"]);
 }
 
 #[test]

@@ -20,7 +20,7 @@ fn a_drive_goes_to_a_position() {
     let ran = run(&["move", "hiperdrive", "-1000", "--drive", "2", "--yes", "--speed", "50", "--torque", "25"]);
     assert_eq!((ran.status, ran.out.as_str()), (Some(0), "drive 2 is at -1000\n"));
     // 511 turns either way; 1000 of 65536 steps are 0.015 of a turn.
-    let range = "drive 2 goes to -1000 (-0.02 turns), within -33488896 (-511.00 turns) to 33488896 (511.00 turns)\n";
+    let range = "drive 2 moves to -1000 (-0.02 turns), within -33488896 (-511.00 turns) to 33488896 (511.00 turns)\n";
     assert_eq!(ran.err, range);
     // 0E30 or 2E30: found, standing, not ready.
     let word = run(&["read", "hiperdrive", "105", "--drive", "2", "--json"]).json()["value"].as_u64().unwrap();
@@ -35,7 +35,7 @@ fn a_drive_goes_to_a_position() {
 fn without_consent_nothing_is_touched() {
     let bench = Bench::new();
     for (arguments, words) in [
-        (&["65536"][..], &["--yes", "nothing was touched"][..]),
+        (&["65536"][..], &["--yes", "nothing was changed"][..]),
         (&["65536", "--json"], &["--yes"]),
         (&["far", "--yes"], &["far", "a number of steps"]),
         (&["0", "--yes", "--drive", "9"], &["--drive", "1..=8"]),

@@ -185,7 +185,7 @@ fn what_must_not_be_sent_and_what_is_nothing_is_refused() {
     }
     let wrong: [(&[&str], &[&str]); 6] = [
         (&["hiperdrive", "04GG"], &["04GG", "hexadecimal"]),
-        (&["hiperdrive", "0439", "00 01 02"], &["words", "bytes", "beside each other"]),
+        (&["hiperdrive", "0439", "00 01 02"], &["words", "bytes", "cannot be mixed"]),
         (&["hiperdrive", "0439", "--mode", "cam"], &["--mode", "interbus"]),
         (&["ethernet-ip", "0439", "--direction", "in"], &["--direction", "interbus and hiperdrive"]),
         (&["interbus", "020000FF", "--order", "big"], &["--order", "hiperdrive"]),

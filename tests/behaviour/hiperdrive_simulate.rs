@@ -195,11 +195,11 @@ fn what_cannot_be_served_is_said() {
     bench.run(&["simulate", "hiperdrive", "--listen", "nowhere"]).fails(2, &["nowhere", "HOST:PORT"]);
     bench.run(&["simulate", "hiperdrive", "--listen", "[::1]:0"]).fails(1, &["::1", "127.0.0.1:4001"]);
     let taken = drives(&bench, &[]);
-    bench.run(&["simulate", "hiperdrive", "--listen", &taken.place]).fails(1, &["another program listens"]);
+    bench.run(&["simulate", "hiperdrive", "--listen", &taken.place]).fails(1, &["in use by another program"]);
     // The port is free for TCP alone.
     let datagrams = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let place = datagrams.local_addr().unwrap().to_string();
-    bench.run(&["simulate", "hiperdrive", "--listen", &place]).fails(1, &["another program listens"]);
+    bench.run(&["simulate", "hiperdrive", "--listen", &place]).fails(1, &["in use by another program"]);
     taken.end("INT");
     assert!(!bench.path("drive").exists());
 }

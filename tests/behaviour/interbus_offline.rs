@@ -90,8 +90,8 @@ fn what_must_not_be_sent_and_what_is_no_word_is_refused() {
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);
     let cases: [(&[&str], &[&str]); 8] = [
-        (&["123"], &["\"123\"", "8 hex digits", "020000FF"]),
-        (&["0200 00FF"], &["8 hex digits"]),
+        (&["123"], &["\"123\"", "8 hexadecimal digits", "020000FF"]),
+        (&["0200 00FF"], &["8 hexadecimal digits"]),
         (&["+20000FF"], &["\"+20000FF\""]),
         (&["0200GGFF"], &["\"0200GGFF\""]),
         (&["A0000001", "--read-out", "warmth"], &["warmth", "temperature", "operating-time"]),

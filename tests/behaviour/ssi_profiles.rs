@@ -66,7 +66,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     let file = bench.write("with-family.ron", &with_family);
     let drawn = bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]);
     assert!(drawn.out.contains("13 clocks, 130.00 µs"), "{drawn:?}");
-    assert!(drawn.err.contains("No setting of AHM36 SSI makes this frame"), "{drawn:?}");
+    assert!(drawn.err.contains("No settings of AHM36 SSI result in this frame"), "{drawn:?}");
     let of_family = bench.file("of-family.ron");
     bench.run(&["save", "ssi", "--layout", "ahs36,steps=360,code=bcd", "-o", &of_family]);
     let advised = bench.run(&["ssi", "decode", "--layout", &of_family, "0x0"]);
@@ -153,7 +153,7 @@ fn families_of_the_users_own_are_known_and_broken_ones_told() {
     fs::write(folder.join("broken.ron"), family.replace("codes: [gray]", "codes: [grey]")).unwrap();
     let told = bench.run(&["ssi", "encode", "--layout", "feeder", "--position", "1"]);
     assert_eq!(told.status, Some(0));
-    for said in ["broken.ron", "line 3, column ", "grey", "the other families are in use"] {
+    for said in ["broken.ron", "line 3, column ", "grey", "the other families can be used"] {
         assert!(told.err.contains(said), "{said}: {}", told.err);
     }
     bench.run(&["ssi", "decode", "--layout", "feder", "0"]).fails(2, &["no family \"feder\"", "feeder ahs36"]);
@@ -179,7 +179,7 @@ fn what_is_no_layout_is_refused_with_entry_and_reason() {
     let bench = Bench::new();
     let file = bench.file("wrong.ron");
     let cases = [
-        (LAYOUT.replace("clock: 13", "clock: 12"), "frame: clock 12 is asked for by the position and by LAMP"),
+        (LAYOUT.replace("clock: 13", "clock: 12"), "frame: clock 12 is used by both the position and LAMP"),
         (LAYOUT.replace("frame:", "preset: 4096, frame:"), "preset: 4096 is not within 0 to 4095"),
         (LAYOUT.replace("frame:", "frame"), "line 5, column "),
         (LAYOUT.replace("clocks: 13, ", ""), "frame.clocks is missing"),

@@ -45,7 +45,7 @@ fn the_input_circuit_is_reckoned_while_it_is_typed() {
     }
     assert!(screen.shows("Within the bandwidth of 150 kHz"));
     screen.retype("input.speed", "18000");
-    assert!(screen.shows("Beyond the bandwidth of 150 kHz"));
+    assert!(screen.shows("Above the bandwidth of 150 kHz"));
     screen.retype("input.capacitance", "47 pigs");
     assert!(screen.shows("\"47 pigs\" is not a value from 1 fF to 1 mF"));
     assert!(!screen.shows("338.6 kHz"), "nothing is shown that is not reckoned");

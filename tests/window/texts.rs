@@ -150,7 +150,7 @@ fn no_name_stands_twice_in_the_table() {
     for line in CATALOGUES.into_iter().flat_map(|own| own.source().lines()) {
         let name = line.strip_prefix("    \"").and_then(|line| line.split_once("\": (")).map(|(name, _)| name);
         if let Some(name) = name {
-            assert!(names.insert(name), "{name} stands twice");
+            assert!(names.insert(name), "{name} appears twice");
         }
     }
     assert_eq!(names.len(), TABLE.len());

@@ -61,7 +61,7 @@ fn parse_columns(text: &str) -> Result<Columns, String> {
             Some((name, _)) => return Err(format!("{name} is not a column; use reference= or absolute=")),
         };
         let column = number(word.split_once('=').map_or(word, |(_, number)| number));
-        *place = Some(column.ok_or("columns are numbers from 1, as in 1,2,3 or 1,2,3,reference=4")?);
+        *place = Some(column.ok_or("columns are numbers from 1, such as 1,2,3 or 1,2,3,reference=4")?);
         if !word.contains('=') {
             numbers.extend(column);
         }
@@ -69,17 +69,17 @@ fn parse_columns(text: &str) -> Result<Columns, String> {
     let (time, sine, cosine, references) = match *numbers.as_slice() {
         [time, sine, cosine] => (Some(time), sine, cosine, None),
         [time, sine, refsin, cosine, refcos] => (Some(time), sine, cosine, Some((refsin, refcos))),
-        _ => return Err("three or five column numbers from 1 are needed, as in 1,2,3".to_owned()),
+        _ => return Err("three or five column numbers from 1 are required, such as 1,2,3".to_owned()),
     };
     numbers.extend(reference_angle.into_iter().chain(absolute));
     let different: std::collections::BTreeSet<&usize> = numbers.iter().collect();
     if different.len() < numbers.len() {
-        return Err("a column stands there twice".to_owned());
+        return Err("a column appears twice".to_owned());
     }
     Ok(Columns { time, sine, cosine, references, reference_angle, absolute })
 }
 
 fn parse_factor(text: &str) -> Result<f64, String> {
     let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
-    factor.ok_or_else(|| "a number above 0 is needed, as in 0.001".to_owned())
+    factor.ok_or_else(|| "a number above 0 is required, such as 0.001".to_owned())
 }

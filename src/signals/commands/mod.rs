@@ -84,7 +84,7 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
         output.remark(&text.terminal());
     }
     if capture.left_out > 0 {
-        output.remark(&format!("{} rows without a value (empty, NaN or overload) are left out.", capture.left_out));
+        output.remark(&format!("{} rows without a value (empty, NaN or overload) were left out.", capture.left_out));
     }
 }
 
@@ -92,7 +92,7 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
 fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {
-        output.remark("The table has the angle of a reference encoder: with --periods N, DNL and INL are told.");
+        output.remark("The table contains the angle of a reference encoder. Add --periods N to get DNL and INL.");
         return None;
     };
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
@@ -169,7 +169,7 @@ impl CaptureReport<'_> {
         let share =
             |volts: f64| format!("{volts:+.4} V ({:+.1} % of the amplitude)", 100.0 * volts / ellipse.amplitude_v);
         let left_out = self.analysis.outliers.as_ref().map_or_else(String::new, |outliers| {
-            format!(", {} of them left out: up to {:.3} V off the ellipse", outliers.count, outliers.farthest_v)
+            format!(", {} of them left out (up to {:.3} V off the ellipse)", outliers.count, outliers.farthest_v)
         });
         let mut lines = Lines::default();
         lines
@@ -177,7 +177,7 @@ impl CaptureReport<'_> {
             .add("periods", format!("{:.3}, in {} of 8 octants", coverage.periods, coverage.octants));
         if let Some(frequency) = self.analysis.frequency_hz() {
             let speed = self.speed_rpm().map_or_else(String::new, |speed| format!(", {speed:.3} 1/min"));
-            let mark = if self.analysis.is_followed() { "" } else { " (uncertain: too few samples a period)" };
+            let mark = if self.analysis.is_followed() { "" } else { " (uncertain: too few samples per period)" };
             lines.add("frequency", format!("{frequency:.3} Hz{speed}{mark}"));
         }
         lines
@@ -188,7 +188,7 @@ impl CaptureReport<'_> {
             .add("vector", format!("{least:.4} … {most:.4} V"))
             .add("offset sine", share(ellipse.offset_sine_v))
             .add("offset cosine", share(ellipse.offset_cosine_v))
-            .add("gain ratio", format!("{:.4} (cosine over sine)", ellipse.gain_ratio))
+            .add("gain ratio", format!("{:.4} (cosine / sine)", ellipse.gain_ratio))
             .add("phase error", format!("{:+.3}°", ellipse.phase_error_deg()))
             .add("residual", format!("{:.3} % rms of the amplitude", 100.0 * coverage.residual_rms))
             .add("position error", format!("{:.3}° peak to peak (electrical)", error.raw_pp_deg()))
@@ -201,7 +201,7 @@ impl CaptureReport<'_> {
                 .add("DNL", both(raw.differential_deg, corrected.differential_deg))
                 .add("INL", both(raw.integral_deg, corrected.integral_deg));
             if raw.revolutions < 1.0 {
-                lines.add("", format!("over {:.2} of a revolution only", raw.revolutions));
+                lines.add("", format!("over only {:.2} of a revolution", raw.revolutions));
             }
         }
         if self.findings.is_empty() {
@@ -224,6 +224,6 @@ fn basis(basis: Basis) -> &'static str {
 fn basis_words(basis: Basis) -> String {
     match basis {
         Basis::Motion { noise_deg } => format!("noise {noise_deg:.3}° rms"),
-        Basis::Ellipse => "from the residual: the motion is too short or not steady".to_owned(),
+        Basis::Ellipse => "estimated from the residual: the motion is too short or not uniform".to_owned(),
     }
 }

@@ -126,9 +126,9 @@ fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
 #[test]
 fn wires_that_do_not_move_are_told_each_in_a_sentence() {
     let cases = [
-        ("line=open", "nobody acknowledges on the bus (5 tries)"),
-        ("line=low", "the data line stays low (5 tries)"),
-        ("line=high", "the data line stays high (5 tries)"),
+        ("line=open", "no encoder acknowledges on the bus (attempts: 5)"),
+        ("line=low", "the data line stays low (attempts: 5)"),
+        ("line=high", "the data line stays high (attempts: 5)"),
     ];
     for (query, sentence) in cases {
         let mut bus = Bus::new(query);
@@ -176,7 +176,7 @@ fn wrong_widths_are_told() {
 fn another_version_is_refused_naming_both() {
     let mut bus = Bus::new("version=2");
     let error = bus.master().read(at("0x66")).unwrap_err();
-    assert_eq!(error.to_string(), "the adapter speaks version 2 of the bridge protocol, this program version 1");
+    assert_eq!(error.to_string(), "the adapter uses version 2 of the bridge protocol, this program version 1");
     assert_eq!(bus.tap().sent.len(), 1);
 }
 

@@ -78,7 +78,7 @@ fn silence_is_told_after_five_tries_and_within_the_patience() {
     let mut pin = Pin::new("fault=silent-after:0");
     pin.station.order = Some(ByteOrder::LowFirst);
     let error = pin.master().read(at("0x66")).unwrap_err();
-    assert_eq!(error.to_string(), "no reply while reading register 0x66 (5 tries)");
+    assert_eq!(error.to_string(), "no reply while reading register 0x66 (attempts: 5)");
     assert!(error.is_lost());
     assert!(pin.now() < Duration::from_secs(10), "{:?}", pin.now());
     let mut echoing = Pin::new("fault=silent-after:0&echo=on");

@@ -121,7 +121,10 @@ fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be()
                     match interrupted.left {
                         EndState::Unknown(standing) => {
                             assert_eq!(standing.found, Some(StartupMode::Cams(program(2))), "{at}");
-                            assert!(interrupted.to_string().contains("could not be led back"), "{at}: {interrupted}");
+                            assert!(
+                                interrupted.to_string().contains("could not be returned to operation"),
+                                "{at}: {interrupted}"
+                            );
                         }
                         // The last that it heard was normal running.
                         EndState::AsFound => assert_eq!((out, mode), (0, StartupMode::Cams(program(2))), "{at}"),

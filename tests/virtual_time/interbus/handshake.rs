@@ -222,7 +222,7 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     // It never takes it.
     let never = (0..9).fold(Script::new(), |script, _| script.on(0x2020_0010, &[0xA000_0007]));
     let interrupted = carry_out(never, cams(0, 0x15, 0x20, 1)).0.unwrap_err();
-    assert_eq!(interrupted.cause.to_string(), "cam:1:0 start reads 7 after 21 was written");
+    assert_eq!(interrupted.cause.to_string(), "cam:1:0 start is 7 after 21 was written");
     assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "leading back may store what was set");
 }
 
@@ -381,7 +381,10 @@ fn words_that_mean_something_else_in_the_mode_found_are_not_sent() {
     // Nor after that: whatever it does with 20800000 there, nobody knows.
     for wanted in [StartupMode::K3, StartupMode::Velocity, StartupMode::Cams(program(1))] {
         let error = select(&mut master, wanted).unwrap_err();
-        assert_eq!(error.to_string(), "the encoder is in mode 85, which is unknown: nothing was sent but read-outs");
+        assert_eq!(
+            error.to_string(),
+            "the encoder is in the unknown mode 85: values were read and nothing else was sent"
+        );
     }
     let sent = sent.lock().unwrap();
     assert!(sent.iter().all(|word| *word == 0 || word >> 16 == 0x2021), "{sent:08X?}");

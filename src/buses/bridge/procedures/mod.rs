@@ -51,7 +51,7 @@ pub enum AdapterError {
     #[error("the adapter does not answer")]
     Silent,
     /// It speaks another version of the protocol.
-    #[error("the adapter speaks version {got} of the bridge protocol, this program version {expected}")]
+    #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
     Version {
         /// This program's.
         expected: u8,
@@ -59,13 +59,13 @@ pub enum AdapterError {
         got: u8,
     },
     /// It has not what this needs.
-    #[error("the adapter {name} cannot do BiSS")]
+    #[error("the adapter {name} does not support BiSS")]
     NoBiss {
         /// Name of the adapter.
         name: String,
     },
     /// It has not what this needs.
-    #[error("the adapter {name} cannot do SSI")]
+    #[error("the adapter {name} does not support SSI")]
     NoSsi {
         /// Name of the adapter.
         name: String,
@@ -83,7 +83,7 @@ pub enum AdapterError {
         name: String,
     },
     /// It gives more than the encoder stands; it was told to switch that off.
-    #[error("the adapter gives {measured} mV where {given} mV were asked for, and the encoder stands {greatest} mV")]
+    #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
         /// Millivolts that were asked for.
         given: u16,
@@ -93,13 +93,13 @@ pub enum AdapterError {
         greatest: u16,
     },
     /// A stream that ran brings nothing any more.
-    #[error("the adapter sends nothing any more")]
+    #[error("the adapter no longer sends data")]
     Mute,
     /// The sample numbers of a stream started again.
-    #[error("the adapter has started anew")]
+    #[error("the adapter has restarted")]
     Restarted,
     /// Streamed data is not of this version.
-    #[error("what the adapter sends cannot be read: {cause}")]
+    #[error("the data from the adapter cannot be decoded: {cause}")]
     Data { cause: BodyError },
     /// It refuses a request.
     #[error("the adapter refuses operation 0x{:02X} with code {}: {text}", operation.byte(), code.byte())]
@@ -111,14 +111,14 @@ pub enum AdapterError {
         text: String,
     },
     /// Its reply is none of this version.
-    #[error("the adapter's reply to operation 0x{:02X} cannot be read: {cause}", operation.byte())]
+    #[error("the reply of the adapter to operation 0x{:02X} cannot be decoded: {cause}", operation.byte())]
     Reply {
         /// The requested operation.
         operation: Operation,
         cause: BodyError,
     },
     /// It answers another question.
-    #[error("the adapter answers operation 0x{:02X} with 0x{:02X}", requested.byte(), got.byte())]
+    #[error("the adapter answers operation 0x{:02X} with operation 0x{:02X}", requested.byte(), got.byte())]
     Other {
         requested: Operation,
         /// The operation of the reply.

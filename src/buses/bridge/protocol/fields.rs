@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BodyError {
     /// Another length than the operation has.
-    #[error("operation 0x{op:02X}: a body of {got} bytes is too short or too long")]
+    #[error("operation 0x{op:02X}: a body of {got} bytes has the wrong length")]
     Length {
         /// The operation.
         op: u8,
@@ -25,13 +25,13 @@ pub enum BodyError {
         got: u8,
     },
     /// Bytes that are no UTF-8.
-    #[error("operation 0x{op:02X}: a text is not UTF-8")]
+    #[error("operation 0x{op:02X}: a string is not valid UTF-8")]
     Text {
         /// The operation.
         op: u8,
     },
     /// The adapter speaks another version of the protocol.
-    #[error("the adapter speaks version {got} of the bridge protocol, this program version {expected}")]
+    #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
     Version {
         /// This program's.
         expected: u8,

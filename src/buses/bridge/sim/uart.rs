@@ -35,7 +35,7 @@ impl Uart {
         self.line.turn(now, rpm);
     }
 
-    /// Sets speed and parity; `false` where there are none such.
+    /// Sets baud rate and parity; `false` where there are none such.
     pub(super) fn configure(&mut self, now: Moment, baud: u32, parity: u8) -> bool {
         let parity = match parity {
             0 => Some(Parity::None),

@@ -70,8 +70,11 @@ fn check_device(common: &Common, output: &Output) -> Result {
 fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
     // Nothing is stored by it, so it needs no consent without a terminal; a user there may have entered what it
     // discards.
-    if !act.consent.yes && can_ask() && !ask("Values that were entered and not saved will be lost. Lead back? [y/N] ") {
-        return Err(Failure::Failed(vec!["Not confirmed; the encoder is left as it is.".to_owned()]));
+    if !act.consent.yes
+        && can_ask()
+        && !ask("Values that were entered but not saved will be lost. Return the encoder to operation? [y/N] ")
+    {
+        return Err(Failure::Failed(vec!["Not confirmed; the encoder was not changed.".to_owned()]));
     }
     match Runner::open(common)?.run(BissJob::LeadBack)? {
         BissOutput::LedBack(mode) => {
@@ -96,12 +99,13 @@ fn guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Resul
 fn motor(output: &Output, act: &Do) -> Result<MotorSource> {
     if act.consent.yes || !can_ask() {
         output.remark(
-            "--yes: what turns the motor does not need this encoder. A run starts when direction and speed fit.",
+            "With --yes, the motor is assumed to turn without this encoder. A run starts when direction and speed \
+             are correct.",
         );
         return Ok(MotorSource::Other);
     }
-    let question = "What turns the motor?\n  1  something that does not need this encoder: another motor, an open loop\n  \
-                    2  a drive that closes its loop on this encoder\n1 or 2: ";
+    let question = "How is the motor driven?\n  1  without this encoder: by another motor, or in open loop\n  2  by \
+                    a drive that uses this encoder as feedback\n1 or 2: ";
     match answer(question).as_str() {
         "1" => Ok(MotorSource::Other),
         "2" => Ok(MotorSource::ThisEncoder),
@@ -154,8 +158,8 @@ fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
             (_, Some(("preset", value))) => run.preset = Some((place(value)?, PresetParts::Both)),
             (_, Some(("data", file))) => run.data = Some(Box::new(profile(output, Path::new(file))?)),
             _ => {
-                let form = "calibrate, wiegand-test, save, preset=ST,MT and data=FILE, as many as wanted";
-                return Err(Failure::Usage(format!("{word:?} is no part of a mounting; it takes {form}")));
+                let form = "any of calibrate, wiegand-test, save, preset=ST,MT and data=FILE";
+                return Err(Failure::Usage(format!("{word:?} is not a part of mounting; use {form}")));
             }
         }
     }
@@ -175,7 +179,7 @@ fn place(text: &str) -> Result<PresetValue> {
     match numbers.as_slice() {
         [singleturn] => value(singleturn, "0"),
         [singleturn, multiturn] => value(singleturn, multiturn),
-        _ => Err(Failure::Usage(format!("{text:?} is not a place, as 98304 or 98304,0"))),
+        _ => Err(Failure::Usage(format!("{text:?} is not a position, such as 98304 or 98304,0"))),
     }
 }
 

@@ -70,7 +70,8 @@ fn position_word(word: &str) -> Result<u64> {
         Some(number) => parse_number(number).and_then(|number| u64::try_from(number).ok()),
         None => u64::from_str_radix(digits(word).1.trim_end_matches(['h', 'H']), 16).ok(),
     };
-    number.ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, as 0x024698000 or raw=610893824")))
+    number
+        .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
 /// An odd number of digits is no bytes, and may be a position word, decimal or hexadecimal: that has to be said.

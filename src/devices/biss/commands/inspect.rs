@@ -60,14 +60,14 @@ fn temperature(runner: &mut Runner, identity: &Identity) -> Result<Option<f64>> 
 }
 
 fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
-    let unknown = || "not told by this encoder".to_owned();
+    let unknown = || "not provided by this encoder".to_owned();
     let kind = &identity.kind;
     let frame = match identity.source {
-        FrameSource::DataSheet => "as its data sheet says",
-        FrameSource::Description => "as its description says",
-        FrameSource::Given => "as the link says",
-        FrameSource::Checksum => "found by its checksum: how many bits are turns is not known",
-        FrameSource::Assumed => "taken for granted: nothing tells it",
+        FrameSource::DataSheet => "from its data sheet",
+        FrameSource::Description => "from its description",
+        FrameSource::Given => "from the link",
+        FrameSource::Checksum => "found by its checksum: the number of turn bits is not known",
+        FrameSource::Assumed => "assumed: no source available",
     };
     let (multiturn, singleturn) = (identity.layout.multiturn_bits(), identity.layout.singleturn_bits());
     let mut lines = Lines::default();
@@ -128,7 +128,7 @@ fn status_text(status: &Status) -> String {
     let mut lines = Lines::default();
     for (label, bits) in [("errors", &status.errors), ("warnings", &status.warnings)] {
         match bits {
-            None => lines.add(label, "not told by this encoder"),
+            None => lines.add(label, "not provided by this encoder"),
             Some(bits) if bits.set.is_empty() => lines.add(label, "none"),
             Some(bits) => {
                 let named = bits.set.iter().map(|(bit, name)| bit_words(*bit, name.as_ref().map(Name::english)));
@@ -146,7 +146,7 @@ fn status_text(status: &Status) -> String {
         lines.add("filter", words::filter(filter));
     }
     match &status.position {
-        None => lines.add("position", "none that can be read"),
+        None => lines.add("position", "none can be read"),
         Some(reading) => lines.add("position", format!("{}{}", place(reading), flags(reading))),
     };
     lines.text()
@@ -215,7 +215,7 @@ fn show(output: &Output, reading: &PositionReading) -> Result<()> {
 
 fn place(reading: &PositionReading) -> String {
     if !reading.is_split_known {
-        return format!("{} (turns and steps are not known: mt= and st= in the link give them)", reading.position());
+        return format!("{} (turns and steps are not known: set mt= and st= in the link)", reading.position());
     }
     let steps = 1u64 << reading.singleturn_bits;
     format!("turn {}, step {} of {steps}, {:.6}°", reading.turns, reading.steps, reading.degrees())

@@ -23,7 +23,7 @@ use crate::result_of;
 
 /// Manual 6.4.
 pub(super) const CALIBRATION: &str =
-    "counterclockwise, then clockwise; if the clockwise run fails, the table of the calibration is lost";
+    "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
 /// Makes a plan for a change; nothing is written.
 pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {

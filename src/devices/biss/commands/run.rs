@@ -94,7 +94,7 @@ pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Resul
         BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),
         BissOutput::Registers(read) => {
             let (wanted, came) = (range.count(), read.bytes.len());
-            Err(Failure::Failed(vec![format!("{range}: {came} registers came where {wanted} were asked for.")]))
+            Err(Failure::Failed(vec![format!("{range}: {came} registers were received instead of {wanted}.")]))
         }
         other => Err(unexpected(&other)),
     }

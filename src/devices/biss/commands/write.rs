@@ -29,7 +29,8 @@ fn value(range: RegisterRange, is_run: bool, text: &str) -> Result<Vec<u8>> {
         let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{range}: {text:?} is not a number")))?;
         return u8::try_from(number).map(|byte| vec![byte]).map_err(|_| out_of_range(range, text, 0, 0xFF));
     }
-    let bytes = parse_hex(text).map_err(|why| Failure::Usage(format!("{text:?} is not hex bytes: {why}")))?;
+    let bytes = parse_hex(text)
+        .map_err(|why| Failure::Usage(format!("{text:?} is not a sequence of hexadecimal bytes: {why}")))?;
     if bytes.len() == usize::from(range.count()) {
         return Ok(bytes);
     }

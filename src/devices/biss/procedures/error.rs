@@ -35,7 +35,7 @@ pub enum Error {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// Nothing came back.
-    #[error("no reply while {requested} ({tries} tries)")]
+    #[error("no reply while {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
         /// Number of attempts.
@@ -44,7 +44,7 @@ pub enum Error {
         echo_heard: bool,
     },
     /// Something came back and was broken every time.
-    #[error("damaged reply while {requested} ({tries} tries): {cause}")]
+    #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged {
         requested: RequestedItem,
         /// Number of attempts.
@@ -59,7 +59,7 @@ pub enum Error {
     #[error(transparent)]
     Adapter(#[from] AdapterError),
     /// No encoder acknowledges on the bus.
-    #[error("nobody acknowledges on the bus ({tries} tries)")]
+    #[error("no encoder acknowledges on the bus (attempts: {tries})")]
     NoAcknowledge {
         /// Number of attempts.
         tries: u32,
@@ -67,13 +67,13 @@ pub enum Error {
         supply_off: bool,
     },
     /// The data line stays low.
-    #[error("the data line stays low ({tries} tries)")]
+    #[error("the data line stays low (attempts: {tries})")]
     StuckLow {
         /// Number of attempts.
         tries: u32,
     },
     /// The data line stays high.
-    #[error("the data line stays high ({tries} tries)")]
+    #[error("the data line stays high (attempts: {tries})")]
     StuckHigh {
         /// Number of attempts.
         tries: u32,

@@ -12,7 +12,7 @@ use crate::units::Moment;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoReading {
     /// No encoder acknowledged.
-    #[error("nobody acknowledges on the bus")]
+    #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
     /// Its bits are no frame: a wrong checksum, a line that does not move.
     #[error(transparent)]

@@ -41,8 +41,7 @@ fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
         0 => Ok(frames(arguments)?.into_iter().map(Captured::Bytes).collect()),
         all if all == arguments.len() => Ok(words.into_iter().flatten().collect()),
         _ => Err(Failure::Usage(
-            "words (4 hex digits, as 0439) and bytes cannot stand beside each other: explain them one after the other"
-                .to_owned(),
+            "words (4 hexadecimal digits, such as 0439) and bytes cannot be mixed: decode them separately".to_owned(),
         )),
     }
 }

@@ -37,9 +37,9 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
     };
     let hint = match &common.link {
         None => {
-            "only devices in this computer's own network are asked; one elsewhere is asked with --link enip:ADDRESS."
+            "only devices in the network of this computer are searched; for other devices, use --link enip:ADDRESS."
         }
-        Some(_) => "that address alone was asked; without --link all in this computer's own network are.",
+        Some(_) => "only this address was searched; without --link, the whole network of this computer is searched.",
     };
     Err(Failure::Failed(vec![format!("{heard} Check supply, cable and address: {hint}")]))
 }
@@ -47,10 +47,14 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
 /// Returns the addresses of a link: one device, or all in a network (enip:192.168.1.255).
 fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     let (Scheme::Enip, Wire::Host(host)) = (url.scheme, url.wire()) else {
-        return Err(Failure::Usage("find hiperdrive takes --link enip:ADDRESS, or no link to ask all".to_owned()));
+        return Err(Failure::Usage(
+            "find hiperdrive takes --link enip:ADDRESS, or no link to search the whole network".to_owned(),
+        ));
     };
     let found = host.to_socket_addrs().map_err(|error| {
-        Failure::Failed(vec![format!("{host} has no address: {error}. Give its IP address, as in enip:192.168.1.10.")])
+        Failure::Failed(vec![format!(
+            "{host} could not be resolved: {error}. Enter its IP address, such as enip:192.168.1.10."
+        )])
     })?;
     let of_version_4 = |address| match address {
         SocketAddr::V4(address) => Some(address),
@@ -58,7 +62,7 @@ fn addresses(url: &LinkUrl) -> Result<Vec<SocketAddrV4>> {
     };
     let found: Vec<SocketAddrV4> = found.filter_map(of_version_4).take(1).collect();
     if found.is_empty() {
-        return Err(Failure::Failed(vec![format!("{host} has no IPv4 address, which these devices need.")]));
+        return Err(Failure::Failed(vec![format!("{host} has no IPv4 address, which these devices require.")]));
     }
     Ok(found)
 }

@@ -140,17 +140,17 @@ fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
     };
     let mut facts: Vec<DriveFact> = drive.buffer.iter().enumerate().map(error).collect();
     if is_fault && drive.buffer.is_empty() {
-        let text = "the drive is in a fault and names no error".to_owned();
+        let text = "the drive has a fault but reports no error".to_owned();
         facts.push(DriveFact { drive: number, code: 0, text, severity: FactSeverity::Error });
     }
     if drive.status.has(StatusBit::PositionLimit) {
-        let text = "the drive stands outside its limits (158, 160)".to_owned();
+        let text = "the drive is outside its limits (158, 160)".to_owned();
         facts.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
     }
     // 118: 0 is well, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
-        let text = format!("RS-485 to the drive has errors (parameter 118: 0x{communication:04X})");
+        let text = format!("the RS-485 link to the drive has errors (parameter 118: 0x{communication:04X})");
         facts.push(DriveFact { drive: number, code: communication, text, severity: FactSeverity::Warning });
     }
     facts
@@ -192,7 +192,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
         }
     }
     for own in of(FactSeverity::Earlier) {
-        lines.add("note", format!("{} (in the error buffer from before, not present now)", words(own)));
+        lines.add("note", format!("{} (earlier entry in the error buffer, not present now)", words(own)));
     }
     lines.add("supply", format!("{:.1} V", volts(status))).add("temperature", format!("{} °C", status.temperature));
     for drive in &status.drives {

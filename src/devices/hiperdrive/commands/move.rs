@@ -43,9 +43,9 @@ enum MotionOutcome {
 
 pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Result {
     let target = parse_number(&wanted.target)
-        .ok_or_else(|| Failure::Usage(format!("{} is not a position: a number of steps", wanted.target)))?;
+        .ok_or_else(|| Failure::Usage(format!("{} is not a position: enter a number of steps", wanted.target)))?;
     if !wanted.yes {
-        let what = "this moves the drive: look that it may, and give --yes; nothing was touched";
+        let what = "this moves the drive: make sure that it may move, and add --yes; nothing was changed";
         return Err(Failure::Usage(what.to_owned()));
     }
     let percent = |percent| Percent::new(percent).unwrap_or(Percent::FULL);
@@ -101,7 +101,7 @@ fn range(drive: DriveNumber, target: i32, (low, high): (i32, i32), scale: Option
         Some(scale) => format!("{steps} ({:.2} turns)", f64::from(steps) / scale.steps_per_turn()),
         None => steps.to_string(),
     };
-    format!("drive {} goes to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
+    format!("drive {} moves to {}, within {} to {}", drive.get(), turns(target), turns(low), turns(high))
 }
 
 /// Returns the permit of a drive by its present parameters, and its scale.
@@ -195,13 +195,14 @@ fn stop_reasons(came: &MotionOutcome, stood: Option<DriveView>, seconds: u16) ->
     let first = match came {
         MotionOutcome::Ended(ended) => words::ended(*ended, place).terminal(),
         MotionOutcome::Interrupted => "Interrupted: the drive was stopped.".to_owned(),
-        MotionOutcome::Late => {
-            format!("It is not there after {seconds} s, and was stopped. Give it more time with --timeout.")
-        }
+        MotionOutcome::Late => format!(
+            "The drive did not reach its target within {seconds} s and was stopped. Use --timeout to allow more \
+             time."
+        ),
     };
     let place = match stood {
         Some(own) => format!("Drive {} is at {}.", own.number.get(), own.actual.position),
-        None => "Where the drive is was not heard.".to_owned(),
+        None => "The position of the drive is not known.".to_owned(),
     };
     vec![first, place]
 }

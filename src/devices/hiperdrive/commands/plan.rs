@@ -50,7 +50,7 @@ pub(super) fn commit(
     check_wear::<Hiperdrive>(consent, &prepared)?;
     if let Some(saves) = prepared.wear() {
         output.remark(&format!(
-            "{saves} saves have been counted here with this one: the manual names no limit, and from {WEAR_WARNING} on an \
+            "This is save {saves} counted on this computer. The manual gives no limit; from {WEAR_WARNING} on, an \
              EEPROM may wear out."
         ));
     }

@@ -94,7 +94,7 @@ fn show(output: &Output, reading: &DriveReading, place: Option<TurnPosition>) ->
     let words = match place {
         _ if !is_valid(reading) => "not valid".to_owned(),
         Some(place) => format!("turn {}, step {}, {:.3}°", place.turns, place.steps, place.degrees),
-        None => "its scale (154, 156) cannot be".to_owned(),
+        None => "its scaling (154, 156) is not valid".to_owned(),
     };
     let state = explained::state(state).terminal();
     output.show(&json, &format!("{t:10.3} s  {:>11}  {words}  ({state})\n", actual.position))

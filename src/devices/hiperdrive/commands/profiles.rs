@@ -51,8 +51,8 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
 fn absent(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {
-        Some(drive) => format!("no drive is at place {}: its parameters are left alone", drive.get()),
-        None => format!("{name} is left alone: the device does not have it"),
+        Some(drive) => format!("no drive is connected to port {}: its parameters are not restored", drive.get()),
+        None => format!("{name} is not restored: the device does not have it"),
     });
     let mut words: Vec<String> = words.collect();
     words.dedup();
@@ -72,10 +72,10 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
     }
     for item in &prepared.mounting_left {
         let how = match item.0.base() {
-            198 => "a reference is never restored; \"do hiperdrive set-position\" sets it",
-            _ => "--with-mounting restores it",
+            198 => "a reference is never restored; set it with \"do hiperdrive set-position\"",
+            _ => "use --with-mounting to restore it",
         };
-        output.remark(&format!("{item} belongs to the mounting and is left alone: {how}"));
+        output.remark(&format!("{item} belongs to the mounting and is not restored: {how}"));
     }
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();
     let left = Unrestored { unchanged: prepared.unchanged, missing: prepared.missing.clone(), redo };

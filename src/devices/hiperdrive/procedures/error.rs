@@ -146,9 +146,9 @@ pub enum Error {
     #[error("cancelled")]
     Cancelled,
     /// Bytes keep coming that are no frames.
-    #[error("bytes keep arriving that are no EtherNet/IP frames")]
+    #[error("bytes keep arriving that are not EtherNet/IP frames")]
     NeverSilent,
-    #[error("no answer: {requested}, tried {tries} times")]
+    #[error("no reply: {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
         /// Number of attempts.
@@ -157,7 +157,7 @@ pub enum Error {
         late: Option<Late>,
     },
     /// It answers, and not as it should.
-    #[error("{requested}: {cause}, tried {tries} times")]
+    #[error("{requested}: {cause} (attempts: {tries})")]
     Damaged {
         requested: RequestedItem,
         /// Number of attempts.
@@ -195,7 +195,7 @@ pub enum Error {
     #[error("there is no parameter {0}")]
     Unknown(ParameterNumber),
     /// A number that no parameter has.
-    #[error("{0} is no parameter's number")]
+    #[error("{0} is not a parameter number")]
     NoNumber(u16),
     /// The place does not exist.
     #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
@@ -206,7 +206,7 @@ pub enum Error {
         topology: Topology,
     },
     /// No drive is plugged in there.
-    #[error("no drive is connected at place {}", drive.get())]
+    #[error("no drive is connected to port {}", drive.get())]
     NoDrive {
         /// The place.
         drive: DriveNumber,
@@ -239,7 +239,7 @@ pub enum Error {
     #[error("drive {} moves", drive.get())]
     Moving { drive: DriveNumber },
     /// Its identity is not that of a HIPERDRIVE.
-    #[error("this is no HIPERDRIVE: {product:?}")]
+    #[error("this is not a HIPERDRIVE: {product:?}")]
     NotHiperdrive {
         /// Its category, or the name in its identity object.
         product: String,

@@ -47,7 +47,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             return Err(usage("no argument"));
         }
         (HiperfaceAction::Check, _) => return Err(usage("nothing or \"restart\"")),
-        (HiperfaceAction::ConfigureForNow, _) => return Err(usage("one settings byte, as in 0xE5")),
+        (HiperfaceAction::ConfigureForNow, _) => return Err(usage("one settings byte, such as 0xE5")),
         (HiperfaceAction::SetPosition | HiperfaceAction::Synchronise, _) => return Err(usage("one position")),
         (HiperfaceAction::CreateField, _) => {
             return Err(usage("NUMBER SIZE or NUMBER STATUS, then code=N, ce=0 or 1, we=0 or 1"));
@@ -57,7 +57,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
             return Err(usage("one field number"));
         }
         (HiperfaceAction::ChangeCode, _) => {
-            return Err(usage("NUMBER HEX; the present code is given with --code NUMBER=HEX"));
+            return Err(usage("NUMBER HEX; specify the present code with --code NUMBER=HEX"));
         }
     };
     change_and_show(common, output, change, &act.consent, &act.action)
@@ -76,7 +76,8 @@ fn change_code(number: &str, new: &str) -> Result<Change> {
             u8::try_from(n).ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("access code", number, 0, 3))
         })?;
     // The message does not repeat what may be a code.
-    let new = parse_code(new).ok_or_else(|| Failure::Usage("the new code is two hex digits".to_owned()))?;
+    let new =
+        parse_code(new).ok_or_else(|| Failure::Usage("the new code must be two hexadecimal digits".to_owned()))?;
     Ok(Change::ChangeCode { number, new })
 }
 
@@ -87,15 +88,14 @@ fn field(text: &str) -> Result<u8> {
 
 fn size(text: &str) -> Result<FieldSize> {
     let number = parse_number(text).ok_or_else(|| Failure::Usage(format!("{text:?} is not a size")))?;
-    usize::try_from(number)
-        .ok()
-        .and_then(FieldSize::from_bytes)
-        .ok_or_else(|| Failure::Failed(vec![format!("size {text}: a data field has 16 to 128 bytes, in steps of 16.")]))
+    usize::try_from(number).ok().and_then(FieldSize::from_bytes).ok_or_else(|| {
+        Failure::Failed(vec![format!("size {text} is not valid: a data field has 16 to 128 bytes, in steps of 16.")])
+    })
 }
 
 /// `32 code=2 ce=1 we=1`, or a status byte: `0xE9`. A field is writable and needs its code unless told otherwise.
 fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
-    let [first, options @ ..] = words else { return Err(Failure::Usage("a size is missing".to_owned())) };
+    let [first, options @ ..] = words else { return Err(Failure::Usage("the size is missing".to_owned())) };
     let is_hex = first.starts_with("0x") || first.starts_with("0X");
     let number =
         parse_number(first).ok_or_else(|| Failure::Usage(format!("{first:?} is not a size or a status byte")))?;
@@ -122,7 +122,7 @@ fn flag(name: &str, value: &str) -> Result<bool> {
     match value {
         "0" => Ok(false),
         "1" => Ok(true),
-        _ => Err(Failure::Usage(format!("{name}={value}: 0 or 1"))),
+        _ => Err(Failure::Usage(format!("{name}={value} is not valid: use 0 or 1"))),
     }
 }
 

@@ -30,7 +30,7 @@ impl FromStr for Code {
 
     /// The message never repeats the text: it may be a code.
     fn from_str(text: &str) -> std::result::Result<Self, String> {
-        let form = || "an access code is given as N=HEX with N from 0 to 3, as in 2=1A".to_owned();
+        let form = || "an access code has the form N=HEX with N from 0 to 3, such as 2=1A".to_owned();
         let (number, code) = text.split_once('=').ok_or_else(form)?;
         let number = number.trim().parse().ok().and_then(CodeNumber::new).ok_or_else(form)?;
         Ok(Code { number, code: parse_code(code).ok_or_else(form)? })

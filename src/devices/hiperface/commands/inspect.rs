@@ -31,7 +31,7 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
         && !can_ask()
     {
         return Err(Failure::Usage(
-            "a search sends to every address: give --only-master when no drive is connected to this line or powered, or \
+            "a search sends to every address: add --only-master if no drive is connected to this line or powered, or \
              run it on a terminal; nothing was sent"
                 .to_owned(),
         ));
@@ -39,15 +39,16 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
     let find = find.own.read::<args::FindOptions>()?;
     let mut runner = Runner::open(common)?;
     let power_cycle = find.power_cycle.map(Duration::from_secs);
-    output.remark("Listening for a second, then asking every address at every setting: one to two minutes.");
+    output.remark(
+        "Listening for one second, then trying every address with all settings. This takes one to two minutes.",
+    );
     let options = FindOptions { one_encoder: find.one_encoder, power_cycle };
     match runner.run(HiperfaceJob::Find(options))? {
         HiperfaceOutput::Found(Findings::Searched { found, complete }) => {
             show_found(output, &found)?;
             if !complete {
                 return Err(Failure::Failed(vec![
-                    "Cancelled: the search was cut short, there may be more encoders than those that answered."
-                        .to_owned(),
+                    "Cancelled: the search is incomplete, so there may be more encoders.".to_owned(),
                 ]));
             }
             if found.is_empty() {
@@ -60,8 +61,8 @@ pub(super) fn find(common: &Common, output: &Output, find: &Find) -> Result {
             Ok(Done::Well)
         }
         HiperfaceOutput::Found(Findings::ForeignTraffic { bytes }) => Err(Failure::Failed(vec![format!(
-            "Somebody else talks on this line ({bytes} bytes in a second), so nothing was sent. Disconnect the drive or \
-             controller, then try again."
+            "Another device sends on this line ({bytes} bytes in one second), so nothing was sent. Disconnect the \
+             drive or controller, then try again."
         )])),
         other => Err(unexpected(&other)),
     }
@@ -132,7 +133,7 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
 }
 
 fn identity_text(identity: &Identity, runner: &Runner) -> String {
-    let unknown = || "not told by this encoder".to_owned();
+    let unknown = || "not provided by this encoder".to_owned();
     let mut lines = Lines::default();
     lines
         .add("encoder", format!("{} (type {:02X}h)", identity.name, identity.label.encoder_type))
@@ -157,7 +158,7 @@ fn identity_text(identity: &Identity, runner: &Runner) -> String {
             lines.add(format!("label parameter {}", parameter.number), format!("{value} ({value:04X}h)"));
         }
         if !label.checksum_fits {
-            lines.add("extended label", "its checksum is not the XOR of its bytes");
+            lines.add("extended label", "checksum error");
         }
     }
     lines.text()
@@ -279,7 +280,7 @@ pub(super) fn read(common: &Common, output: &Output, item: &str) -> Result {
         }
         Value::Analogue { value, limit } => {
             if limit.is_some_and(|limit| *value > limit) {
-                output.remark("The value exceeds the limit of the encoder's extended label.");
+                output.remark("The value exceeds the limit in the extended label of the encoder.");
             }
             let words = limit.map(|limit| format!("  (limit {limit})")).unwrap_or_default();
             (json!({"item": item.to_string(), "value": value, "limit": limit}), format!("{value}{words}\n"))

@@ -75,8 +75,8 @@ impl DeviceCommands for HiperfaceCommands {
 
     fn refused_option(&self, option: &str) -> Option<String> {
         let why = match option {
-            "--code" => "is for devices with access codes; this one has none",
-            "--only-master" => "is for hiperface, whose lines have one master",
+            "--code" => "is for devices with access codes, which this device does not have",
+            "--only-master" => "is for hiperface, where a line has only one master",
             _ => return None,
         };
         Some(format!("{option} {why}"))
@@ -124,7 +124,7 @@ impl DeviceCommands for HiperfaceCommands {
 
 fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     if arguments.bridge {
-        return Err(Failure::Usage("--bridge is for biss: hiperface has a serial line of its own".to_owned()));
+        return Err(Failure::Usage("--bridge is for biss: hiperface uses a serial port".to_owned()));
     }
     let config =
         Config::from_pairs(&settings(output, arguments)?).map_err(|error| Failure::Usage(error.to_string()))?;

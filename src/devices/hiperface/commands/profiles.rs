@@ -37,7 +37,7 @@ fn saved(runner: &mut Runner, options: SaveOptions) -> Result<Box<SavedProfile>>
 fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
     for (field, code) in &saved.locked {
         output.remark(&format!(
-            "Data field {field} is {what}: access code {code} is another; give it with --code {code}=HEX."
+            "Data field {field} is {what}: access code {code} is different. Specify it with --code {code}=HEX."
         ));
     }
 }
@@ -82,7 +82,8 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         output.remark(&text.terminal());
     }
     for item in &prepared.missing {
-        output.remark(&format!("{item} is left alone: profile or encoder does not have it, or it cannot be read"));
+        output
+            .remark(&format!("{item} is not restored: it is missing in the profile or the encoder, or cannot be read"));
     }
     say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.redo().iter().map(ToString::to_string).collect();
@@ -98,10 +99,10 @@ fn answers(restore: &Restore) -> Result<BTreeMap<u8, bool>> {
     for (given, copies) in [(&restore.copy, true), (&restore.leave, false)] {
         for text in given {
             let Item::Field(FieldRange { field, start: 0, count: None }) = super::item(text)? else {
-                return Err(Failure::Usage(format!("{text:?} is not a whole data field: give field:N")));
+                return Err(Failure::Usage(format!("{text:?} is not a whole data field: use field:N")));
             };
             if answers.insert(field, copies).is_some_and(|before| before != copies) {
-                return Err(Failure::Usage(format!("field:{field} cannot be both copied and left")));
+                return Err(Failure::Usage(format!("field:{field} cannot be both in --copy and in --leave")));
             }
         }
     }
@@ -117,7 +118,7 @@ fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<
     if !dry_run && !open.is_empty() {
         let open: Vec<String> = open.into_iter().map(words).collect();
         return Err(Failure::Failed(vec![format!(
-            "{} Nothing was written. Answer for each with --copy field:N or --leave field:N.",
+            "{} Nothing was written. Specify --copy field:N or --leave field:N for each.",
             open.join(" ")
         )]));
     }
@@ -125,8 +126,8 @@ fn check_answers(output: &Output, prepared: &Prepared, dry_run: bool) -> Result<
         let item = own.item();
         let becomes = match own.answer {
             Some(true) => "They are copied.".to_owned(),
-            Some(false) => "They are left as they are.".to_owned(),
-            None => format!("They are left as they are; a restore needs --copy {item} or --leave {item}."),
+            Some(false) => "They are not changed.".to_owned(),
+            None => format!("They are not changed; a restore needs --copy {item} or --leave {item}."),
         };
         output.remark(&format!("{} {becomes}", words(own)));
     }

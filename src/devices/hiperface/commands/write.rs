@@ -39,7 +39,7 @@ pub(super) fn change_and_show(
     let changes_code = prepared.plan.ops.iter().any(|op| matches!(op, Op::ChangeCode { .. }));
     let spent = commit(&mut runner, output, prepared, consent)?;
     if changes_code {
-        output.remark("An access code cannot be read back; the encoder has acknowledged it.");
+        output.remark("An access code cannot be read back; the encoder acknowledged it.");
     }
     show_changed(output, item, &operations, &spent)
 }
@@ -47,9 +47,10 @@ pub(super) fn change_and_show(
 fn change_of(item: Item, value: &str) -> Result<Change> {
     match item {
         Item::Field(range) => {
-            let bytes = parse_hex(value).map_err(|why| Failure::Usage(format!("{value:?} is not hex bytes: {why}")))?;
+            let bytes = parse_hex(value)
+                .map_err(|why| Failure::Usage(format!("{value:?} is not a sequence of hexadecimal bytes: {why}")))?;
             if bytes.is_empty() {
-                return Err(Failure::Usage("there are no bytes to write".to_owned()));
+                return Err(Failure::Usage("no bytes to write were given".to_owned()));
             }
             if let Some(count) = range.count.filter(|count| *count != bytes.len()) {
                 return Err(Failure::Usage(format!("{range} takes {}, given: {}", plural(count, "byte"), bytes.len())));
@@ -69,10 +70,10 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
         Item::Counter => match number(item, value)? {
             0 => Ok(Change::ClearCounter),
             _ => Err(Failure::Usage(
-                "the counter can be set to 0, or counted up with \"do hiperface increment-counter\"".to_owned(),
+                "the counter can only be set to 0, or incremented with \"do hiperface increment-counter\"".to_owned(),
             )),
         },
-        Item::Analogue(_) => Err(Failure::Usage("an analogue value can only be read".to_owned())),
+        Item::Analogue(_) => Err(Failure::Usage("an analogue value is read-only".to_owned())),
     }
 }
 
@@ -83,7 +84,8 @@ pub(super) fn settings(value: &str) -> Result<LineSettings> {
         return Ok(settings);
     }
     Err(Failure::Failed(vec![format!(
-        "settings {:02X}h have a reserved value: bit 3 is 0, bits 5 and 4 are 00, 10 or 11, bits 2 to 0 are 0 to 6.",
+        "settings {:02X}h contain a reserved value: bit 3 must be 0, bits 5 and 4 must be 00, 10 or 11, bits 2 to 0 \
+         must be 0 to 6.",
         settings.byte()
     )]))
 }
@@ -126,7 +128,10 @@ pub(super) fn plan_text(prepared: &Prepared) -> String {
         lines.add(op.item().to_string(), format!("{old}  →  {new}"));
     }
     if let Some(wanted) = prepared.wanted_position {
-        lines.add("wanted", format!("{wanted}; the value above keeps the phase to the sine signal (--exact does not)"));
+        lines.add(
+            "wanted",
+            format!("{wanted}; the value above is in phase with the sine signal (use --exact for the exact value)"),
+        );
     }
     plan::text(plan, lines, prepared.cycles_seen, None)
 }

@@ -13,7 +13,7 @@ pub enum Error {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// Nothing came back.
-    #[error("no reply from address {address:02X}h to {} ({tries} tries)", command.row().name)]
+    #[error("no reply from address {address:02X}h to {} (attempts: {tries})", command.row().name)]
     NoReply {
         /// Address of the request.
         address: u8,
@@ -24,7 +24,7 @@ pub enum Error {
         echo_heard: bool,
     },
     /// Something came back and was broken every time.
-    #[error("damaged reply to {} ({tries} tries): {cause}", command.row().name)]
+    #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
     Damaged {
         command: Command,
         /// Number of attempts.

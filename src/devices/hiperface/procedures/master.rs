@@ -71,7 +71,7 @@ impl<'a> Master<'a> {
         Ok(self.line.drain(duration)?)
     }
 
-    /// Sets speed and parity of our side.
+    /// Sets baud rate and parity of our side.
     ///
     /// # Errors
     /// The wire.
@@ -81,7 +81,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Returns whether speed and parity can be set on this side; otherwise they are set behind the link.
+    /// Returns whether baud rate and parity can be set on this side; otherwise they are set behind the link.
     pub fn sets_format(&self) -> bool {
         self.line.ctx.wire.sets_format()
     }

@@ -38,15 +38,29 @@ pub enum TypeTableError {
         problem: String,
     },
     /// A number is zero or too large.
-    #[error("type {code:02X}h: {quantity} must be between {} and {}", range.start(), range.end())]
+    #[error("type {code:02X}h: {entry} must be between {} and {}", range.start(), range.end())]
     Range {
         /// The row's type byte.
         code: u8,
-        /// The quantity.
-        quantity: &'static str,
+        /// The entry with this number.
+        entry: ShapeEntry,
         /// The possible range.
         range: RangeInclusive<u32>,
     },
+}
+
+/// A number in the shape of an encoder type, by its name in the file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ShapeEntry {
+    /// Periods per turn.
+    #[error("periods")]
+    Periods,
+    /// Number of turns.
+    #[error("turns")]
+    Turns,
+    /// Length of a period in nanometres.
+    #[error("period_nm")]
+    PeriodLength,
 }
 
 /// The table as it stands in the file.
@@ -120,20 +134,20 @@ impl Row {
         let geometry = match self.shape {
             None => None,
             Some(Shape::Rotary { periods, turns }) => {
-                self.within("periods", periods, 1..=Self::MOST)?;
-                self.within("turns", turns, 1..=Self::MOST / periods)?;
+                self.within(ShapeEntry::Periods, periods, 1..=Self::MOST)?;
+                self.within(ShapeEntry::Turns, turns, 1..=Self::MOST / periods)?;
                 Some(Geometry::Rotary { periods, turns })
             }
             Some(Shape::Linear { period_nm }) => {
-                self.within("period_nm", period_nm, 1..=u32::MAX)?;
+                self.within(ShapeEntry::PeriodLength, period_nm, 1..=u32::MAX)?;
                 Some(Geometry::Linear { period_nm, periods: 0 })
             }
         };
         Ok(EncoderType { code: self.code, name: self.name, geometry, kit: self.kit })
     }
 
-    fn within(&self, quantity: &'static str, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
-        if range.contains(&value) { Ok(()) } else { Err(TypeTableError::Range { code: self.code, quantity, range }) }
+    fn within(&self, entry: ShapeEntry, value: u32, range: RangeInclusive<u32>) -> Result<(), TypeTableError> {
+        if range.contains(&value) { Ok(()) } else { Err(TypeTableError::Range { code: self.code, entry, range }) }
     }
 }
 
@@ -180,7 +194,8 @@ mod tests {
     #[test]
     fn a_bad_table_is_refused_with_its_place() {
         let zero = r#"(types: [(code: 1, name: "x", shape: Some(rotary(periods: 0, turns: 1)))])"#;
-        assert!(matches!(EncoderTypes::parse(zero), Err(TypeTableError::Range { code: 1, quantity: "periods", .. })));
+        let refused = EncoderTypes::parse(zero);
+        assert!(matches!(refused, Err(TypeTableError::Range { code: 1, entry: ShapeEntry::Periods, .. })));
         let misspelt = "(types: [\n(code: 1, nam: \"x\")])";
         assert!(matches!(EncoderTypes::parse(misspelt), Err(TypeTableError::Syntax { line: 2, .. })));
         assert!(EncoderTypes::parse("").is_err());

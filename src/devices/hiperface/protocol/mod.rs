@@ -36,7 +36,7 @@ pub use data_field::{
     AccessCode, CodeNumber, DataFieldStatus, EXTENDED_LABEL_FIELD, FieldSize, FreeMemory, MAX_TRANSFER,
 };
 pub use describe::{Arguments, FrameFact, describe};
-pub use encoder_type::{EncoderType, EncoderTypes, TypeTableError};
+pub use encoder_type::{EncoderType, EncoderTypes, ShapeEntry, TypeTableError};
 pub use extended_label::{ExtendedLabel, LabelError, LabelParameter, LabelPart};
 pub use frame::{Frame, FrameError, checksum};
 pub use line_settings::{BAUDS, LineSettings};

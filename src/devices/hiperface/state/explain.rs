@@ -264,8 +264,8 @@ mod tests {
                 "Restore the profile again to complete the write",
                 "Restore the profile again to complete the write",
             ),
-            (ChangeKind::Bytes, "remain as edits", "Give the command again to complete the write"),
-            (ChangeKind::Single, "repeat the change", "give the command again if necessary"),
+            (ChangeKind::Bytes, "remain as edits", "Run the command again to complete the write"),
+            (ChangeKind::Single, "repeat the change", "run the command again if necessary"),
         ];
         for (kind, part, terminal) in cases {
             let cut =

@@ -70,7 +70,7 @@ fn lead_back(common: &Common, output: &Output) -> Result {
     };
     output.show(&json, &format!("the encoder is in mode {is}\n"))?;
     let why = words::refusal(error).terminal();
-    Err(Failure::Failed(vec![format!("The encoder was led back and sends {word}: {why}")]))
+    Err(Failure::Failed(vec![format!("The encoder was returned to operation, but sends {word}: {why}")]))
 }
 
 fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut Runner) -> Result<Change>) -> Result {

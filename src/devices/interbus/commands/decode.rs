@@ -23,7 +23,9 @@ pub(super) fn decode(output: &Output, arguments: &Decode) -> Result {
     if let (Some(Captured::K1(word)), Some(Direction::Out)) =
         (words.iter().find(|word| matches!(word, Captured::K1(_))), direction)
     {
-        return Err(Failure::Usage(format!("{word:04X} has 4 digits: K1 encoders take no words, only K3 ones do")));
+        return Err(Failure::Usage(format!(
+            "{word:04X} has 4 digits: only K3 encoders take words, K1 encoders do not"
+        )));
     }
     let explained: Vec<Explained> = words.iter().map(|word| explain(*word, direction, &known)).collect();
     show(output, &explained)
@@ -49,7 +51,7 @@ fn captured(text: &str) -> Result<Captured> {
     };
     word.ok_or_else(|| {
         Failure::Usage(format!(
-            "{text:?} is not a word of an INTERBUS encoder: 8 hex digits, as 020000FF, or 4 of a K1"
+            "{text:?} is not a word of an INTERBUS encoder: enter 8 hexadecimal digits, such as 020000FF, or 4 for K1"
         ))
     })
 }
@@ -60,7 +62,10 @@ fn read_out(text: &str) -> Result<ReadOut> {
     let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOut::new);
     named.or_else(numbered).ok_or_else(|| {
         let names: Vec<String> = READ_OUTS.iter().map(|row| row.name.replace(' ', "-")).collect();
-        Failure::Usage(format!("{text:?} is no read-out; these are {}, or a number up to 0xFFFF", names.join(", ")))
+        Failure::Usage(format!(
+            "{text:?} is not a read-out; read-outs are {}, or a number up to 0xFFFF",
+            names.join(", ")
+        ))
     })
 }
 

@@ -36,7 +36,7 @@ pub(super) fn identify(common: &Common, output: &Output) -> Result {
 
 fn identity_text(identity: &Identity) -> String {
     let kind = if identity.flags.multiturn() { "multiturn" } else { "single turn" };
-    let less = if identity.flags.steps_minus_one() { ", steps given less one" } else { "" };
+    let less = if identity.flags.steps_minus_one() { ", steps minus one" } else { "" };
     let direction = words::direction(identity.direction).terminal();
     let mut lines = Lines::default();
     lines

@@ -33,9 +33,9 @@ use crate::profile::Body;
 pub(crate) struct InterbusCommands;
 
 /// Warning about the effect of reading cam programs on a machine.
-const SWITCHES: &str = "reading cam programs selects them one after the other, which switches the encoder's live outputs. \
-                        A terminal asks first whether the machine is at standstill; without one, a note goes to stderr \
-                        and the command continues.";
+const SWITCHES: &str = "reading cam programs selects them one after the other, which switches the live outputs of \
+                        the encoder. On a terminal the command first asks whether the machine stands still; without \
+                        a terminal it prints a note to stderr and continues.";
 
 impl DeviceCommands for InterbusCommands {
     fn name(&self) -> &'static str {

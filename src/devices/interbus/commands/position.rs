@@ -74,7 +74,7 @@ fn words(reading: &WordReading, cams: Option<&[u8]>) -> String {
         (Some(position), Some(place)) => {
             format!("position {position}: turn {}, step {}, {:.3}°", place.turns, place.steps, place.degrees)
         }
-        (Some(position), None) => format!("position {position}, beyond the measuring range"),
+        (Some(position), None) => format!("position {position}, outside the measuring range"),
         (None, _) => "no whole position under the window".to_owned(),
     };
     match cams {

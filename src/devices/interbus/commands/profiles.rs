@@ -86,7 +86,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore, profi
         output.remark(&words::other_type(types).terminal());
     }
     for item in &prepared.missing {
-        output.remark(&format!("{item} is left alone: the encoder does not have it"));
+        output.remark(&format!("{item} is not restored: the encoder does not have it"));
     }
     say_mounting_left(output, &prepared.mounting_left);
     let redo = prepared.mounting_written.iter().map(ToString::to_string).collect();

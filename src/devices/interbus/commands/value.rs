@@ -19,12 +19,12 @@ pub(super) fn value(item: Item, text: &str) -> Result<ItemValue> {
             ItemValue::Mask(u8::try_from(mask).map_err(|_| out_of_range(item, text, 0, u8::MAX.into()))?)
         }
         Item::Cam(..) => {
-            let form = || Failure::Usage(format!("{item}: {text:?} is not START..STOP, as in 100..200"));
+            let form = || Failure::Usage(format!("{item}: {text:?} is not START..STOP, such as 100..200"));
             let (start, stop) = text.split_once("..").ok_or_else(form)?;
             ItemValue::Cam(Cam { start: edge(item, start)?, stop: edge(item, stop)? })
         }
         Item::Temperature | Item::OperatingTime => {
-            return Err(Failure::Usage(format!("{item} is measured: it cannot be written")));
+            return Err(Failure::Usage(format!("{item} is a measured value and cannot be written")));
         }
     })
 }

@@ -95,15 +95,17 @@ impl Exception {
     /// Returns the most likely cause, and what to do.
     pub const fn cause(self) -> &'static str {
         match self.0 {
-            0x01 => "the gateway has no such function: look whether its outputs are holding registers",
-            0x02 => "there are no such registers: compare input= and output= with the gateway's process image",
-            0x03 => "it does not take two registers at once: compare input= and output= with its process image",
-            0x04 => "the gateway has failed: look at its diagnosis, and whether INTERBUS runs",
-            0x05 | 0x06 => "the gateway is busy: let other programs end what they do with it, and try again",
+            0x01 => "the gateway does not have this function: check that its outputs are holding registers",
+            0x02 => "the gateway does not have these registers: compare input= and output= with its process image",
+            0x03 => {
+                "the gateway does not accept two registers at once: compare input= and output= with its process image"
+            }
+            0x04 => "the gateway has failed: check its diagnosis, and whether INTERBUS runs",
+            0x05 | 0x06 => "the gateway is busy: wait until other programs have finished, and try again",
             0x08 => "the gateway's memory is damaged: switch it off and on",
-            0x0A => "the gateway does not reach its bus: compare unit= with its settings",
-            0x0B => "nobody answers behind the gateway: look at the encoder's lamps and cable, and compare unit=",
-            _ => "look into the gateway's manual for this code",
+            0x0A => "the gateway cannot reach its bus: compare unit= with its settings",
+            0x0B => "the encoder behind the gateway does not answer: check its LEDs and cable, and compare unit=",
+            _ => "look this code up in the gateway's manual",
         }
     }
 
@@ -123,7 +125,7 @@ pub enum Damage {
         bytes: usize,
     },
     /// A reply of another unit.
-    #[error("a reply of unit {got} instead of {requested}")]
+    #[error("a reply from unit {got} instead of {requested}")]
     Unit {
         /// Requested unit.
         requested: u8,
@@ -174,10 +176,10 @@ pub enum Implausible {
     #[error(transparent)]
     Gear(#[from] GearError),
     /// Neither clockwise nor counterclockwise.
-    #[error("{0} is no direction")]
+    #[error("{0} is not a direction")]
     Direction(u32),
     /// A preset, an edge or a shift beyond what there can be.
-    #[error("{value} of read-out {read:08X} is more than there can be")]
+    #[error("{value} for OUT {read:08X} is too large")]
     Value {
         /// The OUT word that asked.
         read: u32,
@@ -192,14 +194,14 @@ pub enum Error {
     #[error(transparent)]
     Link(#[from] LinkError),
     /// The gateway does not answer.
-    #[error("the gateway does not answer while {requested} ({tries} tries)")]
+    #[error("the gateway does not answer {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
     },
     /// Every reply is damaged.
-    #[error("damaged reply while {requested} ({tries} tries): {cause}")]
+    #[error("damaged reply to {requested} (attempts: {tries}): {cause}")]
     Damaged {
         requested: RequestedItem,
         /// Number of attempts.
@@ -208,7 +210,7 @@ pub enum Error {
         cause: Damage,
     },
     /// Bytes keep arriving where there should be silence.
-    #[error("the gateway's line is never silent")]
+    #[error("the gateway sends data that was not requested")]
     NeverSilent,
     /// It refuses.
     #[error("the gateway refuses {requested}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
@@ -242,7 +244,7 @@ pub enum Error {
         milliseconds: u64,
     },
     /// Another master writes to the encoder.
-    #[error("another master writes to the encoder: OUT is {output:08X} where {sent:08X} was written")]
+    #[error("another master writes to the encoder: OUT is {output:08X}, but {sent:08X} was written")]
     OtherMaster {
         /// The OUT word written last.
         sent: u32,
@@ -264,10 +266,10 @@ pub enum Error {
         swapped: u32,
     },
     /// The data of the encoder are implausible.
-    #[error("what the encoder says of itself cannot be: {0}")]
+    #[error("the encoder reports implausible data: {0}")]
     Implausible(#[from] Implausible),
     /// It does not go into a mode.
-    #[error("the encoder is in mode {} and does not go into {}", is.emit(), wanted.emit())]
+    #[error("the encoder stays in mode {} instead of changing to {}", is.emit(), wanted.emit())]
     NoMode {
         /// The mode that it was sent to.
         wanted: StartupMode,
@@ -278,10 +280,10 @@ pub enum Error {
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
     /// It is in a mode that the manual does not have: what any word but a read-out does there is not known.
-    #[error("the encoder is in mode {}, which is unknown: nothing was sent but read-outs", mode.emit())]
+    #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
     UnknownMode { mode: StartupMode },
     /// The shaft turns where it must stand still.
-    #[error("the shaft moves: from position {from} to {to}")]
+    #[error("the shaft is moving: from position {from} to {to}")]
     Moving {
         /// The first position.
         from: u32,
@@ -289,7 +291,7 @@ pub enum Error {
         to: u32,
     },
     /// A written value does not read back.
-    #[error("{item} reads {reads} after {wanted} was written")]
+    #[error("{item} is {reads} after {wanted} was written")]
     NotTaken {
         item: String,
         /// The value written.
@@ -304,7 +306,7 @@ pub enum Error {
         item: String,
     },
     /// Something ended early, and the encoder could not be led back.
-    #[error("{cause}; the encoder could not be led back: {standing}")]
+    #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     NotLedBack {
         /// Why it ended; if nothing failed before, why it could not be led back.
         cause: Box<Error>,

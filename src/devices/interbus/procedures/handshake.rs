@@ -80,9 +80,9 @@ impl fmt::Display for LeftState {
         }
         match (self.found, self.is) {
             (Some(found), Some(is)) if found != is => {
-                write!(f, "; it was found in mode {} and is in mode {}", found.emit(), is.emit())
+                write!(f, "; its previous mode was {}, it is now in mode {}", found.emit(), is.emit())
             }
-            (Some(found), _) => write!(f, "; it was found in mode {}", found.emit()),
+            (Some(found), _) => write!(f, "; its previous mode was {}", found.emit()),
             _ => Ok(()),
         }
     }

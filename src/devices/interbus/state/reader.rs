@@ -121,7 +121,7 @@ mod tests {
         let of = |way| Reading { source: way, ..Reading::default() };
         // Reference 7.
         assert_eq!(says(of(WordSource::K1), "0FFF"), ["position 4095"]);
-        assert_eq!(says(of(WordSource::In), "0x00123456, C0000000"), ["position 1193046", "at work"]);
+        assert_eq!(says(of(WordSource::In), "0x00123456, C0000000"), ["position 1193046", "busy"]);
         assert_eq!(says(of(WordSource::Out), "080003e8h"), ["Preset value := 1000"]);
         assert_eq!(says(of(WordSource::K2), "00FFFFFF"), ["position 16777215"]);
         // Bits 15 to 12 of a K1 word should be 0 (reference 1).

@@ -176,13 +176,13 @@ mod tests {
         }
         for (word, mode, says) in [
             (0x0012_3456, Mode::Position, "position 1193046"),
-            (0xC000_0000, Mode::Position, "at work"),
+            (0xC000_0000, Mode::Position, "busy"),
             // −60 in 25 bits.
             (0x01FF_FFC4, Mode::Velocity, "speed -60 rpm"),
             (0xC200_00FF, Mode::Parameterisation, "echo of: Steps := 255"),
             (0x01CD_EF20, Mode::Cam, "cams on: 5; window 0x001CDEF"),
             (0x8000_0000, Mode::Cam, "position or cam outputs not valid (0x80000000)"),
-            (0x9800_0004, Mode::Cam, "a cam starts or stops beyond the measuring range (0x98000004)"),
+            (0x9800_0004, Mode::Cam, "a cam starts or stops outside the measuring range (0x98000004)"),
         ] {
             assert_eq!(english(word_text(word, &known(mode))), says, "{word:08X}");
         }

@@ -163,9 +163,13 @@ mod tests {
         check_notes(
             &TEXTS,
             &WIRING,
-            &["two 9-pin round connectors", "male for the incoming and female for the outgoing line"],
+            &["two 9-pin round connectors", "male for the incoming and female for the outgoing cable"],
         );
         check_notes(&TEXTS, &WIRING, &["10 … 30 V DC (absolute limits)", "at most 3.5 W", "500 kbit/s or 2 Mbit/s"]);
-        check_notes(&TEXTS, &WIRING, &["shield to the encoder's housing", "housing to PE", "no address switch"]);
+        check_notes(
+            &TEXTS,
+            &WIRING,
+            &["screen of the cable to the encoder's housing", "housing to PE", "no address switch"],
+        );
     }
 }

@@ -31,7 +31,7 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
         SsiFormat::Svg => frame_svg(layout, None, title),
         SsiFormat::Profile => document(chosen.profile).emit(),
         SsiFormat::Timing => {
-            let unknown = || Failure::Usage("the times of this layout are not known; name a family".to_owned());
+            let unknown = || Failure::Usage("the times of this layout are not known; specify a family".to_owned());
             let times = times.as_ref().ok_or_else(unknown)?;
             // Defaults come from the profile.
             let own = chosen.profile.reads();

@@ -24,7 +24,8 @@ pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Resul
             let any = frames.iter().fold(1, |any, frame| any | frame);
             let clocks = (u64::BITS - any.leading_zeros()) as u8;
             output.remark(&format!(
-                "Frames in hex do not say how many clocks they have: taken as {clocks}. --clocks N says it."
+                "The number of clocks cannot be determined from hexadecimal frames; {clocks} was assumed. Use \
+                 --clocks N to set it."
             ));
             clocks
         }

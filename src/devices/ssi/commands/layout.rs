@@ -79,8 +79,7 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
     let family = profile.family.as_deref().and_then(|key| families.named(key));
     match (profile.family.as_deref(), family) {
         (Some(key), None) => {
-            output
-                .remark(&format!("{spec} names the family {key:?}, which is not known here: its times are not known."));
+            output.remark(&format!("{spec} names the unknown family {key:?}, so its times are not known."));
         }
         (_, Some(family)) => beside_family(output, family, &profile),
         (None, None) => {}
@@ -95,7 +94,10 @@ fn beside_family(output: &Output, family: &Family, profile: &SsiProfile) {
     let settings = family.settings_of(&profile.descriptor);
     match settings.and_then(|settings| settings.resolve(family).ok()) {
         Some(resolved) => advise(output, &resolved),
-        None => output.remark(&format!("No setting of {} makes this frame; only its times are used.", family.name)),
+        None => output.remark(&format!(
+            "No settings of {} result in this frame; only the times of the family are used.",
+            family.name
+        )),
     }
 }
 
@@ -110,7 +112,7 @@ fn of_family(output: &Output, spec: &str, families: &Families) -> Result<Chosen>
     let Some(family) = families.named(&key) else {
         let known: Vec<&str> = families.iter().map(|family| family.key.as_str()).collect();
         let known = known.join(" ");
-        return Err(Failure::Usage(format!("--layout: there is no file and no family {key:?}; families: {known}")));
+        return Err(Failure::Usage(format!("--layout: {key:?} is neither a file nor a family; families: {known}")));
     };
     let resolved = settings.resolve(family).map_err(|error| Failure::Failed(vec![format!("{error}.")]))?;
     advise(output, &resolved);

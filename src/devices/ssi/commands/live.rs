@@ -19,7 +19,7 @@ use crate::units::Moment;
 /// Returns the layout, which only the user knows.
 fn layout(output: &Output, command: &str, given: &LayoutOption) -> Result<Chosen> {
     let Some(spec) = given.layout.clone() else {
-        let why = "ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
+        let why = "ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";
         return Err(Failure::Usage(format!("{command} {why}")));
     };
     choose(output, &SsiLayout { spec })
@@ -140,7 +140,7 @@ pub(super) fn status(common: &Common, output: &Output, status: &Status) -> Resul
     let mut runner = begin(common, output, &chosen)?;
     let words = words(runner.run(SsiJob::Read)?)?;
     let Some((_, word)) = words.timed().next() else {
-        return Err(Failure::Failed(vec!["The adapter gave no word. Try again.".to_owned()]));
+        return Err(Failure::Failed(vec!["The adapter returned no word. Try again.".to_owned()]));
     };
     let decoded = DecodedFrame::new(&chosen.layout, word);
     let findings = chosen.layout.findings(decoded.reading);

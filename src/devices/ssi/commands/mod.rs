@@ -63,7 +63,7 @@ impl DeviceCommands for SsiCommands {
 
     fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result> {
         Some(match command {
-            Command::Identify(_) => refuse("identify", "its type label has the identity"),
+            Command::Identify(_) => refuse("identify", "see its type label for the identity"),
             Command::Status(status) => live::status(common, output, status),
             Command::Position(position) => live::position(common, output, position),
             Command::Read(_) => refuse("read", "it has no registers"),
@@ -118,7 +118,7 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
     let LayoutOption { layout } = arguments.own.read()?;
     let encoder = match layout {
         Some(_) if settings.iter().any(|(name, _)| name == "ssi") => {
-            return Err(Failure::Usage("--layout and --set ssi= say the same: give one of them".to_owned()));
+            return Err(Failure::Usage("--layout and --set ssi= set the same value: use only one of them".to_owned()));
         }
         Some(spec) => {
             let chosen = layout::choose(&output.as_text(), &SsiLayout { spec })?;
@@ -136,7 +136,5 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
 
 /// Refuses a command that SSI encoders do not have, and says what there is instead.
 fn refuse<T>(command: &str, instead: &str) -> Result<T> {
-    Err(Failure::Usage(format!(
-        "{command} is not for {KIND} devices, which send a position and nothing else: {instead}"
-    )))
+    Err(Failure::Usage(format!("{command} is not for {KIND} devices, which send only a position: {instead}")))
 }

@@ -17,11 +17,11 @@ use crate::store::write_atomically;
 
 pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     let LayoutOption { layout: Some(spec) } = save.own.read()? else {
-        let why = "save ssi needs --layout FILE|SPEC: an SSI encoder cannot tell how its frame is made";
+        let why = "save ssi needs --layout FILE|SPEC: an SSI encoder does not report the layout of its frame";
         return Err(Failure::Usage(why.to_owned()));
     };
     if common.link.is_some() {
-        return Err(Failure::Usage("save ssi saves the layout of --layout and asks no encoder: no --link".to_owned()));
+        return Err(Failure::Usage("save ssi saves the layout of --layout without a device: remove --link".to_owned()));
     }
     let profile = choose(output, &SsiLayout { spec })?.profile;
     let clocks = profile.descriptor.clocks;

@@ -20,6 +20,6 @@ pub enum EntryError {
     #[error("not together with {0}")]
     NotWith(&'static str),
     /// Nothing says which positions there are.
-    #[error("singleturn, steps or bits has to say which positions there are")]
+    #[error("the range of positions needs singleturn, steps or bits")]
     NoPositions,
 }

@@ -21,7 +21,10 @@ pub enum Code {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodeError {
     /// Gray excess leaves out as many words before the positions as behind them.
-    #[error("gray excess needs an even number of steps, not {0}: with an odd one two bits would change at the end")]
+    #[error(
+        "Gray excess needs an even number of steps, not {0}: with an odd number two bits would change at the end of \
+         the range"
+    )]
     Odd(u128),
     /// More than 64 bits.
     #[error("{0} decimal digits need more than 64 bits in BCD")]

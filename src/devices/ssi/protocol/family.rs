@@ -170,13 +170,13 @@ pub enum FamilyProblem {
     #[error("{0}")]
     Parser(String),
     /// A key that cannot stand on the command line.
-    #[error("the key {0:?} must be of small letters, digits, - and _")]
+    #[error("the key {0:?} may contain only lower-case letters, digits, - and _")]
     Key(String),
     /// German for what is neither the source nor a note.
     #[error("german: {0:?} is neither the source nor a note")]
     German(String),
     /// A frame as delivered that cannot work.
-    #[error("as delivered: {0}")]
+    #[error("factory setting: {0}")]
     Delivered(SettingsError),
 }
 

@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameTextError {
     /// Neither bits nor a number.
-    #[error("{0:?} is not a frame: bits in the order of the clocks (0b1010 or 1010), or 0x and hex digits")]
+    #[error("{0:?} is not a frame: enter bits in clock order (0b1010 or 1010), or 0x and hexadecimal digits")]
     Form(String),
     /// Not as many bits as the layout has clocks.
     #[error("{text} {} {bits} bits; the layout has {clocks} clocks", if *.is_number { "needs" } else { "has" })]

@@ -72,10 +72,10 @@ pub enum RangeError {
         limit: u8,
     },
     /// Nothing to tell apart.
-    #[error("a range of a single position is not possible: give it bits or steps")]
+    #[error("the range has only a single position: specify bits or steps")]
     Empty,
     /// A fraction with a zero in it.
-    #[error("revolutions must be more than 0/0: {0}/{1}")]
+    #[error("numerator and denominator of revolutions must be greater than 0: {0}/{1}")]
     Fraction(u32, u32),
 }
 

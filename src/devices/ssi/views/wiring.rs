@@ -83,16 +83,16 @@ mod tests {
             &TEXTS,
             &WIRES,
             &[
-                ("CLOCK+", &["from the host", "RS-422", "at rest high"]),
-                ("CLOCK−", &["from the host", "RS-422", "at rest low"]),
-                ("DATA+", &["to the host", "RS-422", "at rest high"]),
-                ("DATA−", &["to the host", "RS-422", "at rest low"]),
+                ("CLOCK+", &["from the host", "RS-422", "high at rest"]),
+                ("CLOCK−", &["from the host", "RS-422", "low at rest"]),
+                ("DATA+", &["to the host", "RS-422", "high at rest"]),
+                ("DATA−", &["to the host", "RS-422", "low at rest"]),
                 ("US", &["type label"]),
                 ("GND", &["0 V"]),
             ],
         );
-        let lengths = ["50 m at most 400 kHz", "100 m 300 kHz", "200 m 200 kHz", "400 m 100 kHz"];
-        check_notes(&TEXTS, &NOTES, &["twist", "shield"]);
+        let lengths = ["400 kHz below 50 m", "300 kHz below 100 m", "200 kHz below 200 m", "100 kHz below 400 m"];
+        check_notes(&TEXTS, &NOTES, &["twist", "screen"]);
         check_notes(&TEXTS, &NOTES, &lengths);
     }
 }

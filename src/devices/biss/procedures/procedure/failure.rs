@@ -58,7 +58,7 @@ pub enum Failure {
         seconds: u64,
     },
     /// The user did not fulfil the task in the time allowed.
-    #[error("what has to be is not: {blockers:?}")]
+    #[error("the conditions are not met: {blockers:?}")]
     NotReady {
         task: Task,
         /// What prevents the start.
@@ -73,7 +73,7 @@ pub enum Failure {
         got: String,
     },
     /// The description of this encoder does not have what the plan needs.
-    #[error("nothing describes how this encoder does that")]
+    #[error("no description of this procedure for this encoder")]
     NotDescribed { kind: ProcedureKind },
 }
 

@@ -271,7 +271,7 @@ mod tests {
         let lost = || Failure::Device(Error::NeverSilent);
         let cases = [
             (ChangeKind::Restore, "Restore the profile again"),
-            (ChangeKind::Bytes, "any other register stays as it was written"),
+            (ChangeKind::Bytes, "Other registers keep the written value"),
             (ChangeKind::Guided, "Completed steps need not be repeated"),
             (ChangeKind::WiegandTest, "changes only its saved result"),
             (ChangeKind::Filter, "status biss"),

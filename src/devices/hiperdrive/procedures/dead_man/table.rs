@@ -108,15 +108,15 @@ impl Bench {
         let paused = matches!(self.man.phase(), Phase::Paused { .. });
         match event.split(['(', ',']).next().unwrap_or_default().trim() {
             "released" => self.act(MotionRequest::Stop),
-            "not said again for 250 ms" => {
+            "not refreshed for 250 ms" => {
                 self.refreshes = false;
                 // The packet after 250 ms is the first that may end it.
                 self.cycles(25);
                 let moves = self.man.ended().is_none() || matches!(self.man.phase(), Phase::Stopping(_));
                 assert!(moves, "not before");
             }
-            "another act" => self.act(MotionRequest::Lead(Goal::Operational)),
-            "the drive is not heard" => {
+            "another action" => self.act(MotionRequest::Lead(Goal::Operational)),
+            "no status from the drive" => {
                 self.heard = false;
                 self.man.fall_deaf(self.now);
                 // What is only led waits longer.
@@ -126,18 +126,18 @@ impl Bench {
             "the connection is lost or closed" => self.man.lose(self.now),
             "fault" => self.status = 0x2AB8,
             "a lock" => self.permit.locks.push(Lock::NoAnswer),
-            "parameters that are to be read again" => self.permit.doubted = true,
+            "parameters must be read again" => self.permit.doubted = true,
             "operation no longer enabled" => self.status = 0x2A33,
             "beyond a limit" => {
                 self.position = 10_400;
                 self.status |= 0x8000;
             }
-            "the other way than it should by more than 1°" => self.position = -400,
-            "moves on by more than 1°" => {
+            "moves in the wrong direction by more than 1°" => self.position = -400,
+            "moves further by more than 1°" => {
                 self.cycles(60);
                 self.position = 400;
             }
-            "stands without having arrived" => {
+            "standstill" => {
                 self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDING };
                 // A start is given a second, a drive that stands half of one.
                 self.cycles(if paused { 0 } else { 110 });

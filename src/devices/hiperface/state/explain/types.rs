@@ -3,7 +3,7 @@
 use crate::app::Text;
 use crate::app::explain::{self as general, syntax};
 use crate::devices::hiperface::jobs::BrokenTypes;
-use crate::devices::hiperface::protocol::TypeTableError;
+use crate::devices::hiperface::protocol::{ShapeEntry, TypeTableError};
 use crate::devices::hiperface::state::TEXTS;
 use crate::store::StoreError;
 use crate::worker::OpenError;
@@ -30,13 +30,21 @@ pub fn open(error: &OpenError) -> Text {
 fn type_table(error: &TypeTableError) -> Text {
     match error {
         TypeTableError::Syntax { line, column, problem: what } => syntax(*line, *column, general::plain(what)),
-        TypeTableError::Range { code, quantity, range } => TEXTS
+        TypeTableError::Range { code, entry, range } => TEXTS
             .text("detail.range")
             .with("code", format!("{code:02X}h"))
-            .with("quantity", quantity)
+            .with_text("entry", shape_entry(*entry))
             .with("low", range.start())
             .with("high", range.end()),
     }
+}
+
+fn shape_entry(entry: ShapeEntry) -> Text {
+    TEXTS.text(match entry {
+        ShapeEntry::Periods => "shape_entry.periods",
+        ShapeEntry::Turns => "shape_entry.turns",
+        ShapeEntry::PeriodLength => "shape_entry.period_length",
+    })
 }
 
 #[cfg(test)]
@@ -53,7 +61,7 @@ mod tests {
         let why = type_table(&cause);
         assert_eq!(why.words(English), cause.to_string());
         assert_eq!(why.terminal(), cause.to_string());
-        assert_eq!(why.words(German), "Typ 01h: periods muss zwischen 1 und 134217728 liegen");
+        assert_eq!(why.words(German), "Typ 01h: periods (Perioden) muss zwischen 1 und 134217728 liegen");
         let broken = BrokenTypes { path: "own.ron".into(), cause };
         let error = StoreError::Refused(Cause::new(broken)).into();
         assert_eq!(

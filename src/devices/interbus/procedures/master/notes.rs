@@ -64,7 +64,7 @@ impl Master<'_> {
             return Ok(());
         }
         tracing::warn!(
-            "A run that was cut off left encoder {serial_number} in mode {}: it is led back to mode {}.",
+            "A run that was cut off left encoder {serial_number} in mode {}: it is returned to mode {}.",
             mode.emit(),
             excursion.found.emit()
         );

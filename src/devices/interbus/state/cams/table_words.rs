@@ -126,10 +126,11 @@ mod tests {
         let says = |text: Text| text.words(Language::English);
         assert_eq!(says(layout(&table)), "Pulses read: 3. Columns separated by semicolons, named in the first line.");
         assert_eq!(says(problem(&table.problems[0])), "Line 4, column 3: \"x\" is not a number.");
-        let pulses = "Program 2: Glue has 2 pulses, which take cams 1, 2.";
+        let pulses = "Program 2: Glue has 2 pulses, which use cams 1, 2.";
         assert_eq!(table.notes.iter().map(note).map(says).collect::<Vec<_>>(), [pulses.replace("Glue", "glue")]);
         // 228 steps are 10.01953°.
-        let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° less), stop 10.000° → step 1228 (0.0195° more)";
+        let rounded = "Line 2, program 2, cam 0: start 350.000° → step 772 (0.0195° lower), stop 10.000° → step 1228 \
+                       (0.0195° higher)";
         assert_eq!(says(rounding(&table.rows[0], &scale)), rounded);
         let german = rounding(&table.rows[0], &scale).words(Language::German);
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
@@ -142,7 +143,7 @@ mod tests {
         let options = TableOptions { scale, range: 3600, program: ProgramNumber::FIRST };
         let table = options.read("name;start;stop\nglue;10,05;20\n");
         let says = rounding(&table.rows[0], &scale).words(Language::English);
-        assert!(says.contains("start 10.05 → step 10 (0.05 less)"), "{says}");
+        assert!(says.contains("start 10.05 → step 10 (0.05 lower)"), "{says}");
     }
 
     #[test]
@@ -155,7 +156,7 @@ mod tests {
             "Line 3, column 2: Cam \"8\" does not exist. Choose 0 to 7.",
             "Line 4, column 3: The start at 1000 is outside the measuring range, which is 0 to 999.",
             "Line 5, column 4: The stop is missing.",
-            "Line 7, column 2: Cam 2 of program 1 is already defined in line 6, which is used.",
+            "Line 7, column 2: Cam 2 of program 1 is already defined in line 6; that line is used.",
         ];
         assert_eq!(told, expected);
     }

@@ -162,8 +162,8 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
     for (kind, what) in [
         (ChangeKind::Restore, "Restore the profile again"),
         (ChangeKind::Edits, "the command again"),
-        (ChangeKind::Preset, "old one or the preset"),
-        (ChangeKind::Default, "brings back the old ones"),
+        (ChangeKind::Preset, "whether the position was set"),
+        (ChangeKind::Default, "to get the old ones back"),
     ] {
         let lines = told(2, EndState::AsFound, kind);
         assert!(lines.len() == 3 && lines[2].contains("b.ron") && lines[2].contains(what), "{lines:?}");
@@ -223,7 +223,7 @@ fn operations_are_told_one_by_one() {
         ["cam 5, stop: 10 → 20", "active cams: none → 0, 1, 4, 7", "window shift: 0 → 8"].map(str::to_owned).to_vec();
     assert_eq!(words(&Op::Program(change)), ("Cam program 2, stored once".to_owned(), expected));
     let fired = words(&Op::FirePreset { value: 500 });
-    assert_eq!(fired.1, ["as it is at that moment → 500"]);
+    assert_eq!(fired.1, ["position at that time → 500"]);
     assert!(words(&Op::Default).1[0].contains("experimental"));
 }
 

@@ -117,7 +117,7 @@ pub enum EditError {
     #[error(transparent)]
     Parameter(#[from] OutOfRange),
     /// An edge beyond the measuring range.
-    #[error("{to} is beyond the measuring range, which ends at {last}")]
+    #[error("{to} is outside the measuring range, which ends at {last}")]
     Edge {
         edge: Edge,
         /// As given.
@@ -126,7 +126,7 @@ pub enum EditError {
         last: u32,
     },
     /// A cam that works is beyond the measuring range, so that its program can be neither mirrored nor shifted.
-    #[error("cam {} of program {} is beyond the measuring range, which ends at {last}", cam.get(), program.get())]
+    #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
     Beyond {
         /// Whose cam.
         program: ProgramNumber,
@@ -135,7 +135,7 @@ pub enum EditError {
         last: u32,
     },
     /// A name is too long, or no line of text.
-    #[error("a name is one line of at most {LONGEST_NAME} characters")]
+    #[error("a name must be a single line of at most {LONGEST_NAME} characters")]
     Name,
 }
 

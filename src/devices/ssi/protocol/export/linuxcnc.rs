@@ -11,7 +11,7 @@ use crate::devices::ssi::protocol::range::Range;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoFormat {
     /// Gray over more than the position.
-    #[error("a Gray code that goes over zeros or error bits")]
+    #[error("a Gray code that includes zeros or error bits")]
     GrayOver,
     /// Gray excess.
     #[error("gray excess")]
@@ -37,13 +37,13 @@ pub enum FormatError {
     #[error("\"{0}\" is not NAME%BITS and one of p b u s f e, with g before for Gray")]
     Form(String),
     /// A kind of field that SSI frames do not have here.
-    #[error("\"{0}\" is a field of other encoders: p b u s f e are understood, with g before for Gray")]
+    #[error("\"{0}\" is a field of other encoders: only p b u s f e are supported, with g before for Gray")]
     Kind(char),
     /// Two positions.
     #[error("there are two positions, \"{0}\" and \"{1}\"")]
     Two(String, String),
     /// No position.
-    #[error("there is no position: a field of the kind e or u, with g before for Gray")]
+    #[error("the position is missing: a field of type e or u, with g before for Gray")]
     None,
     /// More bits than a frame has.
     #[error("the fields have more than 64 bits together")]

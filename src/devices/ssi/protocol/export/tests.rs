@@ -50,18 +50,18 @@ fn each_bit_has_a_pin_of_its_own() {
 fn what_linuxcnc_cannot_do_is_said() {
     let cases = [
         ("atm60,steps=3600,code=gray-excess", "LinuxCNC cannot decode gray excess"),
-        ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode a Gray code that goes over zeros or error bits"),
+        ("ahs36,code=gray,st=12,over=padded", "LinuxCNC cannot decode a Gray code that includes zeros or error bits"),
     ];
     for (text, reason) in cases {
         assert_eq!(to_linuxcnc(&layout(text)).unwrap_err().to_string(), reason);
     }
     let cases = [
-        ("", "there is no position: a field of the kind e or u, with g before for Gray"),
-        ("error%1b", "there is no position: a field of the kind e or u, with g before for Gray"),
+        ("", "the position is missing: a field of type e or u, with g before for Gray"),
+        ("error%1b", "the position is missing: a field of type e or u, with g before for Gray"),
         ("a%12eb%12e", "there are two positions, \"b\" and \"a\""),
         ("position%24", "\"position%24\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
         ("position%0e", "\"position%0e\" is not NAME%BITS and one of p b u s f e, with g before for Gray"),
-        ("low%16l", "\"l\" is a field of other encoders: p b u s f e are understood, with g before for Gray"),
+        ("low%16l", "\"l\" is a field of other encoders: only p b u s f e are supported, with g before for Gray"),
         ("position%60e%5p", "the fields have more than 64 bits together"),
     ];
     for (text, reason) in cases {

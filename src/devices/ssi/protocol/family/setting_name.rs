@@ -37,10 +37,10 @@ pub enum SettingName {
     #[error("steps per turn")]
     StepsPerTurn,
     /// Steps of all turns.
-    #[error("steps altogether")]
+    #[error("total number of steps")]
     StepsAltogether,
     /// Steps of a round axis.
-    #[error("steps over so many revolutions")]
+    #[error("steps over this number of revolutions")]
     StepsAround,
     /// Turns.
     #[error("turns")]
@@ -52,10 +52,10 @@ pub enum SettingName {
     #[error("revolutions")]
     Revolutions,
     /// Their numerator.
-    #[error("revolutions above the line")]
+    #[error("numerator of revolutions")]
     RevolutionsAbove,
     /// Their denominator.
-    #[error("revolutions below the line")]
+    #[error("denominator of revolutions")]
     RevolutionsBelow,
     /// A round axis.
     #[error("round axis")]

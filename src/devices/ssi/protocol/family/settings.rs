@@ -82,7 +82,7 @@ pub enum SettingsError {
         field: SettingName,
     },
     /// Two that say the same in other ways.
-    #[error("{0} and {1} exclude one another")]
+    #[error("{0} and {1} exclude each other")]
     Both(SettingName, SettingName),
     /// A number out of its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
@@ -99,7 +99,7 @@ pub enum SettingsError {
         value: u64,
     },
     /// The family does not send its position like that, or there is no room for it.
-    #[error("{family}: {bits} bits of position cannot be {align}; possible: {possible}")]
+    #[error("{family}: {bits} position bits cannot be {align}; possible: {possible}")]
     Align {
         /// The family's name.
         family: String,
@@ -111,7 +111,7 @@ pub enum SettingsError {
         possible: String,
     },
     /// Error bits are not placed like that.
-    #[error("{family} does not have its error bits {place}; possible: {possible}")]
+    #[error("{family} cannot send its error bits {place}; possible: {possible}")]
     Errors {
         /// The family's name.
         family: String,
@@ -121,7 +121,7 @@ pub enum SettingsError {
         possible: String,
     },
     /// More clocks than the encoder bears.
-    #[error("{family} bears at most {most} clocks, not {clocks}")]
+    #[error("{family} supports at most {most} clocks, not {clocks}")]
     Clocks {
         /// The family's name.
         family: String,

@@ -30,9 +30,9 @@ fn a_broken_family_is_told_where() {
     let whole = good.lines().position(|line| line.trim_start().starts_with("frames:")).unwrap() + 1;
     let key = good.lines().position(|line| line.trim_start().starts_with("key:")).unwrap() + 1;
     let cases = [
-        ("\"ahs36\"", "\"AHS 36\"", key, "the key \"AHS 36\" must be of small letters, digits, - and _"),
+        ("\"ahs36\"", "\"AHS 36\"", key, "the key \"AHS 36\" may contain only lower-case letters, digits, - and _"),
         ("\"ahs36\"", "\"\"", key, "the key \"\" must be"),
-        ("clock: 15", "clock: 14", whole, "as delivered: clock 14 is asked for by the position and by ERROR"),
+        ("clock: 15", "clock: 14", whole, "factory setting: clock 14 is used by both the position and ERROR"),
         ("singleturn: (1, 14, 14)", "singleturn: (1, 14)", 6, ""),
     ];
     for (old, new, line, what) in cases {
@@ -82,9 +82,9 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
 #[test]
 fn settings_that_would_be_ignored_are_refused() {
     let cases = [
-        ("ahm36,steps=3600,mt=12", "steps and mt exclude one another"),
-        ("ahm36,steps=3600,st=12", "steps and st exclude one another"),
-        ("ahm36,steps=100,revolutions=25/2,turns=2", "revolutions and turns exclude one another"),
+        ("ahm36,steps=3600,mt=12", "steps and mt exclude each other"),
+        ("ahm36,steps=3600,st=12", "steps and st exclude each other"),
+        ("ahm36,steps=100,revolutions=25/2,turns=2", "revolutions and turns exclude each other"),
         ("afs60,steps=1000,turns=4", "AFS60 SSI has no turns"),
     ];
     for (text, reason) in cases {
@@ -206,23 +206,24 @@ fn round_axis() {
 #[test]
 fn what_a_family_cannot_do_is_refused_with_the_reason() {
     let cases = [
-        ("ttk70,clocks=32", "TTK70 SSI bears at most 31 clocks, not 32"),
-        ("ahs36,clocks=14", "ERROR is on clock 15, beyond the 14 clocks of the frame"),
+        ("ttk70,clocks=32", "TTK70 SSI supports at most 31 clocks, not 32"),
+        ("ahs36,clocks=14", "ERROR is on clock 15, but the frame has only 14 clocks"),
         (
             "ahs36,steps=359,code=gray-excess",
-            "gray excess needs an even number of steps, not 359: with an odd one two bits would change at the end",
+            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end \
+             of the range",
         ),
         ("ahs36,st=15", "AHS36 SSI: singleturn bits must be from 1 to 14, not 15"),
         ("ahs36,mt=4", "AHS36 SSI has no multiturn"),
         ("afm60,mt=10", "AFM60 SSI: multiturn bits must be from 12 to 12, not 10"),
         ("atm60,mt=13,st=13", "ATM60 SSI: singleturn bits must be from 1 to 12, not 13"),
-        ("atm60,align=right24", "ATM60 SSI: 25 bits of position cannot be right24; possible: tree12_13, right25"),
-        ("afs60,err=fix", "AFS60 SSI does not have its error bits fix; possible: following, none"),
+        ("atm60,align=right24", "ATM60 SSI: 25 position bits cannot be right24; possible: tree12_13, right25"),
+        ("afs60,err=fix", "AFS60 SSI cannot send its error bits fix; possible: following, none"),
         ("afs60s,err=none,shift=1", "AFS60S Pro has no shifting to the right"),
         ("atm60,steps=9000", "ATM60 SSI: steps per turn must be from 2 to 8192, not 9000"),
         (
             "atm60,steps=9000,revolutions=1",
-            "ATM60 SSI: steps over so many revolutions must be from 2 to 8192, not 9000",
+            "ATM60 SSI: steps over this number of revolutions must be from 2 to 8192, not 9000",
         ),
         ("atm60,code=grey", "code must be binary, gray, gray-excess or bcd, not \"grey\""),
         ("atm60,st=12,st=13", "st is given twice"),

@@ -18,7 +18,7 @@ pub enum LayoutError {
     #[error(transparent)]
     Code(#[from] CodeError),
     /// The area of the position ends behind the frame.
-    #[error("the position goes up to clock {area}, and there are only {clocks} clocks")]
+    #[error("the position reaches clock {area}, but there are only {clocks} clocks")]
     Area {
         /// Its last clock.
         area: u8,
@@ -26,7 +26,7 @@ pub enum LayoutError {
         clocks: u8,
     },
     /// The position's bits do not fit between the zeros.
-    #[error("{bits} bits of position behind {lead} zeros need {needed} clocks, and there are {area} for them")]
+    #[error("{bits} position bits after {lead} zeros need {needed} clocks, but only {area} are available")]
     Wide {
         /// Bits of the code word.
         bits: u8,
@@ -38,10 +38,10 @@ pub enum LayoutError {
         area: u8,
     },
     /// Zeros between turns and steps, and no bits of their own for both.
-    #[error("zeros between turns and steps need bits of their own for both; here the position is one number")]
+    #[error("zeros between turns and steps require separate bits for both; here the position is a single number")]
     Between,
     /// Two things on one clock.
-    #[error("clock {clock} is asked for by {first} and by {second}")]
+    #[error("clock {clock} is used by both {first} and {second}")]
     Overlap {
         /// The clock.
         clock: u8,
@@ -51,7 +51,7 @@ pub enum LayoutError {
         second: ClockUse,
     },
     /// A bit behind the last clock.
-    #[error("{name} is on clock {clock}, beyond the {clocks} clocks of the frame")]
+    #[error("{name} is on clock {clock}, but the frame has only {clocks} clocks")]
     Behind {
         /// The bit.
         name: ClockUse,
@@ -71,7 +71,7 @@ pub enum LayoutError {
         count: usize,
     },
     /// A code over more than the position that is not Gray.
-    #[error("only Gray can go over the zeros and error bits")]
+    #[error("only Gray code can include zeros and error bits")]
     NotGray,
     /// An error or parity bit among what is coded or shifted as a whole.
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
@@ -86,10 +86,10 @@ pub enum LayoutError {
         done: WordOperation,
     },
     /// The lowest bit is lost, and the code does not bear it.
-    #[error("shifting right pushes the lowest bit out, and without it a word of this code is not a position")]
+    #[error("shifting right drops the lowest bit, and without it a word of this code is not a position")]
     Lost,
     /// Two frames need more clocks.
-    #[error("the frame and its repetition need {needed} clocks, and there are {clocks}")]
+    #[error("the frame and its repetition need {needed} clocks, but there are only {clocks}")]
     Repeat {
         /// Clocks needed.
         needed: u16,

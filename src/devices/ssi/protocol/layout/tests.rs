@@ -115,37 +115,38 @@ fn what_cannot_work_is_refused_with_the_reason() {
         (
             "few clocks",
             Descriptor { clocks: 24, ..plain() },
-            "the position goes up to clock 25, and there are only 24 clocks",
+            "the position reaches clock 25, but there are only 24 clocks",
         ),
         (
             "odd gray excess",
             Descriptor { code: Code::GrayExcess, range: Range::Steps { per_turn: 359, turns: 1 }, ..plain() },
-            "gray excess needs an even number of steps, not 359: with an odd one two bits would change at the end",
+            "Gray excess needs an even number of steps, not 359: with an odd number two bits would change at the end \
+             of the range",
         ),
         (
             "error bit on the position",
             Descriptor { errors: vec![bit("ERROR", 25)], ..plain() },
-            "clock 25 is asked for by the position and by ERROR",
+            "clock 25 is used by both the position and ERROR",
         ),
         (
             "two error bits on a clock",
             Descriptor { clocks: 26, errors: vec![bit("A", 26), bit("B", 26)], ..plain() },
-            "clock 26 is asked for by A and by B",
+            "clock 26 is used by both A and B",
         ),
         (
             "error bit behind the frame",
             Descriptor { errors: vec![bit("ERROR", 26)], ..plain() },
-            "ERROR is on clock 26, beyond the 25 clocks of the frame",
+            "ERROR is on clock 26, but the frame has only 25 clocks",
         ),
         (
             "wide",
             Descriptor { lead: 1, ..plain() },
-            "25 bits of position behind 1 zeros need 26 clocks, and there are 25 for them",
+            "25 position bits after 1 zeros need 26 clocks, but only 25 are available",
         ),
         (
             "repetition",
             Descriptor { clocks: 50, repeat: Some(Repeat { word: 25, gap: 1 }), ..plain() },
-            "the frame and its repetition need 51 clocks, and there are 50",
+            "the frame and its repetition need 51 clocks, but there are only 50",
         ),
         (
             "parity bit in the Gray code",

@@ -73,7 +73,7 @@ fn phrases_within_a_phrase_are_told_in_german_too() {
     let cases = [
         (
             LayoutError::Overlap { clock: 14, first: ClockUse::Position, second: ClockUse::Error("ERROR".to_owned()) },
-            "Takt 14 wird von der Position und von ERROR beansprucht",
+            "Takt 14 wird von der Position und von ERROR belegt",
         ),
         (
             LayoutError::Behind { name: ClockUse::Parity, clock: 30, clocks: 15 },

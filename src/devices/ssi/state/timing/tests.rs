@@ -31,7 +31,7 @@ fn said(diagram: &Diagram) -> Vec<String> {
 fn a_burst_without_a_break() {
     let diagram = diagram("afm60", 400e3, 40.0, false);
     let times =
-        ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs to 25 µs", "Pause at least: 25 µs"];
+        ["T = 2.5 µs", "Burst of 33 clocks: 82.5 µs", "Pause: 40 µs", "tm = 15 µs to 25 µs", "Minimum pause: 25 µs"];
     assert_eq!(said(&diagram), times);
     // 122.5 µs from burst to burst, and two and a half clocks of the next.
     assert_eq!(diagram.pieces().len(), 1);
@@ -62,7 +62,7 @@ fn when_a_position_is_made() {
         (TimingEvent::Next, 267.5),
     ];
     assert_eq!(marks, expected);
-    assert_eq!(said(&synchronous)[4..], ["Pause at least: 150 µs", "Next position in progress: 125 µs"]);
+    assert_eq!(said(&synchronous)[4..], ["Minimum pause: 150 µs", "Next position in preparation: 125 µs"]);
     let first_edge = diagram("atm60", 500e3, 300.0, true);
     assert_eq!(first_edge.marks()[0], TimingMark { event: TimingEvent::Taken, at: 0.0 });
     assert_eq!(said(&first_edge)[3], "tm = 150 µs");

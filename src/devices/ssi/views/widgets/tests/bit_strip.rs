@@ -145,7 +145,7 @@ fn what_a_frame_would_be_is_shown_and_can_be_given_up() {
 #[test]
 fn error_bits_are_dragged_to_another_clock() {
     let mut harness = strip(&layout("afs60", &Settings { clocks: Some(24), ..Settings::default() }), 860.0);
-    assert_eq!(value(&harness, "Error bit ERRSYNC"), "on clock 21, position invalid since the last transfer");
+    assert_eq!(value(&harness, "Error bit ERRSYNC"), "on clock 21, position was invalid since the last transfer");
     drag(&mut harness, "Error bit ERRSYNC", 2.0);
     assert_eq!(moves(&harness), [StripEvent::Moved(Handle::Error(2), 23)]);
     focus(&mut harness, "Error bit ERRDIG");
@@ -202,7 +202,7 @@ fn a_handle_says_what_it_does_and_how_far_it_goes() {
     let rect = harness.get_by_label("Whole position").rect();
     harness.hover_at(rect.left_center() + Vec2::new(2.0, 0.0));
     harness.run_steps(60);
-    harness.get_by_label("This boundary cannot be moved: the bits beside it are in use.");
+    harness.get_by_label("This boundary cannot be moved: the adjacent bits are in use.");
 }
 
 /// Eight error bits with long names, at the beginning of a line and at its end: none lies over another.
