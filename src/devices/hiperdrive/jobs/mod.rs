@@ -1,5 +1,5 @@
-//! HIPERDRIVE drives behind an adapter or a hub, at the end of a session: its jobs, the cyclic connection that moves them and
-//! the handle for it.
+//! HIPERDRIVE drives behind an adapter or a hub as seen by a session: its jobs, the cyclic connection that moves them, and
+//! the handle for motion.
 
 mod commit;
 mod control;
@@ -71,16 +71,17 @@ impl Hiperdrive {
 pub struct Way {
     /// Explicit messages.
     pub wire: Box<dyn ByteLink>,
-    /// Port of cyclic data; `None` for a link without any.
+    /// Port for cyclic data; `None` for a link without one.
     pub port: Option<Box<dyn DatagramPort>>,
     /// The known state of the device.
     pub station: Station,
-    /// The device, where it lives in this process.
+    /// The virtual device, if it runs in this process.
     pub target: Option<Target>,
 }
 
 impl Session<Hiperdrive> {
-    /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
+    /// Creates a session on an open connection. With `target` the device is a virtual one in this process, and its saves
+    /// are counted separately.
     pub fn to_target(way: Way, clock: Arc<dyn Clock>, store: Store) -> Self {
         let Way { wire, port, station, target } = way;
         let is_virtual = target.is_some();
@@ -101,7 +102,7 @@ impl Session<Hiperdrive> {
         &self.device.station
     }
 
-    /// The device, where it lives in this process.
+    /// Returns the virtual device, if it runs in this process.
     pub fn target(&self) -> Option<Target> {
         self.device.target.clone()
     }

@@ -6,9 +6,9 @@ use crate::devices::hiperdrive::protocol::ParameterNumber;
 /// The kind of fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Hindrance {
-    /// They are refused: not in this state.
+    /// Access is refused: not in this state.
     Refused,
-    /// The line is lost once one has come: it counts, and nothing more gets through.
+    /// The connection is lost after the first access, which takes effect; nothing more gets through.
     CutOff,
 }
 

@@ -1,12 +1,12 @@
-//! The results of the set-up, step by step. Each keeps the facts of the drive that it depends on. If one of them
-//! changes, whoever changed it, the result is void, and with it all later ones.
+//! The results of the set-up, step by step. Each keeps the facts of the drive that it depends on. If one of them changes,
+//! whoever changed it, the result is void, and with it all later ones.
 
 use super::{AxisStep, Seen};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
 
-/// The origin of positions: the position that was set last (198), how often one was set from here, and how often the
-/// position jumped at a standstill, which alone reveals a reference set again at the same number.
+/// Origin of positions: the position that was set last (198), how often one was set by this program, and how often the
+/// position jumped at a standstill, which alone reveals a reference set again to the same number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Origin {
     set: Option<i64>,
@@ -24,7 +24,7 @@ pub(super) struct Basis {
     pub(super) confirmed: bool,
     pub(super) origin: Origin,
     pub(super) limits: Option<(i32, i32)>,
-    /// The lower limit as it is taught.
+    /// Lower limit as taught.
     pub(super) lower: Option<i32>,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct Basis {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Made {
     on: Basis,
-    /// It was left out.
+    /// The step was skipped.
     skipped: bool,
 }
 
@@ -47,7 +47,7 @@ impl Origin {
 }
 
 impl Chain {
-    /// The first step that has no result; `None`: all of them have.
+    /// Returns the first step that has no result; `None` if all have one.
     pub(super) fn end(&self) -> Option<AxisStep> {
         AxisStep::ALL.get(self.0.len()).copied()
     }
@@ -62,7 +62,7 @@ impl Chain {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }
 
-    /// A step has a result now. The same as before leaves those behind it; another one lets them fall: true.
+    /// Stores the result of a step. If it differs from the previous one, discards all later results and returns true.
     pub(super) fn make(&mut self, step: AxisStep, on: Basis, skipped: bool) -> bool {
         let made = Made { on, skipped };
         let before = self.0.get(step.index()).copied();
@@ -76,7 +76,7 @@ impl Chain {
         before.is_some()
     }
 
-    /// Lets fall what does not rest on the facts of now any more: the first step of those.
+    /// Discards results that no longer agree with the present facts; returns the first step affected.
     pub(super) fn fall(&mut self, now: &Basis) -> Option<AxisStep> {
         let stands = |(step, made): (&AxisStep, &Made)| stands(*step, &made.on, now);
         let left = AxisStep::ALL.iter().zip(&self.0).take_while(|own| stands(*own)).count();

@@ -13,7 +13,7 @@ impl Axis {
         }
     }
 
-    /// The position where the axis stands becomes the limit of this step.
+    /// Takes the present position of the axis as the limit of this step.
     pub(crate) fn take_limit(&mut self, seen: &Seen) {
         if self.may_take_place(seen).is_err() {
             return;
@@ -48,7 +48,7 @@ impl Axis {
             return;
         }
         if self.step == AxisStep::Reference {
-            // The person has set it, or said that it is right.
+            // The user has set or confirmed it.
             self.unexplained = None;
         }
         let next = self.step.beside(1);
@@ -63,7 +63,7 @@ impl Axis {
         }
     }
 
-    /// Goes to the previous step, or to the one that has to be repeated. Values that were written stay.
+    /// Goes to the previous step, or to the one that must be repeated. Values that were written stay.
     pub(crate) fn back(&mut self, seen: &Seen) {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;
@@ -161,7 +161,7 @@ impl Axis {
             Some(Ask::Try(values)) if begun => {
                 self.agree(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
-                // The mark is never saved: without it everything else is as it was saved.
+                // The mark is never saved: apart from it everything is as saved.
                 if self.step != AxisStep::PowerCycle {
                     (self.partly, self.saved) = (true, false);
                 }
@@ -186,7 +186,7 @@ impl Axis {
         self.power = self.power.map(Power::gone);
     }
 
-    /// All parameters were read; `switched`: the virtual supply was off since.
+    /// Notes that all parameters were read; `switched`: the virtual supply was off since.
     pub(crate) fn surveyed(&mut self, seen: &Seen, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
@@ -214,7 +214,7 @@ impl Axis {
         self.settle(seen);
     }
 
-    /// Lets fall what the drive does not have any more, and takes what it has.
+    /// Discards results that the drive no longer has, and takes those that it has.
     fn settle(&mut self, seen: &Seen) {
         if !seen.is_settled() || self.asked.is_some() {
             return;

@@ -1,5 +1,4 @@
-//! Writes in words: changes, operations of a plan, why there is no plan, warnings, results, and why a write ended
-//! early.
+//! Writes as text: changes, operations of a plan, why there is no plan, warnings, results, and why a write ended early.
 
 use std::path::Path;
 
@@ -75,7 +74,7 @@ fn network(settings: &NetworkSettings) -> Text {
         .with("gateway", interface.gateway)
 }
 
-/// A parameter with its number, its drive and its name.
+/// Returns the name of a parameter with its number and its drive.
 pub fn item(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
@@ -160,12 +159,12 @@ pub fn warning(warning: &Warning) -> Text {
 
 /// A write that is done.
 pub fn written(written: &Written) -> Text {
-    // Of what a device does nothing is read back.
+    // An action of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// A write that was cut off: how far it came and why, and where the state before is.
+/// Returns the text of an interrupted write: how far it got and why, and where the backup is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
     let mut texts = vec![if cause.is_cancelled() {

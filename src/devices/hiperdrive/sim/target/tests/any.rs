@@ -1,4 +1,4 @@
-//! Whatever is sent: no panic, and the target still answers.
+//! With arbitrary input: no panic, and the target still answers.
 
 use proptest::prelude::*;
 
