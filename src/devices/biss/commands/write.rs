@@ -1,4 +1,4 @@
-//! `write`: registers, by their names.
+//! `write`: writes registers by name.
 
 use super::plan::{commit, operations, prepare};
 use super::run::Runner;

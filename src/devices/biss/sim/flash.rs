@@ -16,7 +16,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// Bytes of either area: 32 banks.
+    /// Bytes of each area: 32 banks.
     pub(super) const AREA: usize = 32 * 64;
 
     /// Creates a memory as delivered, after this many write cycles.

@@ -135,7 +135,7 @@ impl SessionEvents for Encoder {
                 services.tell(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }
-            // The survey tells more.
+            // The survey contains more.
             BissOutput::Identity(_) => {}
         }
     }
@@ -162,7 +162,7 @@ impl SessionEvents for Encoder {
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }
-        // It stands on the pages that show data.
+        // It is shown on the pages with data.
         self.refusal = Some(first(texts));
         true
     }

@@ -102,7 +102,7 @@ pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
 }
 
-/// The description with the manual's names, in both languages, of what every data sheet has.
+/// The description with the manual's names, in both languages, for the fields that every data sheet has.
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());
 

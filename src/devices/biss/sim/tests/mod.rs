@@ -1,5 +1,5 @@
-//! What a host sees of the virtual kit encoder, in virtual time. Expected values are the manual's and the reference's;
-//! none is computed by the code under test.
+//! The virtual kit encoder as seen by a host, in virtual time. Expected values are the manual's and the reference's; none
+//! is computed by the code under test.
 
 mod at_adapter;
 mod modes;
@@ -14,14 +14,14 @@ use super::*;
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::units::Moment;
 
-/// Somebody who reads and writes registers by their names, without any line.
+/// Host that reads and writes registers by name, without a line.
 struct Host {
     encoder: Encoder,
     now: Moment,
 }
 
 impl Host {
-    /// With the query of a `sim:` link.
+    /// Creates a host with the query of a `sim:` link.
     fn with(query: &str) -> Self {
         Host { encoder: Encoder::new(&config(query)), now: Moment::START }
     }
@@ -34,7 +34,7 @@ impl Host {
         self.encoder.write(self.now, address(register), value)
     }
 
-    /// Writes what the encoder has to accept.
+    /// Writes a value that the encoder must accept.
     #[track_caller]
     fn put(&mut self, register: &str, value: u8) {
         assert!(self.write(register, value), "{register} = {value:02X}");

@@ -1,4 +1,4 @@
-//! Why something cannot be planned for a BiSS encoder, and another type of profile, in words.
+//! Texts of the BiSS planning errors, and of another type of profile.
 
 use crate::app::Text;
 use crate::devices::biss::profile::{OtherType, PlanError};
