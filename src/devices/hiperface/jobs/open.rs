@@ -13,7 +13,7 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to a HIPERFACE encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
+/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
@@ -48,7 +48,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
     let settings = simulated(url, LinkParameters::KEYS, Config::KEYS)?;
     if url.scheme == Scheme::Sim {
-        // The virtual encoder's converter may echo; whether it does is learned as with a real one.
+        // The virtual encoder's converter may echo; this is detected as with a real one.
         station.line.echo = Echo::Unknown;
         let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));
         check_parameters(&url.query, url.scheme, &line.chain(Config::KEYS).copied().collect::<Vec<_>>())?;

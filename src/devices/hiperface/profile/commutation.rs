@@ -1,4 +1,4 @@
-//! A commutation offset as this program stores it in a data field. The manual leaves the format free (SICK 8010701,
+//! A commutation offset as stored by this program in a data field. The manual leaves the format open (SICK 8010701,
 //! commutation; section 5 of the project's sine/cosine reference): sixteen bytes, so that it fills a block of the EEPROM
 //! and is recognised in a backup as a value of the mounting.
 
@@ -48,7 +48,7 @@ impl CommutationRecord {
         bytes
     }
 
-    /// Reads what stands at the beginning of `bytes`; `None` where no record begins.
+    /// Parses the record at the beginning of `bytes`; `None` if there is none.
     pub fn parse(bytes: &[u8]) -> Option<Result<Self, Damaged>> {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;

@@ -16,7 +16,7 @@ pub(super) struct RestAsked {
 }
 
 impl Encoder {
-    /// Periods and turns, where the type tells them.
+    /// Returns periods and turns, if the type defines them.
     pub fn geometry(&self) -> Option<Geometry> {
         self.identity.as_ref().and_then(|identity| identity.geometry)
     }
@@ -35,7 +35,7 @@ impl Encoder {
         self.commutation.take(rest, geometry);
     }
 
-    /// A job has failed; true where it is such a reading, and the reason stands where it was asked for.
+    /// Handles a failed job; returns true if it is such a reading, whose error is shown where it was requested.
     pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.told = Some(Err(why.clone()));

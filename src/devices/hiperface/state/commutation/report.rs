@@ -1,4 +1,4 @@
-//! The run as it is written down: what was prepared, what was read, what came of it. A line each.
+//! The report of the run: preparation, readings, results. One line per item.
 
 use super::{Commutation, Kind, RestReading, Slot, Vector};
 use crate::app::Text;
@@ -75,7 +75,7 @@ impl Slot {
 }
 
 impl Vector {
-    /// All of them.
+    /// All vectors.
     pub const ALL: [Vector; 4] = [Vector::UAgainstBoth, Vector::UAgainstV, Vector::UAgainstW, Vector::Other];
 
     /// Returns the id of its text.

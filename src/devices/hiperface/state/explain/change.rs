@@ -1,4 +1,4 @@
-//! The changes in words: the title of a review, the name of a job.
+//! Texts of the changes: the title of a review, the name of a job.
 
 use super::words;
 use crate::app::Text;

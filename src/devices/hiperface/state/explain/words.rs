@@ -40,7 +40,7 @@ pub fn status(code: StatusCode) -> Text {
     TEXTS.text(id)
 }
 
-/// A status code with its number: "0Fh wrong access code".
+/// Returns a status code with its number: "0Fh wrong access code".
 pub fn status_with_number(code: StatusCode) -> Text {
     TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
 }
@@ -94,7 +94,7 @@ pub fn position(position: Position) -> Text {
     }
 }
 
-/// A position word whose meaning is not known.
+/// Returns the text of a position word whose meaning is not known.
 pub fn raw_position(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }
