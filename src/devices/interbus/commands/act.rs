@@ -1,4 +1,4 @@
-//! `do`: the preset, the default, the device check, and the way back to where an encoder was.
+//! `do`: the preset, the default, the device check, and the return of an encoder to its earlier mode.
 
 use serde_json::json;
 

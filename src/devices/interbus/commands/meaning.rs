@@ -6,22 +6,22 @@ use crate::devices::interbus::protocol::{
     CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
 };
 
-/// Known facts about a word besides its digits.
+/// Facts known about a word besides its digits.
 pub(super) struct Known {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
     pub(super) shift: Option<WindowShift>,
 }
 
-/// One of the things that a word may say.
+/// A possible meaning of a word.
 pub(super) struct WordMeaning {
     direction: &'static str,
-    /// In which it says that; none where it does in any.
+    /// Modes in which it has this meaning; empty if in all.
     modes: Vec<Mode>,
     words: String,
     /// The number in it.
     value: Option<u32>,
-    /// It may be sent in these modes, or may come in them.
+    /// It may be sent, or may be received, in these modes.
     legal: bool,
 }
 
@@ -75,7 +75,7 @@ pub(super) fn of_out(word: u32, known: &Known) -> Result<Vec<WordMeaning>, Strin
     }
 }
 
-/// An OUT word that an encoder in the known mode must not get, where it means something in another.
+/// Returns the refusal of an OUT word that must not be sent in the known mode, if it has a meaning in another one.
 pub(super) fn refused(word: u32, known: &Known) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused

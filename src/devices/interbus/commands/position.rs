@@ -1,4 +1,4 @@
-//! `position`: IN words, with what the encoder's gear makes of them.
+//! `position`: prints IN words, converted by the encoder's gear.
 
 use serde_json::json;
 
@@ -20,7 +20,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     Disturbs::Reading.say(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
-        // The window determines the visible bits of the position; no other program is selected for that.
+        // The window determines the visible bits of the position; no program is selected to read it.
         programs(&mut runner, Vec::new())?;
     }
     if position.csv {

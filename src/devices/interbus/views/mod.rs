@@ -1,4 +1,4 @@
-//! The INTERBUS tab: its pages, each about one thing that a person wants of an encoder.
+//! The INTERBUS tab: its pages, one per task.
 
 mod cams;
 mod connect_form;
@@ -31,7 +31,7 @@ pub(crate) enum Page {
     Cams,
     /// Values, LEDs and words.
     Diagnosis,
-    /// Profiles, backups and what was written.
+    /// Profiles, backups and the logbook.
     Backups,
 }
 
@@ -52,7 +52,7 @@ impl Page {
     }
 }
 
-/// The state of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct InterbusUiState {
     parameters: parameters::EncoderParametersUiState,
@@ -93,7 +93,7 @@ impl TypedDeviceView for InterbusView {
         actions: &mut Vec<Action>,
     ) {
         if page.has_foot() {
-            // Stays where it is while the rest scrolls.
+            // Fixed while the rest scrolls.
             let around = page::sides(ui, theme);
             let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))

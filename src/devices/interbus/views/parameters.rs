@@ -1,4 +1,4 @@
-//! The parameters beside what is wanted of them, the preset, the memory's wear, and the words of the handshake.
+//! The parameters and their edits, the preset, the memory's wear, and the words of the handshake.
 
 use std::collections::BTreeMap;
 

@@ -1,31 +1,31 @@
-//! For how long an IN word has come, or something has held: in cycles and in time. A gateway may be read more often than
-//! it looks at the bus itself, and what it says meanwhile is one word, however often it is read.
+//! How long an IN word was received, or a condition has held: in cycles and in time. A gateway may be read more often than
+//! it reads the bus, and returns the same word meanwhile.
 
 use std::time::Duration;
 
 use crate::units::Moment;
 
-/// An echo or a value stands when it came in so many cycles, one after the other (reference 4),
+/// Number of consecutive cycles after which an echo or a value is stable (reference 4),
 const STANDS: u32 = 2;
-/// and for so long: longer than a gateway usually keeps one word (`U`).
+/// and the minimum time: longer than a gateway usually repeats one word (`U`).
 const STANDS_FOR: Duration = Duration::from_millis(10);
-/// A word that may be the answer to the one before stands after so long (`U`),
+/// Time after which a word that may be the reply to the previous one is stable (`U`),
 pub(super) const STAYS_FOR: Duration = Duration::from_millis(100);
-/// or after so many cycles of a recording, in which no time passes.
+/// or the number of cycles of a recording, in which no time passes.
 const STAYS: u32 = 20;
 
-/// A reply that is lost can take all the patience: an answer has so many cycles at least, old words among them.
+/// Returns the minimum number of cycles for a reply, including old words: a lost one can take the whole time limit.
 pub(super) const fn least_cycles(recorded: bool) -> u32 {
     if recorded { STAYS + 4 } else { 8 }
 }
 
-/// Less patience than this is none: what stays has to be seen.
+/// Minimum time limit: a stable word must be recognisable within it.
 pub(super) const LEAST_PATIENCE: Duration = Duration::from_millis(150);
 
-/// For how long something holds, cycle after cycle.
+/// How long a condition holds, cycle by cycle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Held {
-    /// In a recording no time passes between two looks: cycles alone count.
+    /// In a recording no time passes between two readings: only cycles count.
     timeless: bool,
     cycles: u32,
     since: Option<Moment>,
@@ -58,7 +58,7 @@ impl Held {
         self.stays_for(STAYS_FOR)
     }
 
-    /// Returns whether it stayed this long; with a slow gateway, for as many cycles as show that it stands.
+    /// Returns whether it stayed this long; with a slow gateway, for as many cycles as show that it is stable.
     pub(super) fn stays_for(self, duration: Duration) -> bool {
         let least = if self.timeless { STAYS } else { STANDS };
         self.cycles >= least && self.lasts(duration)
@@ -76,9 +76,9 @@ impl Held {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct CycleResult {
-    /// When.
+    /// Time of the last cycle.
     pub(super) now: Moment,
     pub(super) word: u32,
-    /// For how long it was that.
+    /// How long the word was the same.
     pub(super) same: Held,
 }

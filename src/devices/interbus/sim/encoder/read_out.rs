@@ -6,9 +6,9 @@ use crate::units::Moment;
 
 const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
-/// Of flags: it counts turns.
+/// Flag: it counts turns.
 const MULTITURN: u32 = 2;
-/// Of a register of the chip the upper part, chosen; the lower one is its number.
+/// The upper part of a register of the chip, chosen; the lower part is its number.
 const CHIP: u32 = 0x40;
 
 impl Encoder {

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, P
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, Mark};
 
-/// A cam by its number, and its name where it has one.
+/// Returns the text of a cam: its number, and its name if it has one.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
@@ -29,7 +29,7 @@ pub fn edge(lane: &Lane, edge: Edge) -> Text {
         .with_text("cam", bare(lane.cam))
 }
 
-/// A position: in steps, and in units of the machine where it has others.
+/// Returns the text of a position: in steps, and in units of the machine if it has others.
 pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
@@ -40,7 +40,7 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     }
 }
 
-/// A number of units, as a ruler says it.
+/// Returns the text of a number of units for a ruler.
 pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
@@ -54,7 +54,7 @@ pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
 }
 
-/// A lane in a sentence: where its cam is and whether it works.
+/// Returns the text of a lane: the place of its cam and whether it is active.
 pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
     let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };

@@ -1,5 +1,5 @@
-//! Writes in words: what is wanted, the operations of a plan, why there is no plan, what was written, why it ended early and
-//! in which state the encoder was left.
+//! Texts of writes: changes, operations of a plan, why there is no plan, what was written, why it ended early and in which
+//! state the encoder was left.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// An operation in words; each parameter, mask and edge by itself.
+/// Returns the text of an operation; each parameter, mask and edge separately.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Parameterise(changes) => OpWords {
@@ -146,7 +146,8 @@ pub fn written(written: &Written) -> Text {
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
+/// Returns the text of an interrupted write: how far it got, why, in which state the encoder was left, and where the backup
+/// is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let Interrupted { done, unfinished, cause, left } = interrupted;
     let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();
