@@ -6,11 +6,11 @@ use std::time::Duration;
 use crate::devices::ssi::protocol::{Flags, Layout, Word};
 use crate::units::Moment;
 
-/// An error bit or a word that stands for a fault, and when it comes.
+/// Error bit or word that reports a fault, and its times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct InjectedFault {
     shows: Shows,
-    /// From one time that it happens to the next; none: it stands from the beginning.
+    /// Interval of the fault; `None`: it is present from the start.
     period: Option<Duration>,
 }
 
@@ -19,7 +19,7 @@ enum Shows {
     /// This error bit.
     Bit {
         index: usize,
-        /// It says what happened since the transfer before.
+        /// It reports what happened since the previous transfer.
         cleared: bool,
     },
     /// This word, right-justified.
@@ -30,8 +30,8 @@ impl InjectedFault {
     const LEAST_PERIOD: f64 = 1e-6;
     const MOST_PERIOD: f64 = 86_400.0;
 
-    /// `ERRSYNC:0.5,ERRSI`; `None` where that is not understood. A name is of a bit or a pattern of the layout, its letters
-    /// as they please, its spaces as hyphens.
+    /// Parses `ERRSYNC:0.5,ERRSI`; `None` if it is invalid. A name is that of a bit or a pattern of the layout, in upper or
+    /// lower case, with hyphens for spaces.
     pub(super) fn read(text: &str, layout: &Layout) -> Option<Vec<Self>> {
         let items = text.split(',').map(str::trim).filter(|item| !item.is_empty());
         items
@@ -52,8 +52,8 @@ impl InjectedFault {
         bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
     }
 
-    /// Returns whether the fault shows in a transfer, given the time of the previous one. A fault that a transfer
-    /// clears is about the time between the two; an intermittent one is present in the second half of its period.
+    /// Returns whether the fault shows in a transfer, given the time of the previous one. A fault that a transfer clears
+    /// covers the time between the two; an intermittent one is present in the second half of its period.
     pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, Shows::Bit { cleared: true, .. });
@@ -74,7 +74,7 @@ impl InjectedFault {
         }
     }
 
-    /// The error bit that speaks.
+    /// Returns the active error bit.
     pub(super) const fn flag(&self) -> Flags {
         match self.shows {
             Shows::Bit { index, .. } => Flags::error(index),

@@ -47,7 +47,7 @@ mod tests {
                 assert_ne!(text.words(Language::German), *words);
             }
         }
-        // A family of the user's own that has no German says what its file says.
+        // A user's family without German texts uses those of its file.
         let family = Families::built_in().iter().next().cloned().unwrap();
         assert_eq!(note(&family, "Own words").words(Language::German), "Own words");
     }

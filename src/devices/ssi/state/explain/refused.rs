@@ -15,7 +15,7 @@ pub fn layout(error: &LayoutError) -> Text {
     refused(layout_reason(error))
 }
 
-/// Settings that a family does not have.
+/// Returns the text for settings that a family does not have.
 pub fn settings(error: &SettingsError) -> Text {
     refused(settings_reason(error))
 }
@@ -54,7 +54,7 @@ pub(super) fn settings_reason(error: &SettingsError) -> Text {
     }
 }
 
-/// A format string of LinuxCNC that is no frame, or a frame that has none.
+/// Returns the text for a format string of LinuxCNC that is not a frame, or a frame that has none.
 pub fn format(error: &FormatError) -> Text {
     let why = match error {
         FormatError::Cannot(what) => {

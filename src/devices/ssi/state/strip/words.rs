@@ -46,7 +46,7 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
     }
 }
 
-/// The same below the field itself, where zeros stand is to be seen.
+/// Returns the same below the field itself, where zeros are visible.
 pub fn name(strip: &Strip, own: &Field) -> Text {
     if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
