@@ -1,4 +1,4 @@
-//! Files that the user is asked for: what happens when one was chosen. Whatever touches the disk runs as a task.
+//! Files chosen by the user, and what is done with them. All disk access runs as a task.
 
 use std::path::{Path, PathBuf};
 
@@ -13,8 +13,7 @@ use crate::link::{LinkUrl, Scheme};
 use crate::store::{FileError, Folders};
 
 impl Studio {
-    /// The same with a path that leads to the same file from everywhere: here, and nowhere else, paths that a person gives
-    /// come in.
+    /// Returns the action with an absolute path. Paths given by the user enter the program only here.
     pub(super) fn with_whole_path(&self, action: Action) -> Action {
         let whole = |path: PathBuf| self.services.world.folders.absolute(&path);
         match action {
@@ -38,7 +37,7 @@ impl Studio {
         &self.services.world.folders
     }
 
-    /// A path was typed: what is there already is not replaced without a question.
+    /// Handles a typed path: an existing file is not replaced without a question.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested().is_none() {
             return self.chosen(question, path);
@@ -118,7 +117,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
     }
 
-    /// A name after the encoder and the time of day: what is recorded is not recorded again.
+    /// Returns a name after the encoder and the time of day, so that recordings have different names.
     fn suggested(&self, desk: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match desk {
             Some(RecorderOwner::Device(id)) => self.device(id),
@@ -148,7 +147,7 @@ impl Studio {
 
     pub(super) fn table_written(&mut self, desk: RecorderOwner, exported: Exported) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
-        // Another drive may be shown by now.
+        // Another drive may be selected by now.
         let recorders = match desk {
             RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
             RecorderOwner::Tool(_) => self.recorder_mut(desk).into_iter().collect(),

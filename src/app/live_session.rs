@@ -1,5 +1,5 @@
-//! A session on its thread, seen from the window: the job that runs, what has passed over the line, live samples. It
-//! knows no device.
+//! A session on its thread, as seen from the window: the running job, the trace, the samples. Independent of the kind of
+//! device.
 
 use std::time::Duration;
 
@@ -22,11 +22,11 @@ pub struct Running<W> {
     pub progress: Option<Progress<W>>,
     /// It changes the device's memory.
     pub writes: bool,
-    /// It has been asked to end.
+    /// Its end was requested.
     pub stopping: bool,
 }
 
-/// A session on its thread.
+/// Session on its thread.
 pub struct LiveSession<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
@@ -39,14 +39,14 @@ pub struct LiveSession<D: Device> {
 #[derive(Clone, Debug)]
 pub struct Progressing {
     pub what: Text,
-    /// Steps done, steps in all, and what is being done.
+    /// Steps done, total steps, and the present step.
     pub progress: Option<(u64, u64, Text)>,
-    /// It has been asked to end.
+    /// Its end was requested.
     pub stopping: bool,
 }
 
 impl<D: Kind> LiveSession<D> {
-    /// Takes over what was opened.
+    /// Creates it from an opened session.
     pub(crate) fn new(opened: Opened<D>) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
         LiveSession { worker, trace, running: None, is_virtual }
@@ -62,7 +62,7 @@ impl<D: Kind> LiveSession<D> {
     /// Starts a job.
     ///
     /// # Errors
-    /// Another one runs, or the session has ended.
+    /// Another job runs, or the session has ended.
     pub(crate) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
         let id = self.worker.submit(job)?;
         self.running = Some(Running { id, what, since: now, progress: None, writes, stopping: false });
@@ -89,7 +89,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.watch(wished);
     }
 
-    /// Ends what runs, live samples included.
+    /// Stops the running job and polling.
     pub(crate) fn stop(&mut self) {
         self.worker.stop();
         if let Some(running) = &mut self.running {
@@ -97,14 +97,14 @@ impl<D: Kind> LiveSession<D> {
         }
     }
 
-    /// Ends the job that runs; live samples go on.
+    /// Stops the running job; polling continues.
     pub(super) fn stop_job(&mut self) {
         let pace = self.polling();
         self.stop();
         self.poll(pace);
     }
 
-    /// The next event; what it says about the job that runs is noted here.
+    /// Returns the next event, and notes what it reports about the running job.
     pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
@@ -119,7 +119,7 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// The thread has ended without being let go, and has told all that it had to.
+    /// Returns whether the thread has ended without being released, and has reported everything.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_ended() && self.worker.events().is_empty()
     }

@@ -10,7 +10,7 @@ use super::studio::SessionId;
 use super::tab::Tab;
 use crate::link::LinkUrl;
 
-/// A question that has to be answered before something is done.
+/// Question to be answered before something is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// What would be lost or interrupted.
@@ -31,7 +31,7 @@ pub(crate) enum Then {
     Forget(RecorderOwner),
     Save(Box<Saving>),
     OpenLink(SessionId),
-    /// The search of the form of this tab, in the connection dialog, goes on.
+    /// Continue the search of the form of this tab, in the connection dialog.
     Find(Tab),
 }
 

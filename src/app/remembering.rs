@@ -1,4 +1,4 @@
-//! Exchange of remembered values between the settings and the drives; other windows write the same file.
+//! Exchange of stored values between the settings and the drives; other windows write the same file.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// Reads the settings again periodically while drives are in control: another window may have marked limits as
+    /// Reads the settings periodically while drives are under control: another window may have marked limits as
     /// unconfirmed.
     pub(super) fn look_at_settings(&mut self) {
         let now = self.services.now();
@@ -53,7 +53,7 @@ impl Studio {
         self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(Marks::Read));
     }
 
-    /// The settings could not be read: no drive in hand moves before they are.
+    /// Notes that the settings could not be read: no drive under control moves before they are.
     pub(super) fn could_not_see_settings(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.keeper.could_not_look();

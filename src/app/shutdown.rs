@@ -1,4 +1,4 @@
-//! Sessions that were let go: what still ends there is told, and neither the window nor the wire is free before.
+//! Released sessions: their end is still reported, and neither the window nor the connection is free before.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,15 +15,15 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
-/// How long closing waits, and opening for a wire that is still held.
+/// Maximum waiting times of closing, and of opening while a connection is still held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
-    /// For drives: they stop and are let go.
+    /// For drives: they stop and are released.
     pub drives: Duration,
     pub disk: Duration,
     /// For a job that writes nothing.
     pub job: Duration,
-    /// For a write: it comes to a point at which it can end, and locks again what it unlocked.
+    /// For a write: it reaches a point at which it can end, and locks again what it unlocked.
     pub write: Duration,
 }
 
@@ -38,7 +38,7 @@ impl Default for GracePeriods {
     }
 }
 
-/// Whose thread was let go.
+/// Session whose thread was released.
 pub(crate) struct Leaver {
     /// Its number.
     pub(crate) session: SessionId,
@@ -55,12 +55,12 @@ pub(super) struct Leaving {
     ending: Arc<dyn Left>,
 }
 
-/// A worker that was let go, of whatever device.
+/// Released worker, for any device.
 pub(crate) trait Left: Send + Sync {
     /// The thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
 
-    /// Waits at most `patience` for the end; true when it has come.
+    /// Waits at most `patience` for the end; returns whether it has come.
     fn wait(&self, patience: Duration) -> bool;
 
     /// Returns how jobs ended since the last call.
@@ -101,7 +101,7 @@ pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 }
 
 impl Services {
-    /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
+    /// Releases a thread. The next user of the connection gets its turn when `turn` is dropped, at the end.
     pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, who: Leaver, turn: Option<Sender<()>>) {
         self.let_end(Arc::new(worker.end()), who, turn);
     }
@@ -126,7 +126,7 @@ impl Services {
     pub(super) fn pump_leaving(&mut self) {
         let mut told = Vec::new();
         self.leaving.retain_mut(|leaving| {
-            // In this order: what has ended tells nothing more.
+            // In this order: a thread that has ended reports nothing more.
             let ended = leaving.ending.is_ended();
             for end in leaving.ending.last_words() {
                 if leaving.who.write == Some(end.job) {

@@ -8,7 +8,7 @@ use super::{Language, Text};
 use crate::link::{Direction, TraceEntry};
 use crate::units::Moment;
 
-/// A frame with its meaning.
+/// Frame with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
     /// When its first byte was sent or received, on the session's clock.
@@ -26,14 +26,14 @@ pub struct TraceLine {
 pub enum TraceFault {
     /// The device reports an error or a warning.
     Reported,
-    /// It is no frame, or no reply to the request before it.
+    /// It is not a frame, or not a reply to the request before it.
     Broken,
 }
 
 /// The meaning of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explained {
-    /// In words.
+    /// The meaning as text.
     pub meaning: Vec<Text>,
     /// The fault, if any.
     pub fault: Option<TraceFault>,
@@ -70,7 +70,7 @@ pub struct TraceLog {
 impl TraceLog {
     const CAPACITY: usize = 5_000;
 
-    /// Adds frames with their meanings. `dropped` came too fast to be shown.
+    /// Adds frames with their meanings. `dropped` arrived too fast to be shown.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, Explained { meaning, fault }) in entries {
@@ -86,7 +86,7 @@ impl TraceLog {
         &self.lines
     }
 
-    /// Frames that came too fast to be shown.
+    /// Returns the number of frames that arrived too fast to be shown.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
@@ -96,7 +96,7 @@ impl TraceLog {
         self.began.as_ref()?.checked_add(line.at.since_start()).ok()
     }
 
-    /// A session begins, whose clock began then.
+    /// Begins a session, whose clock started then.
     pub(super) fn begin(&mut self, began: Zoned) {
         *self = TraceLog { began: Some(began), ..TraceLog::default() };
     }

@@ -17,7 +17,7 @@ use crate::profile::Document;
 use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
 
 impl AnyDevice {
-    /// Returns the device as what it is; `None` where it is of another kind.
+    /// Returns the device as its type; `None` if it is of another kind.
     pub fn get<M: Any>(&self) -> Option<&M> {
         (self as &dyn Any).downcast_ref()
     }
@@ -69,17 +69,17 @@ impl AnyDevice {
         &self.state().trace
     }
 
-    /// This is the attempt to open its link that counts.
+    /// Returns whether this is the attempt to open its link that counts.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.state().is_attempt(attempt)
     }
 
-    /// Backups, or why there are none; `None`: not asked for yet.
+    /// Returns the backups, or why there are none; `None`: not requested yet.
     pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
         self.state().backups.as_ref()
     }
 
-    /// Writes of this device that the logbook knows, or why it does not tell; `None`: not asked for yet.
+    /// Returns the writes of this device in the logbook, or why it has none; `None`: not requested yet.
     pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
@@ -94,7 +94,7 @@ impl AnyDevice {
         self.memory().is_some_and(DeviceMemory::is_reviewing)
     }
 
-    /// The review of a write, where one is on its way.
+    /// Returns the review of a write, if there is one.
     pub fn sheet(&self) -> Option<ReviewSheet> {
         self.memory()?.sheet()
     }
@@ -140,7 +140,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// A save has come to a question: another one may begin.
+    /// Notes that a save has led to a question: another one may begin.
     pub(in crate::app) fn save_waits(&mut self) {
         self.state_mut().is_saving = false;
     }

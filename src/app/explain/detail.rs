@@ -61,7 +61,7 @@ pub fn setting(error: &ConfigError) -> Text {
     }
 }
 
-/// A text that is no profile. `kinds` know why one of them refuses a value.
+/// Returns the text for a text that is not a profile. `kinds` know why one of them refuses a value.
 pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
@@ -80,7 +80,7 @@ pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
         ProfileError::Refused { path, cause } => {
             Text::new("detail.value").with("path", path).with_text("what", kinds.explain(cause))
         }
-        // These have sentences of their own.
+        // These have their own texts.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
     }
 }
@@ -128,7 +128,7 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }
 
-/// A place in a text, and what is wrong there.
+/// Returns the text of a place in a file, with the error there.
 pub(crate) fn syntax(line: usize, column: usize, what: Text) -> Text {
     Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", what)
 }

@@ -1,4 +1,4 @@
-//! A device on the desk, or a profile of one, whatever its kind.
+//! An open device, or a profile of one, of any kind.
 
 use super::{Kind, Session};
 

@@ -6,7 +6,7 @@ use crate::app::recorder::{GroupId, Scale, Series};
 /// The meaning of the positions of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meaning {
-    /// Positions from one zero to the next, after which they go round; `None` for a linear one.
+    /// Positions from one zero to the next, after which they wrap; `None` for a linear one.
     pub(in crate::app) range: Option<i64>,
     /// The units of position, speed and acceleration, whose samples are in steps.
     pub scales: [Vec<Scale>; 3],
