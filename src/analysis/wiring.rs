@@ -1,5 +1,5 @@
-//! The four wires of a sine/cosine signal against ground, as SICK 8010701 names them: SIN, REFSIN, COS, REFCOS. What a
-//! source of analogue samples gives; says nothing about when they were taken.
+//! The four wires of a sine/cosine signal against ground, as named by SICK 8010701: SIN, REFSIN, COS, REFCOS. The samples
+//! of an analogue source, without their times.
 
 /// Voltages of the four wires, all columns equally long.
 #[derive(Clone, Debug, Default, PartialEq)]

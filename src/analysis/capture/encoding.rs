@@ -1,4 +1,4 @@
-//! The characters of a table: UTF-8 as it is, UTF-16 (as Windows programs export "Unicode text") turned into it, piece by
+//! The encoding of a table: UTF-8 unchanged, UTF-16 (as Windows programs export "Unicode text") converted to it, piece by
 //! piece.
 
 use std::borrow::Cow;
@@ -14,7 +14,7 @@ enum Encoding {
     Utf16Be,
 }
 
-/// Turns the pieces of a table into UTF-8, without its byte order mark.
+/// Converts the pieces of a table to UTF-8, without its byte order mark.
 #[derive(Debug)]
 pub(super) struct Decoder {
     encoding: Encoding,
