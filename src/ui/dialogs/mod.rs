@@ -1,4 +1,4 @@
-//! Dialogs over the window: connecting, a question, a path to type, what this program is, help.
+//! Dialogs over the window: connecting, a question, a path entry, about, help.
 
 mod about;
 pub(crate) mod connect;

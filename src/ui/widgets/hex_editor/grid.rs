@@ -42,7 +42,7 @@ impl Grid {
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
             (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
-        // In a small window the columns move together rather than the last letters be cut off.
+        // In a small window the columns are closer together so that no characters are truncated.
         let wide = places(theme.space.between);
         let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
         let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
@@ -54,7 +54,7 @@ impl Grid {
         self.len.div_ceil(WIDTH)
     }
 
-    /// Height of so many lines.
+    /// Returns the height of this many lines.
     pub(super) fn height_of(&self, lines: usize) -> f32 {
         self.row * lines as f32
     }
@@ -76,7 +76,7 @@ impl Grid {
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
     }
 
-    /// The byte nearest to the pointer, in the column under it or in one that is given.
+    /// Returns the byte nearest to the pointer, in the column under it or a given one.
     pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {

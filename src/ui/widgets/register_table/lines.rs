@@ -24,7 +24,7 @@ struct Section {
     start: usize,
     /// Registers that are shown.
     rows: usize,
-    /// Those of them that are unfolded, with how many bit fields they have.
+    /// The unfolded ones, with their numbers of bit fields.
     open: Vec<(usize, usize)>,
 }
 
