@@ -17,7 +17,7 @@ pub enum Message {
         op: u8,
         /// The error code.
         code: ErrorCode,
-        /// In words, for a person.
+        /// The message as text.
         text: String,
     },
     /// Data of a stream.
@@ -76,7 +76,7 @@ pub enum Reply {
     },
     /// A register was written.
     BissRegisterWrite {
-        /// Its value as the encoder gave it back.
+        /// Its value as returned by the encoder.
         value: u8,
     },
     /// BiSS frames will come.
@@ -105,7 +105,7 @@ pub enum Reply {
     },
     /// Bytes received on the serial line.
     UartTransfer {
-        /// When the reply's first start bit began, by the clock of the analogue samples.
+        /// Start of the reply's first start bit, by the clock of the analogue samples.
         t_us: u64,
         /// Bytes received.
         rx: Vec<u8>,
@@ -129,11 +129,11 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// The capabilities of an adapter; unknown bits are kept.
+/// Capabilities of an adapter; unknown bits are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
-/// The status of reading a BiSS frame; an unknown status is kept.
+/// Status of reading a BiSS frame; an unknown status is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
@@ -154,7 +154,7 @@ impl Capabilities {
     pub const UART: Capabilities = Capabilities(1 << 4);
     /// A supply that can be switched.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// No ability but a state: the encoder's supply is on. An adapter that does not tell has this bit clear.
+    /// A state, not a capability: the encoder's supply is on. An adapter that does not report it has this bit clear.
     pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
     /// Any word is a set of capabilities.
@@ -167,7 +167,7 @@ impl Capabilities {
         self.0
     }
 
-    /// All of these are among them.
+    /// Returns whether all of these are included.
     pub const fn has(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
@@ -180,7 +180,7 @@ impl Capabilities {
 }
 
 impl BissStatus {
-    /// There is a frame.
+    /// A frame was read.
     pub const OK: BissStatus = BissStatus(0);
     /// No encoder acknowledged.
     pub const NO_ACKNOWLEDGE: BissStatus = BissStatus(1);
@@ -194,7 +194,7 @@ impl BissStatus {
         BissStatus(byte)
     }
 
-    /// Its byte.
+    /// Returns its byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -209,7 +209,7 @@ impl ErrorCode {
     pub const BUSY: ErrorCode = ErrorCode(3);
     /// The encoder does not answer.
     pub const NO_ANSWER: ErrorCode = ErrorCode(4);
-    /// The encoder answered wrongly: a CRC of the control frame.
+    /// The encoder replied wrongly: a CRC of the control frame.
     pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
     /// The adapter was too slow.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
@@ -219,7 +219,7 @@ impl ErrorCode {
         ErrorCode(byte)
     }
 
-    /// Its byte.
+    /// Returns its byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -229,11 +229,11 @@ impl Message {
     /// The operation of a refusal.
     const ERROR: u8 = 0xFF;
 
-    /// Reads what an adapter sent.
+    /// Parses a packet from an adapter.
     ///
     /// # Errors
-    /// [`BodyError`] where the operation is unknown or its body does not fit; [`BodyError::Version`] for a HELLO of
-    /// another version, whatever else stands in it.
+    /// [`BodyError`] if the operation is unknown or its body does not fit; [`BodyError::Version`] for a HELLO of another
+    /// version, whatever else it contains.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
             let mut fields = Fields::new(packet.op, &packet.body);

@@ -28,7 +28,7 @@ pub struct Frame {
 /// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// Nothing: a list that is asked for, the end of a session, a reply that says no.
+    /// Empty: a list request, the end of a session, a refusal.
     Empty,
     /// RegisterSession, both ways.
     Register {
@@ -43,12 +43,12 @@ pub enum Body {
     Data {
         /// 0: CIP.
         interface: u32,
-        /// Seconds; 0 where CIP has a time-out of its own.
+        /// Seconds; 0 if CIP has its own time-out.
         timeout_s: u16,
-        /// Whom it is for, and what.
+        /// Address and content.
         items: Items,
     },
-    /// Of a command that is not known.
+    /// Data of an unknown command.
     Other(Vec<u8>),
 }
 
@@ -87,7 +87,7 @@ impl Command {
         Command(number)
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn number(self) -> u16 {
         self.0
     }
@@ -122,7 +122,7 @@ impl Frame {
         Frame::request(Command::REGISTER_SESSION, context, &body)
     }
 
-    /// A session ends. There is no reply.
+    /// Creates the frame that ends a session. There is no reply.
     pub fn unregister(session: u32) -> Self {
         Frame { session, ..Frame::request(Command::UNREGISTER_SESSION, [0; 8], &Body::Empty) }
     }
@@ -136,12 +136,12 @@ impl Frame {
         }
     }
 
-    /// The reply to this frame, in its session.
+    /// Creates the reply to this frame, in its session.
     pub fn reply(&self, body: &Body) -> Self {
         Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
     }
 
-    /// The reply that says no.
+    /// Creates a refusing reply.
     pub fn refusal(&self, status: EncapsulationStatus) -> Self {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
@@ -153,7 +153,7 @@ impl Frame {
         self.command == request.command && self.context == request.context && session
     }
 
-    /// Bytes of the frame that begins like this; `None` where the header is not whole.
+    /// Returns the length of the frame that begins with these bytes; `None` if the header is incomplete.
     ///
     /// # Errors
     /// [`PacketError::Value`]: longer than any frame.
@@ -170,7 +170,7 @@ impl Frame {
     /// Reads a whole frame.
     ///
     /// # Errors
-    /// [`PacketError`] where the bytes are not one frame.
+    /// [`PacketError`] if the bytes are not one frame.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         Frame::length(bytes)?;
         let mut fields = Fields::new(WHAT, bytes);
@@ -184,7 +184,7 @@ impl Frame {
         fields.end(Frame { command, session, status, context, options, data })
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         let data = self.data.get(..Frame::MAX_DATA).unwrap_or(&self.data);
         let mut bytes = Vec::with_capacity(Frame::HEADER + data.len());
@@ -202,7 +202,7 @@ impl Frame {
     /// Parses the content.
     ///
     /// # Errors
-    /// [`PacketError`] where the data are not those of its command.
+    /// [`PacketError`] if the data do not belong to the command.
     pub fn body(&self) -> Result<Body, PacketError> {
         if self.data.is_empty() {
             return Ok(Body::Empty);
@@ -229,7 +229,7 @@ impl Frame {
 const WHAT: &str = "the encapsulation frame";
 
 impl Body {
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Body::Empty => Vec::new(),
