@@ -1,5 +1,5 @@
-//! The calculator of a drive's input circuit: how fast the signals are at a speed, and what the filter does to them there
-//! and on the way to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
+//! The calculator of a drive's input circuit: the signal frequency at a speed, and the effect of the filter there and up to
+//! the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
 
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
@@ -35,7 +35,7 @@ pub struct Point {
 /// The circuit of the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
-    /// At the speed that was typed.
+    /// At the entered speed.
     pub here: Point,
     /// The speed in revolutions a minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,
@@ -59,7 +59,7 @@ impl Form {
     /// Calculates the circuit.
     ///
     /// # Errors
-    /// The first entry that cannot be used, in words.
+    /// Why the first invalid entry is invalid.
     pub fn circuit(&self) -> Result<Circuit, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
@@ -111,7 +111,7 @@ mod tests {
         }
     }
 
-    /// Section 1: 102.4 kHz behind 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
+    /// Section 1: 102.4 kHz after 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
     #[test]
     fn the_rows_of_section_1() {
         let rows = [

@@ -18,9 +18,9 @@ use crate::signals::state::TEXTS;
 pub struct Nonlinearities {
     /// As measured.
     pub raw: Part,
-    /// With offsets, gain ratio and phase error taken out.
+    /// With offsets, gain ratio and phase error corrected.
     pub corrected: Part,
-    /// Revolutions of the reference that the samples cover; INL speaks for a whole one only from 1 on.
+    /// Revolutions of the reference that the samples cover; INL is valid for a whole one only from 1 on.
     pub revolutions: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct Part {
     pub differential_deg: f64,
     /// INL: ± mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and the whole deviation in mechanical degrees: least and greatest of each stretch.
+    /// Reference angle and the whole deviation in mechanical degrees: minimum and maximum of each section.
     pub deviation: Vec<(f64, f64)>,
     /// Reference angle and the mean over a period, likewise.
     pub mean: Vec<(f64, f64)>,
@@ -44,7 +44,7 @@ pub struct AbsoluteOffset {
     pub offset_steps: f64,
     /// Largest distance of a sample from it, in 1/32 period.
     pub farthest_steps: f64,
-    /// Samples that it is told from.
+    /// Number of samples used.
     pub samples: usize,
 }
 

@@ -1,4 +1,4 @@
-//! Is the signal good: the Lissajous figure, what is wrong in words, and every number beside its limit.
+//! The quality of the signal: the Lissajous figure, the findings as text, and every number with its limit.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Absolute and analogue position brought together: typed, or as the encoder gives them.
+//! Absolute and analogue position combined: from entries, or from the encoder.
 
 use egui::Ui;
 
@@ -31,7 +31,7 @@ pub(super) fn page_ui(
     let mut form = state.form.clone();
     // The drawing beside the entries shows their present result.
     let told = form.synchronisation();
-    // Two rows, so that also in one column the result stands next to what it comes from.
+    // Two rows, so that also in one column the result is next to its inputs.
     split(
         ui,
         theme,
@@ -195,7 +195,7 @@ fn result(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
 fn numbers(ui: &mut Ui, theme: &Theme, told: &Synchronisation) {
     let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
     row(ui, theme, &say(theme, "synchronise.period"), theme.mono(told.period.to_string()));
-    // In the colours that they have in the ring.
+    // In their colours in the ring.
     row(ui, theme, &say(theme, "synchronise.step"), theme.mono(format!("{}/32", told.step)).color(series(theme, 0)));
     row(ui, theme, &say(theme, "synchronise.phase_now"), number(told.phase.periods(), 5, "").color(series(theme, 1)));
     row(ui, theme, &say(theme, "synchronise.difference"), number(told.difference_steps, 2, "/32"));
