@@ -1,4 +1,4 @@
-//! Clocks: the real one for hardware and for the virtual devices of the window, a virtual one for tests.
+//! Clocks: the real one for hardware and for the virtual devices of the window, and a virtual one for tests.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -38,7 +38,7 @@ impl Clock for RealClock {
     }
 }
 
-/// A clock that advances only while it is waited on: an hour passes in no time.
+/// A clock that advances only while a thread waits on it, so that an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

@@ -1,4 +1,4 @@
-//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; whoever opens the link interprets
+//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; the code that opens the link interprets
 //! the parameters.
 
 use std::fmt;
@@ -42,7 +42,7 @@ impl Scheme {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
-    /// Returns what follows the colon.
+    /// Returns the part that is required after the colon.
     fn needs(self) -> &'static str {
         match self {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
@@ -60,14 +60,14 @@ impl Scheme {
 pub struct LinkUrl {
     /// Kind of wire.
     pub scheme: Scheme,
-    /// Path, host and port, or file; empty for `sim:`. Of `bridge:` a path, or host and port behind `tcp:`; of `modbus:`
-    /// and `enip:` always with its port, which is 502 or 44818 where none is written.
+    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`; for `modbus:`
+    /// and `enip:`, always with the port, which is 502 or 44818 by default.
     pub target: String,
     /// The parameters after the question mark.
     pub query: Query,
 }
 
-/// The resource of the machine that a link needs; two links may need the same.
+/// The resource of the computer that a link uses; two links may use the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// The device is in this process.
@@ -80,22 +80,22 @@ pub enum Wire<'a> {
     File(&'a str),
 }
 
-/// Parameters in the order written. Names are lower case; each stands once.
+/// Parameters in the order written. Names are lower case, and unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Query(Vec<(String, String)>);
 
-/// Why a text is not a link.
+/// The reason why a text is not a link.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
-    /// No colon, or a word before it that names no kind of link.
+    /// The colon is missing, or the word before it is not a kind of link.
     #[error("{0:?} is not a link: it begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
     Scheme(String),
-    /// A link that cannot lead to the device that is meant.
+    /// A kind of link that cannot reach this device.
     #[error("{scheme}: links do not lead to this device; those that do are {known}")]
     Device {
         /// The word before the colon.
         scheme: &'static str,
-        /// Words that could stand there.
+        /// The words that are allowed.
         known: &'static str,
     },
     /// The port, host or file is missing.
@@ -104,7 +104,7 @@ pub enum UrlError {
         /// The kind of link.
         scheme: Scheme,
     },
-    /// Behind the host stands what is no port.
+    /// The text after the host is not a port.
     #[error("{scheme}: {port} is no port: those are numbers from 1 to 65535")]
     Port {
         /// The word before the colon.
@@ -115,7 +115,7 @@ pub enum UrlError {
     /// A parameter that is not of the form name=value.
     #[error("{0:?} is not of the form name=value")]
     Parameter(String),
-    /// A parameter that stands twice.
+    /// A parameter that occurs twice.
     #[error("{0} stands twice")]
     Twice(String),
     /// A parameter that this link does not take.
@@ -125,7 +125,7 @@ pub enum UrlError {
         name: String,
         /// The word before the colon.
         scheme: &'static str,
-        /// The names that are known.
+        /// The known names.
         known: String,
     },
     /// A value that cannot be used.
@@ -253,7 +253,7 @@ impl Query {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
     }
 
-    /// Gives a parameter a value, in its place where it is there already.
+    /// Sets a parameter; an existing one keeps its place.
     pub fn set(&mut self, name: &str, value: &str) {
         match self.0.iter_mut().find(|(own, _)| own == name) {
             Some((_, own)) => value.clone_into(own),
@@ -261,7 +261,7 @@ impl Query {
         }
     }
 
-    /// All parameters in the order written.
+    /// Returns all parameters in the order written.
     pub fn pairs(&self) -> &[(String, String)] {
         &self.0
     }
@@ -271,10 +271,10 @@ impl Query {
         self.0.iter().filter(|(name, _)| !names.contains(&name.as_str())).cloned().collect()
     }
 
-    /// Reads a parameter; `None` when it was left out.
+    /// Reads a parameter; `None` if it is missing.
     ///
     /// # Errors
-    /// A value that it does not take.
+    /// Returns an error if the value is not allowed.
     pub fn read<V: Values>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
         Ok(self.get(name).map(|value| values.take(name, value)).transpose()?)
     }
