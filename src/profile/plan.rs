@@ -44,12 +44,12 @@ impl<Base, Op: Operation> Plan<Base, Op> {
     }
 }
 
-/// A person's consent to one plan. Only the window and the command line make one.
+/// The user's consent to one plan. Only the window and the command line create one.
 #[derive(Clone, Copy, Debug)]
 pub struct Consent(PlanId);
 
 impl Consent {
-    /// The person has seen the plan with this id and wants it.
+    /// Creates the consent of a user who has seen the plan with this id and agreed.
     pub fn to(plan: PlanId) -> Self {
         Consent(plan)
     }

@@ -1,5 +1,5 @@
-//! Names that stand twice in a structure of a profile. The `ron` crate keeps the last of them without a word; in a file
-//! edited by hand that would drop the other.
+//! Duplicate names in a structure of a profile. The `ron` crate silently keeps the last of them; in a file edited by hand
+//! that would lose the other.
 
 use std::cell::RefCell;
 use std::collections::HashSet;
@@ -8,10 +8,10 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Any RON in which no structure has a name twice; the content itself is not kept.
+/// Any RON without duplicate names in a structure; the content itself is not kept.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
-    /// The name that stands twice, where one does.
+    /// The duplicate name, if there is one.
     pub(super) twice: &'t RefCell<Option<String>>,
 }
 
