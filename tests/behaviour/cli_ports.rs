@@ -48,7 +48,7 @@ fn a_line_that_is_never_silent_ends_a_command_within_ten_seconds() {
     let ran = bench.run(&["identify", "hiperface", "--link", &server(talk), "--json"]);
     ran.fails(1, &[]);
     assert!(ran.took < Duration::from_secs(10), "{ran:?}");
-    // A search would disturb whoever talks there.
+    // A search would disturb the communication on the port.
     bench
         .run(&["find", "hiperface", "--only-master", "--link", &server(talk)])
         .fails(1, &["talks", "nothing was sent"]);
