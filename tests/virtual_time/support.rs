@@ -1,5 +1,5 @@
-//! A desk in virtual time: a session on a virtual line, a link between them that can be told to misbehave, and all that
-//! went over it.
+//! Test support in virtual time: a session on a virtual line, a link in between with configurable faults, and a record of
+//! its data.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -25,16 +25,16 @@ use encoder_studio::worker::Session;
 /// The margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
-/// What the link does besides carrying bytes, and what it has carried.
+/// The faults of the link, and a record of its bytes.
 #[derive(Default)]
 pub(crate) struct Tap {
     /// Every frame that was handed to the link.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// From this frame on (0 is the first) the link is gone.
+    /// From this frame on (0 is the first) the link is lost.
     pub(crate) lost_from: Option<usize>,
     /// From this frame on nothing reaches the encoder.
     pub(crate) deaf_from: Option<usize>,
-    /// From this frame on nothing comes back.
+    /// From this frame on no reply arrives.
     pub(crate) mute_from: Option<usize>,
     /// This frame does not reach the encoder.
     pub(crate) swallow_request: Option<usize>,
@@ -42,15 +42,15 @@ pub(crate) struct Tap {
     pub(crate) swallow_reply: Option<usize>,
     /// Every reply to a request that begins like this is damaged.
     pub(crate) broken_to: Option<Vec<u8>>,
-    /// No reply to a request that begins like this comes back.
+    /// No reply arrives to a request that begins like this.
     pub(crate) mute_to: Option<Vec<u8>>,
-    /// Bytes that somebody else sends.
+    /// Bytes from another sender.
     pub(crate) foreign: VecDeque<u8>,
-    /// The link has no speed of its own: a device server.
+    /// Whether the link has no speed of its own, as with a device server.
     pub(crate) formatless: bool,
-    /// The link says that it is gone when it is asked.
+    /// Whether the link reports on request that it is lost.
     pub(crate) unplugged: bool,
-    /// With this frame somebody wishes an end.
+    /// The frame at which the job is cancelled.
     pub(crate) cancel_at: Option<(usize, Cancel)>,
 }
 
@@ -70,7 +70,7 @@ impl Tap {
         self.sent.last().is_some_and(|last| last.starts_with(request))
     }
 
-    /// How often a command was sent.
+    /// Returns the number of times that a command was sent.
     pub(crate) fn count(&self, command: Command) -> usize {
         self.sent.iter().filter(|frame| frame[1] == command.byte()).count()
     }
@@ -160,7 +160,7 @@ pub(crate) struct Desk {
     pub(crate) session: Session<Hiperface>,
 }
 
-/// A folder for backups and the logbook: in memory where there is room for files in it, because thousands are made.
+/// Returns a folder for backups and the logbook: in memory if there is room for files, because thousands are created.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
@@ -209,7 +209,7 @@ impl Desk {
         Desk { bus, clock, tap, trace, folder, session }
     }
 
-    /// The same line at the same time in a new session: a cable that was plugged in again.
+    /// Returns the same line at the same time in a new session: a cable that was plugged in again.
     pub(crate) fn reconnected(&self) -> Desk {
         let mut desk =
             Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
@@ -281,7 +281,7 @@ impl Desk {
         }
     }
 
-    /// Status byte and content of every data field, looked at in the encoder.
+    /// Returns status byte and content of every data field, read directly in the encoder.
     pub(crate) fn memory(&self) -> Fields {
         let bus = self.bus();
         let memory = bus.encoders()[0].memory();
@@ -289,7 +289,7 @@ impl Desk {
         (0..memory.free().fields).map(field).collect()
     }
 
-    /// How often the encoder's EEPROM was written.
+    /// Returns the number of writes of the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
@@ -317,7 +317,7 @@ pub(crate) fn xor(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Where access codes stand in a request, by the reference: after the two head bytes.
+/// Returns the positions of access codes in a request, according to the reference: after the two head bytes.
 fn places_of_codes(command: u8) -> &'static [usize] {
     match command {
         0x43 | 0x63 => &[6],
@@ -330,8 +330,8 @@ fn places_of_codes(command: u8) -> &'static [usize] {
     }
 }
 
-/// A request with a code shows neither it nor the checksum, and everything else; an answer to it that is shown is not
-/// the request itself.
+/// Checks that a request with a code is shown without code and checksum, but otherwise completely, and that a shown answer
+/// is not the request itself.
 fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     let shown = entry.bytes.to_string();
     let words: Vec<&str> = shown.split(' ').collect();
@@ -347,7 +347,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
             }
         }
         Direction::Received => {
-            // One byte that was read may have the value of the code: that is no secret.
+            // A byte that was read may have the value of the code: that is no secret.
             let can_leak = |sent: &&Vec<u8>| !(places_of_codes(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
             let Some(sent) = sent.filter(can_leak) else { return };
             let hex: Vec<String> = sent.iter().map(|byte| format!("{byte:02X}")).collect();
@@ -356,7 +356,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     }
 }
 
-/// What people read names none of the codes used in these tests.
+/// Checks that a text for users contains none of the codes used in these tests.
 pub(crate) fn check_words(text: &str) {
     // A damaged reply may have any checksum.
     if text.contains("checksum") {

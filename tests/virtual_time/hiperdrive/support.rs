@@ -1,4 +1,4 @@
-//! A virtual adapter or hub in virtual time, with a session on it, and all that went over the wire.
+//! Test support: a virtual adapter or hub in virtual time, with a session and a record of its data.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -24,7 +24,7 @@ pub(crate) struct Stand {
     pub(crate) target: Target,
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) tap: Arc<Mutex<Tap>>,
-    /// Backups and the logbook lie in it.
+    /// Folder of backups and the logbook.
     folder: tempfile::TempDir,
     pub(crate) session: Session<Hiperdrive>,
 }
@@ -103,7 +103,7 @@ impl Stand {
         self.commit(prepared)
     }
 
-    /// What is in the way of the logbook.
+    /// Blocks the path of the logbook.
     pub(crate) fn block_logbook(&self) {
         std::fs::create_dir_all(Store::at(self.folder.path()).logbook_path()).unwrap();
     }
@@ -117,7 +117,7 @@ impl Stand {
         }
     }
 
-    /// What was asked of objects, in its order.
+    /// Returns the requests to objects, in their order.
     pub(crate) fn requests(&self) -> Vec<Request> {
         let tap = self.tap();
         let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());
@@ -129,7 +129,7 @@ impl Stand {
         .collect()
     }
 
-    /// What was set, as parameter and data.
+    /// Returns the set values, as parameter and data.
     pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
         use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {
