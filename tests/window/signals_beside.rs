@@ -1,4 +1,4 @@
-//! A capture beside a reference encoder and with an absolute position: DNL, INL and the offset, as state and drawn.
+//! A capture with a reference encoder and with an absolute position: DNL, INL and the offset, as state and drawn.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -75,7 +75,7 @@ fn both_are_shown_and_the_offset_is_taken_over() {
     screen.until("it is read", |studio| studio.signals().measurement().is_some());
     screen.look_at_signals();
     screen.click("page.error");
-    // An offset of 1 % is ±0.573° / 64 = 0.00895°, an eccentricity of 0.01° 36″; 50 samples a period add a little.
+    // An offset of 1 % is ±0.573° / 64 = 0.00895°, an eccentricity of 0.01° 36″; 50 samples per period add a little.
     assert!(screen.shows(&screen.say("nonlinearity.inl_raw")));
     assert!(screen.shows("0.00896°") && screen.shows("32.24″") && screen.shows("35.99″"));
     screen.click("page.synchronise");
