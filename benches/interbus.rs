@@ -1,4 +1,4 @@
-//! How fast 64 cams are evaluated (goal: 10 million positions a second), beside a loop over all of them.
+//! Speed of evaluating 64 cams (goal: 10 million positions per second), compared with a loop over all of them.
 //!
 //! `cargo bench --bench interbus`
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
