@@ -82,11 +82,11 @@ pub struct Procedure {
     pub since: Firmware,
 }
 
-/// A description that cannot be used, and where.
+/// An error in a description, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {what}")]
 pub struct DescriptionError {
-    /// The file's name as it was given.
+    /// The file's name as given.
     pub file: String,
     /// Line, counted from 1.
     pub line: usize,
@@ -96,16 +96,16 @@ pub struct DescriptionError {
     pub what: String,
 }
 
-/// All kinds of encoders known, the most particular first.
+/// All known kinds of encoders, the most specific first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descriptions(Vec<Description>);
 
 impl Description {
-    /// Reads a description. `file` is what an error is to call it.
+    /// Parses a description. `file` is its name for errors.
     ///
     /// # Errors
-    /// With line and column: text that is not RON, unknown or missing keys, numbers out of their range, registers that
-    /// overlap.
+    /// Returns line and column: text that is not RON, unknown or missing keys, numbers outside their range, overlapping
+    /// registers.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
         file::parse(text).map_err(|error| DescriptionError {
             file: file.to_owned(),
@@ -125,7 +125,7 @@ impl Description {
         self.identity.as_ref()
     }
 
-    /// The frame of the position data; `None` where the encoder's data sheet or the user has to tell.
+    /// Returns the frame of the position data; `None` if the encoder's data sheet or the user has to supply it.
     pub const fn layout(&self) -> Option<&Layout> {
         self.layout.as_ref()
     }
@@ -171,7 +171,7 @@ impl Description {
         self.areas.iter().find(|area| address.bank().is_some_and(|bank| area.contains(bank)))
     }
 
-    /// A procedure, where the encoder has it.
+    /// Returns a procedure, if the encoder has it.
     pub fn procedure(&self, kind: ProcedureKind) -> Option<&Procedure> {
         self.procedures.iter().find(|procedure| procedure.kind == kind)
     }
@@ -225,18 +225,18 @@ impl Descriptions {
                 Err(error) => errors.push(error),
             }
         }
-        // Those that are for one kind of encoder before those that are for any.
+        // Those for one kind of encoder before those for any.
         read.sort_by_key(|description| description.identity.is_none());
         (Descriptions(read), errors)
     }
 
     /// The built-in ones.
     pub fn built_in() -> Self {
-        // That they can be read is tested.
+        // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0
     }
 
-    /// These, with those of `others` going before their own where both are for the same encoder.
+    /// Returns these descriptions with those of `others`, which take precedence for the same encoder.
     #[must_use]
     pub fn overlaid_with(self, others: Descriptions) -> Self {
         let mut all = others.0;
@@ -245,7 +245,7 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// The description of an encoder that says this of itself: its own, else one for any.
+    /// Returns the description of an encoder with this identity: its own, otherwise one for any.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check(identity).is_ok())
     }
@@ -255,7 +255,7 @@ impl Descriptions {
         self.0.iter().find(|description| description.name == name)
     }
 
-    /// All of them.
+    /// Returns all of them.
     pub fn iter(&self) -> impl Iterator<Item = &Description> {
         self.0.iter()
     }

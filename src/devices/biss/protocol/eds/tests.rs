@@ -1,4 +1,4 @@
-//! The data sheet of the reference, field by field; sums; and sheets that tell no frame.
+//! The data sheet of the reference, field by field; sums; and sheets without a frame.
 
 use proptest::prelude::*;
 
