@@ -16,12 +16,12 @@ impl CodeNumber {
     /// Code 0 also guards the settings of the encoder itself.
     pub const ZERO: CodeNumber = CodeNumber(0);
 
-    /// 0…3; `None` above.
+    /// Creates a number 0…3; `None` above.
     pub const fn new(number: u8) -> Option<Self> {
         if number < 4 { Some(CodeNumber(number)) } else { None }
     }
 
-    /// All four.
+    /// Returns all four.
     pub fn all() -> impl Iterator<Item = CodeNumber> {
         (0..4).map(CodeNumber)
     }
@@ -38,7 +38,7 @@ impl fmt::Display for CodeNumber {
     }
 }
 
-/// An access code. It shows itself nowhere: not in a log, a trace, an error or a test's output.
+/// An access code. It is never shown: not in a log, a trace, an error or a test's output.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct AccessCode(u8);
 
@@ -68,10 +68,10 @@ impl fmt::Debug for AccessCode {
 pub struct FieldSize(u8);
 
 impl FieldSize {
-    /// Bytes in a block, the unit in which memory is given out.
+    /// Bytes in a block, the unit in which memory is allocated.
     pub const BLOCK: usize = 16;
 
-    /// A size in bytes; `None` unless it is a multiple of 16 from 16 to 128.
+    /// Creates a size from bytes; `None` unless it is a multiple of 16 from 16 to 128.
     pub fn from_bytes(bytes: usize) -> Option<Self> {
         if !bytes.is_multiple_of(Self::BLOCK) {
             return None;
@@ -129,12 +129,12 @@ impl DataFieldStatus {
         self.0
     }
 
-    /// E: the field is defined.
+    /// Returns E: the field is defined.
     pub const fn exists(self) -> bool {
         self.0 & Self::EXISTS != 0
     }
 
-    /// WE: the field may be written.
+    /// Returns WE: the field may be written.
     pub const fn is_writable(self) -> bool {
         self.0 & Self::WRITE_ENABLE != 0
     }
@@ -144,7 +144,7 @@ impl DataFieldStatus {
         CodeNumber(self.0 >> 4 & 3)
     }
 
-    /// CE: reading and writing need the access code.
+    /// Returns CE: reading and writing need the access code.
     pub const fn code_required(self) -> bool {
         self.0 & Self::CODE_REQUIRED != 0
     }
@@ -173,7 +173,7 @@ impl DataFieldStatus {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
     }
 
-    /// The status that deletes this field: E is 0.
+    /// Returns the status that deletes this field: E is 0.
     #[must_use]
     pub const fn deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)
