@@ -1,4 +1,4 @@
-//! The three classes of encoders, who they are on the bus, and the words of those without commands (reference 1).
+//! The three classes of encoders, their identification on the bus, and the words of those without commands (reference 1).
 
 use super::value::Value;
 
@@ -43,7 +43,7 @@ impl Class {
     }
 }
 
-/// The identification code of an encoder. K3 with copper or fibre is 37h = 55: manual 5.1 prints 36h beside 55
+/// Returns the identification code of an encoder. K3 with copper or fibre is 37h = 55: manual 5.1 prints 36h next to 55
 /// (reference 6.1).
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {

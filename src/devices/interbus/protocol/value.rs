@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Value(u32);
 
-/// Bits 28..25 of a word: which parameter, cam or error it is about. 0 to 15.
+/// Bits 28..25 of a word: the parameter, cam or error. 0 to 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Code(u8);
 
@@ -19,7 +19,7 @@ impl Value {
         if number <= Value::MAX.0 { Some(Value(number)) } else { None }
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn get(self) -> u32 {
         self.0
     }
@@ -42,7 +42,7 @@ impl Code {
         if code < 16 { Some(Code(code)) } else { None }
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn get(self) -> u8 {
         self.0
     }
