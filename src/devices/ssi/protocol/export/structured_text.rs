@@ -79,7 +79,7 @@ pub fn structured_text(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     let title = title.replace("*)", "* )");
     let clocks = layout.clocks();
-    // Writing into a String does not fail.
+    // Writing into a String cannot fail.
     let _ = writeln!(
         text,
         "(* SSI decoder: {title}\n   {clocks} clocks; the first bit received is bit {} of frame. IEC 61131-3.",

@@ -1,18 +1,17 @@
-//! Recorded frames as bits over time: which clocks move, which stay, and where a word comes a second time. Nothing is
-//! decoded here.
+//! Recorded frames as bits over time: the clocks that move, the constant ones, and repeated words. Nothing is decoded here.
 
 use std::collections::HashMap;
 
 use crate::devices::ssi::protocol::code::ones;
 use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 
-/// A bit that differs from its usual value in no more frames in a row than this was disturbed, or is an error bit.
+/// A bit that differs from its usual value in no more consecutive frames than this was disturbed, or is an error bit.
 const SHORT: usize = 2;
 /// Of a hundred frames, those in which a bit may differ from its usual value and still count as constant.
 const RARE_PERCENT: usize = 25;
-/// Of a hundred frames, those in which a second word may differ from the first.
+/// Of a hundred frames, those in which a repeated word may differ from the first.
 const REPEAT_PERCENT: usize = 10;
-/// A shorter word is not looked for twice.
+/// Length of the shortest word whose repetition is searched for.
 const LEAST_WORD: u8 = 4;
 
 /// Frames of the same number of clocks, in the order of reading.
@@ -29,9 +28,9 @@ pub(super) struct Bit {
     pub(super) usual: bool,
     /// Frames with the other value.
     pub(super) unusual: usize,
-    /// From a frame to the next, how often it changed.
+    /// Number of changes between consecutive frames.
     pub(super) changes: usize,
-    /// It took the other value for longer than a disturbance lasts.
+    /// Whether it had the other value for longer than a disturbance lasts.
     pub(super) moves: bool,
 }
 
@@ -58,7 +57,7 @@ impl Seen {
         usize::from(clock).checked_sub(1).and_then(|index| self.bits.get(index)).copied().unwrap_or_default()
     }
 
-    /// Clocks with what their bits did.
+    /// Returns the clocks with the changes of their bits.
     pub(super) fn bits(&self) -> impl DoubleEndedIterator<Item = (u8, Bit)> + '_ {
         (1..=self.clocks).map(|clock| (clock, self.bit(clock)))
     }
@@ -73,7 +72,7 @@ impl Seen {
         self.counts().len()
     }
 
-    /// Nearly all frames are among a few: the shaft stood or trembled, whatever else disturbances made of it.
+    /// Returns whether nearly all frames are among a few, apart from disturbances: the shaft was at standstill or trembled.
     pub(super) fn stands(&self) -> bool {
         let mut counts: Vec<usize> = self.counts().into_values().collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
@@ -133,13 +132,13 @@ impl Bit {
         Bit { usual, unusual, changes, moves: longest > SHORT || unusual * 100 > RARE_PERCENT * words.len() }
     }
 
-    /// Bits that it takes to say what it did, where nothing else says so.
+    /// Returns the bits needed to describe its changes, if nothing else explains them.
     pub(super) fn cost(&self, frames: usize) -> f64 {
         entropy(self.changes, frames)
     }
 }
 
-/// Bits that it takes to say which `some` of `all` were meant.
+/// Returns the bits needed to select `some` of `all`.
 pub(super) fn entropy(some: usize, all: usize) -> f64 {
     if some == 0 || some >= all {
         return 0.0;
