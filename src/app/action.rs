@@ -85,7 +85,7 @@ pub enum Action {
     },
     /// Ask where to save a picture.
     AskPicture(Picture),
-    /// A picture was wished of something that cannot be seen as a whole.
+    /// A picture was requested of something that is not visible as a whole.
     PictureCut,
     /// The review of a write, about one session.
     Review(SessionId, ReviewAction),

@@ -107,7 +107,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
     }
 
-    /// A picture was wished of something that cannot be seen as a whole.
+    /// A picture was requested of something that is not visible as a whole.
     pub(super) fn tell_picture_cut(&mut self) {
         self.services.tell(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }

@@ -15,9 +15,9 @@ use crate::link::LinkUrl;
 pub struct Question {
     /// What would be lost or interrupted.
     pub text: Text,
-    /// The word for going on.
+    /// The word for continuing.
     pub confirm: Text,
-    /// The word for not going on.
+    /// The word for not continuing.
     pub decline: Text,
     pub(super) then: Then,
 }

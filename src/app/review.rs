@@ -185,7 +185,7 @@ impl Manner {
         }
     }
 
-    /// Returns the id of the text that tells what will be done.
+    /// Returns the id of the text about the next action.
     pub const fn way(self) -> &'static str {
         match self {
             Manner::Writes => "review.way",

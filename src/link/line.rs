@@ -32,7 +32,7 @@ pub(crate) const MOST_KEPT: usize = 4096;
 /// The reason why an exchange on a line ends early.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
-    /// The user wished it.
+    /// The user cancelled it.
     Cancelled,
     /// Bytes arrive during the required silence.
     NeverSilent,

@@ -99,7 +99,7 @@ impl Cancel {
         cancel
     }
 
-    /// Wishes an end at the next possible point.
+    /// Requests cancellation at the next possible point.
     pub fn request(&self) {
         self.0.wished.store(true, Ordering::SeqCst);
     }
@@ -109,7 +109,7 @@ impl Cancel {
         self.0.wished.store(false, Ordering::SeqCst);
     }
 
-    /// The end is wished.
+    /// Returns whether cancellation is requested.
     pub fn is_requested(&self) -> bool {
         self.0.wished.load(Ordering::SeqCst)
     }

@@ -4,7 +4,7 @@ use super::testing::{changed_in_place, edited};
 use super::*;
 use crate::expected::Expected;
 
-/// A lamp that is lit in steps.
+/// A light that is switched in steps.
 #[derive(Clone, Debug, PartialEq)]
 struct Lamp {
     colour: String,

@@ -155,7 +155,7 @@ fn the_position_has_turns_steps_and_degrees() {
     }
 }
 
-/// 360° a second counterclockwise.
+/// 360° per second counterclockwise.
 #[test]
 fn a_turning_shaft_is_followed() {
     let bench = Bench::new();

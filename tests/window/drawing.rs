@@ -18,7 +18,7 @@ const SIZE: [f32; 2] = [1280.0, 900.0];
 const WATCHED: f64 = 10.0;
 /// The least time from one picture to the next that is asked for at once, in seconds.
 const AT_ONCE: f64 = 1.0 / 60.0;
-/// A cursor in a text entry is drawn and hidden twice a second at most.
+/// A cursor in a text entry is drawn and hidden twice per second at most.
 const BLINKS: usize = 2 * WATCHED as usize + 2;
 /// Live values are drawn every 50 ms.
 const LIVE: usize = (WATCHED / 0.05) as usize + 2;

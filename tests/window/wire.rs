@@ -172,7 +172,7 @@ impl Wire {
         self.state().unplugged = false;
     }
 
-    /// The thread that sends next dies without a word.
+    /// Lets the next thread that sends panic.
     pub(crate) fn kill(&self) {
         self.state().deadly = true;
     }

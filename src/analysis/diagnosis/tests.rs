@@ -36,7 +36,7 @@ fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) ->
     made
 }
 
-/// 1234.5 periods a second.
+/// 1234.5 periods per second.
 fn steady(time: f64) -> f64 {
     1234.5 * time
 }

@@ -134,7 +134,7 @@ impl Source {
         &self.link
     }
 
-    /// Samples a second that are wished of an adapter.
+    /// Samples per second that are requested from an adapter.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
     }

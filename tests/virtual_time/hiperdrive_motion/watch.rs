@@ -12,7 +12,7 @@ use super::bench::Bench;
 use super::{FULL, TURN, to};
 
 const DEGREE: i32 = 183;
-/// 35 rpm · 65536 steps / 60 s / 100 intervals a second.
+/// 35 rpm · 65536 steps / 60 s / 100 intervals per second.
 const INTERVAL_AT_FULL_SPEED: i32 = 383;
 const LIMITS: (i32, i32) = (-TURN, TURN);
 

@@ -31,7 +31,7 @@ pub trait Stretch: Send + 'static {
 
 #[derive(Clone, Copy, Debug)]
 pub struct SineCosine {
-    /// Samples a second.
+    /// Samples per second.
     pub sample_hz: u32,
 }
 

@@ -24,7 +24,7 @@ pub enum Wanted {
     },
     /// Sine and cosine.
     Analog {
-        /// Samples a second.
+        /// Samples per second.
         sample_hz: u32,
     },
 }
@@ -48,7 +48,7 @@ pub struct Streaming {
 /// Why there is no stream, or no longer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TapError {
-    /// The user wished it.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// The wire.

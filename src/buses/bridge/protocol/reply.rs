@@ -86,7 +86,7 @@ pub enum Reply {
     },
     /// The actual sampling of analogue signals.
     AnalogConfig {
-        /// Samples a second.
+        /// Samples per second.
         sample_hz: u32,
         /// Full scale: the voltage of a value of 32 767.
         full_scale_microvolt: u32,
@@ -100,7 +100,7 @@ pub enum Reply {
     },
     /// The actual setting of the serial line.
     UartConfig {
-        /// Bits a second.
+        /// Bits per second.
         baud: u32,
     },
     /// Bytes received on the serial line.
@@ -119,7 +119,7 @@ pub struct Hello {
     pub capabilities: Capabilities,
     /// Fastest clock in hertz.
     pub max_clock_hz: u32,
-    /// Most samples a second.
+    /// Most samples per second.
     pub max_sample_hz: u32,
     /// The name.
     pub name: String,

@@ -103,7 +103,7 @@ pub enum Request {
     },
     /// Configures the sampling of analogue signals.
     AnalogConfig {
-        /// Samples a second.
+        /// Samples per second.
         sample_hz: u32,
     },
     /// Analogue samples without being asked.
@@ -113,7 +113,7 @@ pub enum Request {
     },
     /// Configures the serial line.
     UartConfig {
-        /// Bits a second.
+        /// Bits per second.
         baud: u32,
         /// 0 none, 1 odd, 2 even; others are kept.
         parity: u8,

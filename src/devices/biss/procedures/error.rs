@@ -116,7 +116,7 @@ pub enum Error {
         /// Why it is not known.
         cause: Box<Error>,
     },
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// Neither order of a register number's two bytes gives an answer that the manual knows.

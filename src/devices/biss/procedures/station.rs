@@ -150,7 +150,7 @@ pub struct Station {
 /// The encoder's supply as an adapter gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
-    /// Millivolts wished.
+    /// Millivolts requested.
     pub millivolt: u16,
     /// Millivolts and milliamperes measured when the supply was switched on; `None` before.
     pub measured: Option<(u16, u16)>,

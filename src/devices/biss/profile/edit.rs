@@ -60,7 +60,7 @@ impl MountingRun {
 pub enum RegisterKind<'d> {
     /// In a data area that is opened and saved.
     Data(&'d Area),
-    /// By itself.
+    /// Individually.
     Register,
 }
 

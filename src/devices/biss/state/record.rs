@@ -56,12 +56,12 @@ pub struct Streamed {
     period_ns: i64,
     /// The clock of the bus in hertz.
     pub clock_hz: u32,
-    /// More frames were wished than the clock allows.
+    /// More frames were requested than the clock allows.
     pub is_limited: bool,
 }
 
 impl Streamed {
-    /// Frames a second.
+    /// Frames per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }

@@ -142,7 +142,7 @@ pub enum Error {
     /// The wire.
     #[error(transparent)]
     Link(LinkError),
-    /// The user wished it.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// Bytes keep coming that are no frames.
@@ -305,7 +305,7 @@ impl Error {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
 
-    /// The user wished it.
+    /// The user cancelled it.
     pub const fn is_cancelled(&self) -> bool {
         matches!(self, Error::Cancelled)
     }

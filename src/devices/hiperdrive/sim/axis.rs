@@ -38,7 +38,7 @@ impl Default for Load {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Axis {
     place: f64,
-    /// Steps a second.
+    /// Steps per second.
     speed: f64,
 }
 

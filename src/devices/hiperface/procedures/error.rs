@@ -46,7 +46,7 @@ pub enum Error {
         /// Why it cannot be read back.
         cause: Box<Error>,
     },
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// The shaft turns but must stand still.

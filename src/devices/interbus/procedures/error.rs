@@ -217,7 +217,7 @@ pub enum Error {
         /// Code of the exception.
         exception: Exception,
     },
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// In its mode, the encoder would interpret the word as another command: it was not sent.
@@ -355,7 +355,7 @@ impl Error {
         }
     }
 
-    /// The user wished it.
+    /// The user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         match self {
             Error::Cancelled => true,

@@ -68,7 +68,7 @@ impl EndedEarly for Error {
     }
 }
 
-/// Words that are wished as close as this come as a stream.
+/// Interval below which requested words are streamed.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {

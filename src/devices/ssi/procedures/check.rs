@@ -41,9 +41,9 @@ pub enum CheckFinding {
     Adapter(String, String),
     /// The requested and the actual clock in hertz.
     Clock { asked: u32, got: u32 },
-    /// Millivolts wished and measured, and milliamperes.
+    /// Millivolts requested and measured, and milliamperes.
     Supply {
-        /// Millivolts wished.
+        /// Millivolts requested.
         wished: u16,
         /// Millivolts measured.
         measured: u16,

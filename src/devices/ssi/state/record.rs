@@ -57,7 +57,7 @@ pub struct Streamed {
 }
 
 impl Streamed {
-    /// Words a second.
+    /// Words per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }

@@ -93,7 +93,7 @@ impl OperationError for Failure {
 }
 
 impl Failure {
-    /// The user wished it.
+    /// The user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         *self == Failure::Device(Error::Cancelled)
     }

@@ -36,7 +36,7 @@ pub enum Outside {
 /// Supervision of a running motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// Where it started outside the limits; `None` once it has been inside.
+    /// The position where it started outside the limits; `None` once it has been inside.
     outside: Option<Outside>,
     /// The least distance so far: of a job to its target, of a run in its direction.
     best: i64,

@@ -146,7 +146,7 @@ fn a_drive_outside_its_new_limits_is_not_touched() {
     // 163840 are 2.5 turns, which are 1000 steps of 400 a turn.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], 163_840), outside(1000, 0, 999));
     assert!(plan(&[(154, 400), (156, 256), (158, 0), (160, 1000)], 163_840).is_ok());
-    // −1 step of 65536 a turn lies in step −1 of 400, which reaches from −1/400 turn to 0.
+    // −1 step of 65536 per turn is step −1 of 400, which reaches from −1/400 turn to 0.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], -1), outside(-1, 0, 999));
     // The position of another drive has no effect.
     assert!(plan_edits(&image(&[1, 3]), &image_of(&[(358, 0)]), &at(1, -1)).is_ok());

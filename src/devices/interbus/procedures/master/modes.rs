@@ -30,7 +30,7 @@ impl Master<'_> {
     /// Returns the encoder to its state before [`begin`](Self::begin), however the work in between has ended.
     ///
     /// # Errors
-    /// That of the work; [`Error::NotLedBack`].
+    /// The error of the work; [`Error::NotLedBack`].
     pub(in crate::devices::interbus::procedures) fn end<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
         let led = match &ended {
             // Nothing more can be sent.

@@ -156,7 +156,7 @@ fn the_shift_rides_along() {
         .collect();
     assert_eq!((shifts, plan.write_cycles()), (vec![(3, Some((zero, eight))), (6, None)], 2));
     assert_eq!(plan.base.shift, Some(zero));
-    // By itself it costs one.
+    // Alone it costs one.
     let plan = plan_edits(&device, &with(&device, &items[..1])).unwrap();
     assert_eq!((plan.ops[0].item().as_str(), plan.ops[0].note().as_str()), ("shift", "shift: 0 → 8"));
     assert_eq!((plan.ops.len(), plan.write_cycles(), plan.base.programs.len()), (1, 1, 1));

@@ -250,7 +250,7 @@ impl CamChart<'_> {
     }
 }
 
-/// The drag that is going on.
+/// The drag in progress.
 pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
     ui.data(|data| data.get_temp(base))
 }

@@ -12,7 +12,7 @@ pub(super) const BREAK: f32 = 24.0;
 pub(super) struct Axis {
     pieces: Vec<Piece>,
     left: f32,
-    /// Points a second.
+    /// Points per second.
     scale: f64,
 }
 
