@@ -97,7 +97,7 @@ pub enum Action {
     New(Tab),
     /// An action of a tab that needs no device; see [`Action::tool`].
     Tool(Tab, Payload),
-    /// A task has come back.
+    /// A task has ended with a result.
     Done(Done),
     /// The system has no thread left for a task.
     NoThread(String),

@@ -20,7 +20,7 @@ pub trait Brake: Send {
     /// closed.
     fn is_connected(&self) -> bool;
 
-    /// Returns whether the session is gone: nothing else holds a handle to its drives, so nothing here can move them.
+    /// Returns whether the session has ended: nothing else holds a handle to its drives, so nothing here can move them.
     fn is_left_over(&self) -> bool;
 }
 

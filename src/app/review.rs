@@ -121,7 +121,7 @@ impl<K: Reviewed> Review<K> {
     }
 }
 
-/// An operation of a plan in words.
+/// An operation of a plan as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpWords {
     pub item: Text,
@@ -129,7 +129,7 @@ pub struct OpWords {
     pub changes: Vec<ChangeWords>,
 }
 
-/// One thing that an operation changes, in words.
+/// One thing that an operation changes, as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeWords {
     /// The part of the item; `None` for all of it.
@@ -260,7 +260,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     /// The result of the write.
     type Written;
 
-    /// Returns the change in words.
+    /// Returns the change as text.
     fn change(change: &Self::Change) -> Text;
     /// Returns the flag of a permission; `None` if it is not in question.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
@@ -291,7 +291,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns the cost in words.
+    /// Returns the cost as text.
     fn cost(prepared: &Self::Prepared) -> Text;
 
     /// The device counts as worn after it.
@@ -300,7 +300,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
 
-    /// Returns the result of the write in words.
+    /// Returns the result of the write as text.
     fn written(written: &Self::Written) -> Text;
 
     /// The same for the end of a review, which shows each operation.

@@ -292,7 +292,7 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
             None => (None, true),
         };
         let aside = if is_whole { None } else { put_aside(path)? };
-        // If the file is gone, it has no other changes.
+        // If the file was deleted, it has no other changes.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
         Ok((text, SettingsWritten { settings: Box::new(merged), aside }))

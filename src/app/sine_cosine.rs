@@ -27,7 +27,7 @@ pub struct SineCosineVolts {
 /// The range of an encoder that turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SineCosineRange {
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: u32,
     /// Revolutions.
     pub turns: u32,

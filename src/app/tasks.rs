@@ -10,7 +10,7 @@ use super::Action;
 /// Wakes the window: there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Threads that come back as actions.
+/// Threads whose results are actions.
 pub struct Tasks {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
@@ -32,7 +32,7 @@ impl Tasks {
         Tasks { sender, receiver, wake }
     }
 
-    /// Runs a task on a thread; its result comes back as an action.
+    /// Runs a task on a thread; its result is returned as an action.
     pub(crate) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
         let mailbox = self.mailbox();
         let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));
@@ -60,7 +60,7 @@ impl Tasks {
 impl Mailbox {
     /// Hands an action over and wakes the window.
     pub fn send(&self, action: Action) {
-        // The studio is gone: the action is not needed.
+        // The studio has ended: the action is not needed.
         let _ = self.sender.send(action);
         self.wake();
     }

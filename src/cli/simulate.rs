@@ -294,7 +294,7 @@ mod terminal {
         Ok(())
     }
 
-    /// A symbolic link that goes with this program.
+    /// A symbolic link that is removed at the end of this program.
     struct Link {
         path: PathBuf,
         target: PathBuf,

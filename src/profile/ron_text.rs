@@ -1,5 +1,5 @@
 //! RON for profiles. The `ron` crate reads; unknown entries are kept as read. Writing is done here, because a profile is
-//! for people: hexadecimal numbers, sixteen bytes a line, comments.
+//! for people: hexadecimal numbers, sixteen bytes per line, comments.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -5,7 +5,7 @@ use egui::{Button, Ui};
 use super::Theme;
 use super::controls::{card, name, paragraph};
 
-/// Revolutions a minute to choose from.
+/// Revolutions per minute to choose from.
 const SPEEDS: [f64; 5] = [-60.0, -6.0, 0.0, 6.0, 60.0];
 
 /// Draws the card; `turn` gets the requested speed in revolutions per minute.

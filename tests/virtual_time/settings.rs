@@ -1,4 +1,4 @@
-//! Restarts, interface settings for now and for good, and addresses.
+//! Restarts, temporary and permanent interface settings, and addresses.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::Station;

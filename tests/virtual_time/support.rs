@@ -38,7 +38,7 @@ pub(crate) struct Tap {
     pub(crate) mute_from: Option<usize>,
     /// This frame does not reach the encoder.
     pub(crate) swallow_request: Option<usize>,
-    /// The reply to this frame does not come back.
+    /// The reply to this frame is lost.
     pub(crate) swallow_reply: Option<usize>,
     /// Every reply to a request that begins like this is damaged.
     pub(crate) broken_to: Option<Vec<u8>>,

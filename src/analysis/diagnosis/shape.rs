@@ -16,7 +16,7 @@ const SAMPLES: usize = 1 << 18;
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 /// Sectors of a revolution.
 const OF_REVOLUTION: usize = 36;
-/// Samples a period that are enough to follow the angle.
+/// Samples per period that are enough to follow the angle.
 const FOLLOWED: f64 = 16.0;
 
 /// Distance from the end of the range at which a sample counts as there, as a share of the amplitude.

@@ -61,7 +61,7 @@ pub trait OpenDevice: Any {
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
-    /// Returns whether its edits come back after it is closed.
+    /// Returns whether its edits are restored after it is closed.
     fn keeps_edits(&self) -> bool;
     /// Returns whether every edit is on disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;

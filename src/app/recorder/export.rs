@@ -199,7 +199,7 @@ impl Recorder {
                 Ok(()) if is_end => export.sender = None,
                 Ok(()) => {}
                 Err(TrySendError::Full(portion)) => export.next = Some(portion),
-                // The receiver is gone: the thread reports why.
+                // The receiver has ended: the thread reports why.
                 Err(TrySendError::Disconnected(_)) => export.sender = None,
             }
         }
@@ -313,7 +313,7 @@ impl Writing {
             file.write_all(text.as_bytes())?;
             self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
         }
-        // The sender is gone.
+        // The sender has ended.
         Ok(false)
     }
 }

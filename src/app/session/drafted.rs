@@ -99,7 +99,7 @@ pub trait Drafted: HasSession {
         self.session_mut().drafting.keep(key, edits, services);
     }
 
-    /// Returns whether its edits come back after it is closed.
+    /// Returns whether its edits are restored after it is closed.
     fn keeps_edits(&self) -> bool {
         self.session().drafting.has_looked() && self.draft_key().is_some()
     }

@@ -243,7 +243,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Returns whether the earlier draft has been looked up: edits then come back after the session is closed.
+    /// Returns whether the earlier draft has been looked up: edits are then restored after the session is closed.
     pub(crate) fn has_looked(&self) -> bool {
         self.looked
     }

@@ -33,7 +33,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         &mut self.session_mut().review
     }
 
-    /// An operation of a plan, in words.
+    /// An operation of a plan, as text.
     fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
         Self::Device::op(prepared, op)
     }

@@ -9,9 +9,9 @@ use crate::signals::state::TEXTS;
 /// The entries, as typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: String,
-    /// Speed in revolutions a minute.
+    /// Speed in revolutions per minute.
     pub speed: String,
     /// The resistor across the capacitor: `10k`.
     pub resistance: String,
@@ -22,7 +22,7 @@ pub struct Form {
 /// The signals and the filter at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Revolutions a minute.
+    /// Revolutions per minute.
     pub speed_rpm: f64,
     /// Frequency of the signals in hertz.
     pub frequency_hz: f64,
@@ -37,7 +37,7 @@ pub struct Point {
 pub struct Circuit {
     /// At the entered speed.
     pub here: Point,
-    /// The speed in revolutions a minute at which the signals reach the encoder's bandwidth.
+    /// The speed in revolutions per minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,
     /// The frequency in hertz at which the filter leaves 71 % of the amplitude.
     pub corner_hz: f64,
@@ -45,7 +45,7 @@ pub struct Circuit {
     filter: InputFilter,
 }
 
-/// Fastest speed that can be typed, in revolutions a minute.
+/// Fastest speed that can be typed, in revolutions per minute.
 const MOST_RPM: f64 = 1_000_000.0;
 
 impl Default for Form {

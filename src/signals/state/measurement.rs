@@ -166,7 +166,7 @@ impl Deref for Measurement {
 }
 
 impl Results {
-    /// Returns why there is no analysis, in words.
+    /// Returns why there is no analysis, as text.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))

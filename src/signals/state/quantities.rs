@@ -39,7 +39,7 @@ pub enum Unit {
     /// Mechanical seconds of arc.
     ArcSeconds,
     Kilohertz,
-    /// Revolutions a minute.
+    /// Revolutions per minute.
     Rpm,
     Milliseconds,
 }

@@ -58,7 +58,7 @@ pub enum NoOffset {
 }
 
 impl NoOffset {
-    /// The reason in words.
+    /// The reason as text.
     pub fn text(self) -> Text {
         TEXTS.text(match self {
             NoOffset::NoSignal => "synchronise.no_signal",

@@ -33,7 +33,7 @@ pub struct Form {
     pub sine_v: String,
     /// Cosine in volts.
     pub cosine_v: String,
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: String,
     /// Revolutions.
     pub turns: String,
@@ -86,7 +86,7 @@ pub struct Synchronisation {
     pub difference_steps: f64,
     /// The fine position, or that there is none.
     pub result: Result<Synchronised, Unsynchronisable>,
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: u32,
 }
 

@@ -25,7 +25,7 @@ pub struct Settings {
     pub level_v: f64,
     /// Third harmonic in percent of the amplitude.
     pub third_harmonic_percent: f64,
-    /// Rise and fall of the amplitude once a revolution, in percent.
+    /// Rise and fall of the amplitude once per revolution, in percent.
     pub modulation_percent: f64,
     /// White noise of each differential channel in volts rms.
     pub noise_v: f64,

@@ -75,7 +75,7 @@ pub struct Entry {
     pub id: EntryId,
     /// Time just before the write.
     pub at: Timestamp,
-    /// The planned write, in words.
+    /// The planned write, as text.
     pub what: String,
     /// Write cycles that were to be spent.
     pub planned_cycles: u64,
@@ -100,7 +100,7 @@ pub struct Conclusion {
 pub struct StatusEntry {
     /// Time at which they were read.
     pub at: Timestamp,
-    /// The codes, in words, in the device's order.
+    /// The codes, as text, in the device's order.
     pub codes: String,
 }
 

@@ -22,7 +22,7 @@ use super::support::{Bench, at};
 pub(crate) struct Hands {
     motor: Motor,
     pub(crate) seat: OperatorChannel,
-    /// Revolutions a minute in the calibration and in the Wiegand test.
+    /// Revolutions per minute in the calibration and in the Wiegand test.
     pub(crate) rpm: (f64, f64),
     /// Reported operations and steps, each when it began.
     pub(crate) steps: Vec<(usize, ProcedureStep)>,

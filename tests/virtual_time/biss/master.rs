@@ -142,7 +142,7 @@ fn a_command_whose_answer_is_lost_is_unclear_and_never_repeated() {
     }
 }
 
-/// The wire goes while the write is on it.
+/// The connection is lost during the write.
 #[test]
 fn a_write_that_lost_its_wire_is_unclear() {
     let mut pin = Pin::new("");

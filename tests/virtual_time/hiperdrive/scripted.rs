@@ -26,7 +26,7 @@ enum Act {
     Bytes(&'static str),
 }
 
-/// A target that goes through a list.
+/// A target that follows a list.
 #[derive(Default)]
 struct Script {
     acts: VecDeque<Act>,

@@ -1,4 +1,4 @@
-//! From a link URL to an adapter that streams: `bridge:` to a real one, `sim:` to the virtual one.
+//! Opening an adapter that streams from a link URL: `bridge:` to a real one, `sim:` to the virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;

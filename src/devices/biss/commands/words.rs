@@ -1,4 +1,4 @@
-//! The names of the kit encoder's registers, and the meaning of their bytes, in words.
+//! The names of the kit encoder's registers, and the meaning of their bytes, as text.
 
 use std::sync::LazyLock;
 

@@ -13,7 +13,7 @@ use crate::units::Moment;
 pub(super) struct Conditions {
     /// Above 0 clockwise.
     pub(super) rpm: f64,
-    /// Variation of the speed, in revolutions a minute.
+    /// Variation of the speed, in revolutions per minute.
     pub(super) waver: f64,
     pub(super) celsius: i16,
     pub(super) filter: Filter,

@@ -61,7 +61,7 @@ impl Config {
         self.seed
     }
 
-    /// Revolutions a minute at the start.
+    /// Revolutions per minute at the start.
     pub const fn rpm(&self) -> f64 {
         self.rpm
     }

@@ -51,7 +51,7 @@ pub enum BissAction {
     CloseGuide,
     /// Back to operation, with the password cleared.
     LeadBack,
-    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
     /// Save the profile.
     Save(PathBuf),

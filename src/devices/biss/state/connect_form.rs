@@ -66,7 +66,7 @@ pub struct BissForm {
     pub crc: String,
     /// Milliseconds that a reply may come later than usual.
     pub margin: String,
-    /// The virtual encoder's speed in revolutions a minute.
+    /// The virtual encoder's speed in revolutions per minute.
     pub rpm: String,
     /// Injected faults.
     pub fault: String,

@@ -63,7 +63,7 @@ fn way(identity: &Identity) -> Text {
     }
 }
 
-/// Returns the reported identity in words.
+/// Returns the reported identity as text.
 fn who(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
     TEXTS

@@ -1,4 +1,4 @@
-//! The data and the jobs of a BiSS encoder in words.
+//! The data and the jobs of a BiSS encoder as text.
 
 use std::sync::LazyLock;
 

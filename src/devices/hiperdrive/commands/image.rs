@@ -1,4 +1,4 @@
-//! Process data and parameter words in words.
+//! Process data and parameter words as text.
 
 use serde_json::{Value as Json, json};
 

@@ -1,4 +1,4 @@
-//! The meaning of control words, status words and parameters in words.
+//! The meaning of control words, status words and parameters as text.
 
 use serde_json::{Value as Json, json};
 

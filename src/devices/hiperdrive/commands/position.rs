@@ -43,7 +43,7 @@ fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u
 /// The location of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TurnPosition {
-    /// Whole turns; −1 step lies in turn −1.
+    /// Whole turns; −1 step is in turn −1.
     turns: i64,
     /// Steps within the turn. Not always whole, because a turn is not always a whole number of steps.
     steps: f64,
@@ -117,7 +117,7 @@ fn row(reading: &DriveReading, place: Option<TurnPosition>) -> String {
 mod tests {
     use super::*;
 
-    /// 65536 steps a turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
+    /// 65536 steps per turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
     /// 853.33: −1 is turn −1, 852.33.
     #[test]
     fn a_position_has_turns_and_a_place_in_its_turn() {

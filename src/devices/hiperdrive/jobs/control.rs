@@ -145,7 +145,7 @@ impl Hiperdrive {
         if let Err(why) = self.give(desk) {
             tracing::warn!("{why}");
         }
-        // There is no reply to this, and it does not matter if the device is gone.
+        // There is no reply to this, and it does not matter if the device is disconnected.
         if had_control && let Err(why) = self.master(desk).unregister() {
             tracing::debug!("{why}");
         }

@@ -286,7 +286,7 @@ impl Motion {
         self.lock().connected = connected;
     }
 
-    /// Returns whether the session is gone: nothing else holds a handle to its drives.
+    /// Returns whether the session has ended: nothing else holds a handle to its drives.
     pub fn is_left_over(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }

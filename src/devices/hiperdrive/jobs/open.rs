@@ -1,4 +1,4 @@
-//! From a link URL to a session with an adapter or a hub.
+//! Opening a session with an adapter or a hub from a link URL.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};

@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn parameters_lock_and_permit() {
         let whole = Some((-33_488_896, 33_488_896));
-        // A degree of 65536 steps a turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
+        // A degree of 65536 steps per turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
         let permit = |limits, locks: &[Lock], endless, degree| Permit {
             limits,
             locks: locks.to_vec(),

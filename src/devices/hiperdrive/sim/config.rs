@@ -26,7 +26,7 @@ parameters! {
         pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
         /// Parameter 152; the factory setting if not given.
         pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
-        /// Position of the drives, in steps of 65536 a turn.
+        /// Position of the drives, in steps of 65536 per turn.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
         /// Parameter 166: maximum speed in tenths of rpm.
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
@@ -91,7 +91,7 @@ impl Config {
         Load { percent: self.load, wall_below: wall, wall_above: wall, ambient: self.temperature, defect: self.defect }
     }
 
-    /// Returns the position of the drives, in steps of 65536 a turn.
+    /// Returns the position of the drives, in steps of 65536 per turn.
     fn place(&self) -> f64 {
         f64::from(self.position)
     }

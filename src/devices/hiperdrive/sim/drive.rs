@@ -119,7 +119,7 @@ impl Drive {
         self.load = load;
     }
 
-    /// Turns the spindle by hand, by this many steps of 65536 a turn.
+    /// Turns the spindle by hand, by this many steps of 65536 per turn.
     pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
         self.advance(now);
         self.axis = Axis::at(self.axis.place() + steps);

@@ -113,7 +113,7 @@ impl Leds {
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
-    /// Returns the state of an LED in words.
+    /// Returns the state of an LED as text.
     pub fn shown(&self, lamp: Lamp) -> Text {
         TEXTS.text(match lamp {
             Lamp::Drives => match self.drives {

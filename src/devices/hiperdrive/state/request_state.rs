@@ -1,4 +1,4 @@
-//! The requests that a drive accepts at the moment, why not, and the state of the last one, in words.
+//! The requests that a drive accepts at the moment, why not, and the state of the last one, as text.
 
 use super::action::Motor;
 use super::ruler::Measure;

@@ -127,7 +127,7 @@ mod tests {
     fn decimals_tell_steps_apart() {
         assert_eq!(hundredths().decimals(Measure::Millimetres), 2);
         assert_eq!(SPINDLE.decimals(Measure::Steps), 0);
-        // 65536 steps a turn, 182.04 a degree, 16384 a millimetre.
+        // 65536 steps per turn, 182.04 per degree, 16384 per millimetre.
         assert_eq!(SPINDLE.decimals(Measure::Turns), 5);
         assert_eq!(SPINDLE.decimals(Measure::Degrees), 3);
         assert_eq!(SPINDLE.decimals(Measure::Millimetres), 5);

@@ -1,4 +1,4 @@
-//! From a link URL to a session with a HIPERFACE encoder.
+//! Opening a session with a HIPERFACE encoder from a link URL.
 
 use std::sync::Arc;
 

@@ -211,7 +211,7 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
-/// 32 steps a period in a word of 32 bits.
+/// 32 steps per period in a word of 32 bits.
 pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {

@@ -1,4 +1,4 @@
-//! The meaning of a word of an INTERBUS encoder in words.
+//! The meaning of a word of an INTERBUS encoder as text.
 
 use serde_json::{Value as Json, json};
 

@@ -1,4 +1,4 @@
-//! From a link URL to a session with an INTERBUS encoder.
+//! Opening a session with an INTERBUS encoder from a link URL.
 
 use std::sync::Arc;
 

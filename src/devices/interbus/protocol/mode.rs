@@ -11,7 +11,7 @@ pub enum Mode {
     Parameterisation,
     /// A read-out is requested; IN is its value.
     ReadOut,
-    /// IN is the speed, in revolutions a minute.
+    /// IN is the speed, in revolutions per minute.
     Velocity,
     /// A cam program is selected; IN is the cam output word.
     Cam,

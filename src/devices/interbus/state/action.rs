@@ -40,7 +40,7 @@ pub enum InterbusAction {
     SaveTable { path: PathBuf, decimal_comma: bool },
     /// The machine counts in this.
     SetScale(Scale),
-    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
     /// Save the profile.
     Save(PathBuf),

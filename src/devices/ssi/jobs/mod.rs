@@ -68,7 +68,7 @@ impl EndedEarly for Error {
     }
 }
 
-/// Interval below which requested words are streamed.
+/// Largest interval at which requested words are streamed.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {

@@ -1,4 +1,4 @@
-//! From a link URL to a session with an SSI encoder.
+//! Opening a session with an SSI encoder from a link URL.
 
 use std::sync::Arc;
 

@@ -16,7 +16,7 @@ pub enum Range {
         /// Bits within one, 0…32.
         singleturn: u8,
     },
-    /// Any number of steps a turn, and of turns.
+    /// Any number of steps per turn, and of turns.
     Steps {
         /// Steps within a turn, at least 2.
         per_turn: u32,

@@ -48,7 +48,7 @@ pub enum SsiAction {
     SaveFrames(PathBuf),
     /// Let the virtual encoder send this layout.
     SendLayout,
-    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
 }
 

@@ -179,7 +179,7 @@ pub fn doubt(doubt: Option<Doubt>) -> Text {
     })
 }
 
-/// Returns the evidence for a layout in words.
+/// Returns the evidence for a layout as text.
 pub fn evidence(evidence: &Evidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")

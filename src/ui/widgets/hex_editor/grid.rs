@@ -5,7 +5,7 @@ use egui::{FontId, Pos2, Rect, Ui, Vec2};
 use super::view::Column;
 use crate::ui::Theme;
 
-/// Bytes a line.
+/// Bytes per line.
 pub(super) const WIDTH: usize = 16;
 
 /// Distances in points; the origin is the upper left corner of the first line.

@@ -97,7 +97,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// Follows a change of the registers in the table: selection and entry stay with their register, and end if it is gone.
+    /// Follows a change of the registers in the table: selection and entry stay with their register, and end if it no longer
+    /// exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(Selected::Row(place)) => now(place).map(Selected::Row),

@@ -98,7 +98,7 @@ fn a_stream_keeps_its_bus_busy() {
     assert_eq!(host.stream(100), []);
 }
 
-/// 1024 periods in a revolution, 60 revolutions a minute, 0.5 V of amplitude, 1.25 V of full scale.
+/// 1024 periods in a revolution, 60 revolutions per minute, 0.5 V of amplitude, 1.25 V of full scale.
 #[test]
 fn analogue_samples_are_the_virtual_encoders() {
     let mut host = Host::with("rpm=60");

@@ -19,7 +19,7 @@ pub enum Run {
     WiegandCounterclockwise,
 }
 
-/// Speeds in revolutions a minute, both ends included.
+/// Speeds in revolutions per minute, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedRange {
     /// The slowest.
@@ -112,20 +112,20 @@ pub enum Blocker {
     Standing,
     /// The shaft turns and must stand still.
     Turning {
-        /// Revolutions a minute, above 0 clockwise.
+        /// Revolutions per minute, above 0 clockwise.
         rpm: f64,
     },
     /// It turns the other way.
     WrongDirection,
     /// It turns too slowly or too fast.
     Speed {
-        /// Revolutions a minute, without direction.
+        /// Revolutions per minute, without direction.
         rpm: f64,
         allowed: SpeedRange,
     },
     /// The motor still accelerates, or its speed varies.
     Unsteady {
-        /// Revolutions a minute.
+        /// Revolutions per minute.
         spread: f64,
     },
     /// Manual 6.4: 25…40 °C.
@@ -165,7 +165,7 @@ pub struct Demand {
 impl Demand {
     /// Manual 6.4: the temperatures of the calibration.
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
-    /// The lowest speed that counts as turning, in revolutions a minute.
+    /// The lowest speed that counts as turning, in revolutions per minute.
     const SLOWEST: f64 = 1.0;
 
     /// Evaluates a measurement.

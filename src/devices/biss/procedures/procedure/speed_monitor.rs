@@ -22,7 +22,7 @@ pub(super) struct SpeedMonitor {
 pub struct Motion {
     /// Revolutions per minute, averaged over the measurement; positive clockwise, that is, with rising positions.
     pub rpm: f64,
-    /// Largest deviation of the speed of a quarter of the measurement, in revolutions a minute.
+    /// Largest deviation of the speed of a quarter of the measurement, in revolutions per minute.
     pub spread: f64,
     /// Revolutions between the farthest places.
     pub travel: f64,

@@ -36,7 +36,7 @@ pub enum Outside {
 /// Supervision of a running motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// The position where it started outside the limits; `None` once it has been inside.
+    /// How it was outside the limits at the start; `None` once it has been inside.
     outside: Option<Outside>,
     /// The least distance so far: of a job to its target, of a run in its direction.
     best: i64,

@@ -399,7 +399,7 @@ fn pitch_and_step_are_seen_before_they_are_written() {
     // 33488896 steps of 0.01 mm.
     let (low, high) = own.unchanged.unwrap();
     assert!((low + 334_888.96).abs() < 1e-6 && (high - 334_888.96).abs() < 1e-6);
-    // 2 mm in tenths: 20 steps a turn; 16000 turns of them.
+    // 2 mm in tenths: 20 steps per turn; 16000 turns of them.
     let own = preview("2", "0.1", Family::Long).unwrap();
     assert_eq!((own.scale.numerator(), own.upper), (20, 320_000));
     for (pitch, resolution, id) in [

@@ -177,7 +177,7 @@ pub fn effort(id: &'static str) -> Text {
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
-/// Returns the outcome of a test move in words.
+/// Returns the outcome of a test move as text.
 pub fn outcome(outcome: &Outcome, seen: &Seen) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {

@@ -26,7 +26,7 @@ pub enum Edit {
     Scale {
         /// Drive of the scale.
         drive: DriveNumber,
-        /// Steps a turn.
+        /// Steps per turn.
         scale: PositionScale,
         /// How its limits change.
         limits: LimitsStay,

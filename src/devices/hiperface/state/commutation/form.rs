@@ -26,7 +26,7 @@ pub struct Form {
     pub vector_deg: String,
     /// Pole pairs of the motor, as typed.
     pub pole_pairs: String,
-    /// Signal periods a revolution, as typed.
+    /// Signal periods per revolution, as typed.
     pub periods: String,
     /// The position falls while the electrical angle rises.
     pub reversed: bool,
@@ -99,7 +99,7 @@ pub enum Storage {
 pub struct Inputs {
     /// The motor with the encoder on it.
     pub motor: Motor,
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: u32,
     pub pole_pairs: u32,
     /// The position falls while the electrical angle rises.
@@ -239,7 +239,7 @@ impl Form {
         }
     }
 
-    /// The number of periods that is typed is not that of the encoder's type, in words.
+    /// The number of periods that is typed is not that of the encoder's type, as text.
     pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
         let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;

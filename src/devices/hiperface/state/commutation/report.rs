@@ -52,7 +52,7 @@ impl Commutation {
     }
 }
 
-/// Returns how a position was obtained, in words.
+/// Returns how a position was obtained, as text.
 pub fn kind_words(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {

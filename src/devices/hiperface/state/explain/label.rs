@@ -1,4 +1,4 @@
-//! The extended type label, byte by byte, in words.
+//! The extended type label, byte by byte, as text.
 
 use crate::app::Text;
 use crate::bits::hex;

@@ -1,4 +1,4 @@
-//! The chart in words.
+//! Texts of the chart.
 
 use super::{Chart, Lamp, Lane};
 use crate::app::Text;
@@ -45,7 +45,7 @@ pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
-/// Returns the place and length of a cam in words.
+/// Returns the place and length of a cam as text.
 pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
@@ -81,7 +81,7 @@ pub fn lamp(lamp: Lamp) -> Text {
     }
 }
 
-/// Returns the problems in words; the cams of a program that are beyond the measuring range are combined.
+/// Returns the problems as text; the cams of a program that are beyond the measuring range are combined.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
     let mut told = Vec::new();

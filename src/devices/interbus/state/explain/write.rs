@@ -17,7 +17,7 @@ use crate::devices::interbus::protocol::{Flags, GearError};
 use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotBegun;
 
-/// A change in words.
+/// A change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
@@ -63,7 +63,7 @@ fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
 }
 
-/// A profile that goes onto another type of encoder.
+/// A profile for another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     of_types("ib_review.other_type", types)
 }

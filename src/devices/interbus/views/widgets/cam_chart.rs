@@ -230,7 +230,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Draws the target of a drag in words, always within the available room.
+    /// Draws the target of a drag as text, always within the available room.
     pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;

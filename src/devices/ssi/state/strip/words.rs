@@ -1,4 +1,4 @@
-//! The cells, fields and handles of a frame in words.
+//! The cells, fields and handles of a frame as text.
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;

@@ -112,7 +112,7 @@ fn a_second_master_is_refused() {
     second.register();
     assert_eq!(second.open(&other), "D4 00 01 01 06 01 01 00 34 12 CE AB 00 00 00 00");
     second.asks(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
-    // After 80 ms without a packet the first one is gone.
+    // After 80 ms without a packet the first one has ended.
     second.wait(80);
     assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
 }

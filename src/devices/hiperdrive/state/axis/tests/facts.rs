@@ -39,7 +39,7 @@ fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
 #[test]
 fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
     let (mut axis, mut seen) = until_test();
-    // Everything is gone.
+    // Everything is discarded.
     seen = Seen { controlled: true, pitch: seen.pitch, ..fresh() };
     back_to(&mut axis, &seen, AxisStep::Request);
     assert!(AxisStep::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));

@@ -140,7 +140,7 @@ pub(super) fn grip(view: &StripContext<'_>, handle: Handle, state: Grip, drag: O
     }
 }
 
-/// Draws the target of a drag in words beside it.
+/// Draws the target of a drag as text beside it.
 fn ghost(view: &StripContext<'_>, handle: Handle) {
     let (theme, painter) = (view.theme, view.ui.painter());
     let Some(clock) = view.shown.clock(handle) else { return };
