@@ -1,10 +1,9 @@
 //! A virtual drive: the effects of control words, its motion and its faults (reference 2 to 5).
 //!
-//! Chosen here (`U`): a word with reserved bits is ignored; with 0 % of speed or torque nothing starts and this is no
-//! error; a drive that is not requested (152 = 0), or that S3 is set to, never leaves "not ready"; a target beyond the
-//! limits is fault 8503; a blocked drive fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one
-//! hotter than 80 °C at once (8202); a lost master is fault 8601; a drive that loses operation while moving brakes as for a
-//! stop.
+//! Chosen here (`U`): words with reserved bits are ignored; with 0 % of speed or torque nothing starts, without an error;
+//! a drive that is not requested (152 = 0), or that S3 is set to, never leaves "not ready"; a target beyond the limits is
+//! fault 8503; a blocked drive fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one hotter than
+//! 80 °C at once (8202); a lost master is fault 8601; a moving drive that loses operation brakes as for a stop.
 
 use std::collections::VecDeque;
 
@@ -146,7 +145,7 @@ impl Drive {
         }
     }
 
-    /// May it move from the bus (S3 is at 0)?
+    /// Sets whether it may move from the bus (S3 is at 0).
     pub(super) const fn allow(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -225,7 +224,7 @@ impl Drive {
         }
     }
 
-    /// Faults are acknowledged.
+    /// Acknowledges faults.
     pub(super) const fn forgive(&mut self) {
         self.faults = 0;
         self.over_current = false;
@@ -243,7 +242,7 @@ impl Drive {
         self.memory.get(number).and_then(|value| u16::try_from(value).ok()).unwrap_or_default()
     }
 
-    /// The axis' place of a position.
+    /// Returns the axis' place of a position.
     fn place_of(&self, position: i32) -> f64 {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
