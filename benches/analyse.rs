@@ -38,7 +38,7 @@ fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     times[ROUNDS / 2]
 }
 
-/// A thousand samples per period, with some noise.
+/// Returns a thousand samples per period, with some noise.
 fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let mut random = fastrand::Rng::with_seed(1);
     let time: Vec<f64> = (0..count).map(|at| at as f64 * 1e-6).collect();

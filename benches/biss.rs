@@ -21,7 +21,7 @@ const ROUNDS: usize = 9;
 const PERIOD_US: u32 = 50;
 const SECONDS: u32 = 10;
 
-/// Median of some rounds, in seconds.
+/// Returns the median of some rounds, in seconds.
 fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..ROUNDS)
         .map(|_| {
@@ -34,7 +34,7 @@ fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     times[ROUNDS / 2]
 }
 
-/// Frames of any positions, one in a thousand with a flipped bit.
+/// Returns the frames of any positions, one in a thousand with a flipped bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     (0..FRAMES)

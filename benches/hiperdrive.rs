@@ -264,7 +264,7 @@ fn evenness(way: &dyn Way, target: &Target, time: Duration) -> [Histogram; 2] {
     [sent, way.arrivals()]
 }
 
-/// A window that draws 60 times per second, half of the time.
+/// Starts a window that draws 60 times per second, half of the time.
 fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     let end = Arc::new(AtomicBool::new(false));
     let ends = end.clone();

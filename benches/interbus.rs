@@ -11,7 +11,7 @@ use encoder_studio::devices::interbus::protocol::{Cam, Compiled, Program, Value}
 const POSITIONS: usize = 1 << 20;
 const ROUNDS: usize = 9;
 
-/// Median of some rounds, in seconds.
+/// Returns the median of some rounds, in seconds.
 fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..ROUNDS)
         .map(|_| {

@@ -108,7 +108,7 @@ fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, f
     recorder.append(group, &times, &parts).unwrap();
 }
 
-/// A sine with a slower one and something like noise on it.
+/// Returns a sine with a slower one and something like noise on it.
 fn value(signal: usize, at: usize) -> f64 {
     let noise = (at.wrapping_mul(2_654_435_761) >> 16) % 1000;
     let time = at as f64 * 1e-5;

@@ -35,7 +35,7 @@ fn median(mut cycles: Vec<f64>) -> f64 {
     cycles[cycles.len() / 2]
 }
 
-/// Median time from one position to the next, in milliseconds, as the program polls.
+/// Returns the median time from one position to the next, in milliseconds, as the program polls.
 fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let mut station = Station::new(Duration::from_millis(20));

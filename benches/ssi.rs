@@ -17,7 +17,7 @@ const FRAMES: usize = 1 << 14;
 const PASSES: usize = 64;
 const ROUNDS: usize = 9;
 
-/// Median of some rounds, in seconds.
+/// Returns the median of some rounds, in seconds.
 fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..ROUNDS)
         .map(|_| {
@@ -35,7 +35,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// Frames of any positions, some with an error bit.
+/// Returns the frames of any positions, some with an error bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     let frame = |_| {

@@ -289,7 +289,7 @@ fn wait_for_up_to(patience: Duration, mut look: impl FnMut() -> Option<u64>) -> 
     }
 }
 
-/// Share of one processor over some seconds, in percent.
+/// Returns the share of one processor over some seconds, in percent.
 fn busy(child: &Child) -> f64 {
     let ticks = || -> f64 {
         let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();

@@ -46,23 +46,23 @@ impl fmt::Display for Word {
 pub struct MaskedBytes(Vec<Option<u8>>);
 
 impl MaskedBytes {
-    /// Bytes without a secret.
+    /// Creates bytes without a secret.
     pub fn clear(bytes: &[u8]) -> Self {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
 
-    /// Bytes of which nothing but the number may be shown.
+    /// Creates bytes of which nothing but the number may be shown.
     pub fn hidden(count: usize) -> Self {
         MaskedBytes(vec![None; count])
     }
 
-    /// The bytes, without those at the positions in `secret`.
+    /// Creates the bytes, without those at the positions in `secret`.
     pub fn masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
     }
 
-    /// Number of bytes, masked ones included.
+    /// Returns the number of bytes, masked ones included.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -77,12 +77,12 @@ impl MaskedBytes {
         self.0.iter().copied().collect()
     }
 
-    /// The bytes, with `stand_in` for each masked one.
+    /// Returns the bytes, with `stand_in` for each masked one.
     pub fn filled(&self, stand_in: u8) -> Vec<u8> {
         self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
     }
 
-    /// The first `count` bytes and the rest.
+    /// Returns the first `count` bytes and the rest.
     pub fn split_at(&self, count: usize) -> (MaskedBytes, MaskedBytes) {
         let (head, tail) = self.0.split_at(count.min(self.0.len()));
         (MaskedBytes(head.to_vec()), MaskedBytes(tail.to_vec()))
@@ -207,7 +207,7 @@ impl TypedKind {
         TypedKind::Text,
     ];
 
-    /// The order of the bytes makes a difference.
+    /// Returns whether the order of the bytes makes a difference.
     pub const fn has_byte_order(self) -> bool {
         !matches!(self, TypedKind::U8 | TypedKind::I8 | TypedKind::Binary | TypedKind::Text)
     }
@@ -249,7 +249,7 @@ fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
 /// The replacement of a byte that is not a printable character.
 pub const NOT_PRINTABLE: char = '·';
 
-/// The printable ASCII character of a byte.
+/// Returns the printable ASCII character of a byte.
 pub fn ascii(byte: u8) -> Option<char> {
     (0x20..0x7F).contains(&byte).then_some(char::from(byte))
 }

@@ -296,29 +296,29 @@ pub struct Limit {
 }
 
 impl Expected {
-    /// One of these words.
+    /// Creates one of these words.
     pub const fn words(words: &'static [&'static str]) -> Self {
         Expected::Words(Cow::Borrowed(words))
     }
 
-    /// A number of a range.
+    /// Creates a number of a range.
     pub fn range(quantity: Quantity, low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::Range { quantity, low: low.into(), high: high.into() }
     }
 
-    /// A whole number of a range.
+    /// Creates a whole number of a range.
     pub const fn between(low: i128, high: i128) -> Self {
         Expected::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
     }
 
-    /// A number without a unit.
+    /// Creates a number without a unit.
     pub fn number(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::range(Quantity::Number, low, high)
     }
 }
 
 impl Limit {
-    /// A number with decimals, in thousandths.
+    /// Creates a number with decimals, in thousandths.
     pub const fn thousandths(thousandths: i128) -> Self {
         Limit { thousandths }
     }

@@ -15,12 +15,12 @@ impl Moment {
     /// The start of the clock.
     pub const START: Moment = Moment(Duration::ZERO);
 
-    /// The moment `elapsed` after the start of the clock.
+    /// Creates the moment `elapsed` after the start of the clock.
     pub const fn after_start(elapsed: Duration) -> Self {
         Moment(elapsed)
     }
 
-    /// Time since the start of the clock.
+    /// Returns the time since the start of the clock.
     pub const fn since_start(self) -> Duration {
         self.0
     }
@@ -94,7 +94,7 @@ impl Parity {
     /// The words used in link URLs and JSON.
     pub const WORDS: Words<Parity> = Words(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
 
-    /// The word used in link URLs and JSON.
+    /// Returns the word used in link URLs and JSON.
     pub const fn word(self) -> &'static str {
         match self {
             Parity::None => "none",
@@ -103,7 +103,7 @@ impl Parity {
         }
     }
 
-    /// The letter between data bits and stop bits in `8E1`.
+    /// Returns the letter between data bits and stop bits in `8E1`.
     pub const fn letter(self) -> char {
         match self {
             Parity::None => 'N',

@@ -20,12 +20,12 @@ impl Phase {
         if !periods.is_finite() { None } else { Some(Phase(if phase >= 1.0 { 0.0 } else { phase })) }
     }
 
-    /// Periods, 0 ≤ φ < 1.
+    /// Returns the periods, 0 ≤ φ < 1.
     pub fn periods(self) -> f64 {
         self.0
     }
 
-    /// Electrical degrees, 0 ≤ φ < 360.
+    /// Returns the electrical degrees, 0 ≤ φ < 360.
     pub fn degrees(self) -> f64 {
         self.0 * DEGREES
     }

@@ -36,12 +36,12 @@ impl ElectricalAngle {
         ElectricalAngle(bits)
     }
 
-    /// The fraction of an electrical turn in units of 2⁻³².
+    /// Returns the fraction of an electrical turn in units of 2⁻³².
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// Electrical degrees, 0 to below 360.
+    /// Returns the electrical degrees, 0 to below 360.
     pub fn degrees(self) -> f64 {
         f64::from(self.0) * (360.0 / 4_294_967_296.0)
     }
@@ -59,7 +59,7 @@ impl Motor {
         ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions(fine_periods))
     }
 
-    /// The electrical angle at a fine position in periods, with the stored offset.
+    /// Returns the electrical angle at a fine position in periods, with the stored offset.
     pub fn electrical_angle(&self, fine_periods: f64, offset: ElectricalAngle) -> Option<ElectricalAngle> {
         self.offset(fine_periods).map(|angle| ElectricalAngle(angle.0.wrapping_sub(offset.0)))
     }

@@ -38,7 +38,7 @@ impl Angle {
         Angle { quarters: i64::from(quarter(sine, cosine)), sine, cosine }
     }
 
-    /// The same angle moved on, by less than half a period, to these voltages.
+    /// Returns the same angle moved on, by less than half a period, to these voltages.
     fn moved_to(self, sine: f64, cosine: f64) -> Self {
         let step = (quarter(sine, cosine) - quarter(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
@@ -155,7 +155,7 @@ impl Way {
     }
 }
 
-/// A part of the samples, cut before each of `breaks` in it.
+/// Cuts a part of the samples before each of `breaks` in it.
 fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize>> {
     let inside = breaks.get(breaks.partition_point(|at| *at <= part.start)..).unwrap_or_default();
     let inside = inside.get(..inside.partition_point(|at| *at < part.end)).unwrap_or_default();

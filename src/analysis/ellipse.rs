@@ -77,7 +77,7 @@ const CONDITION: f64 = 1e-13;
 const ROUNDS: usize = 4;
 
 impl Channel {
-    /// `sine` or `cosine`.
+    /// Returns `sine` or `cosine`.
     pub const fn word(self) -> &'static str {
         match self {
             Channel::Sine => "sine",
@@ -166,7 +166,7 @@ impl Ellipse {
         )
     }
 
-    /// The circle that the signals draw once they are corrected.
+    /// Returns the circle that the signals draw once they are corrected.
     pub fn corrected(&self) -> Ellipse {
         let Ellipse { amplitude_v, .. } = *self;
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
@@ -181,7 +181,7 @@ impl Ellipse {
         (0..=points).map(point).collect()
     }
 
-    /// Amplitude of the sine channel, peak, in volts.
+    /// Returns the amplitude of the sine channel, peak, in volts.
     pub fn amplitude_sine_v(&self) -> f64 {
         self.amplitude_v / self.gain_ratio
     }
@@ -191,7 +191,7 @@ impl Ellipse {
         self.phase_error_rad.to_degrees()
     }
 
-    /// The correction that turns this ellipse into a circle.
+    /// Returns the correction that turns this ellipse into a circle.
     pub fn correction(&self) -> Correction {
         let (sin, cos) = self.phase_error_rad.sin_cos();
         Correction { p: self.offset_cosine_v, q: self.offset_sine_v, tan: sin / cos, scale: self.gain_ratio / cos }
@@ -208,7 +208,7 @@ pub struct Correction {
 }
 
 impl Correction {
-    /// Corrected (sine, cosine) in volts: x' = x − p, y' = ((x − p)·sin α + r·(y − q))/cos α.
+    /// Returns the corrected (sine, cosine) in volts: x' = x − p, y' = ((x − p)·sin α + r·(y − q))/cos α.
     pub fn apply(&self, sine: f64, cosine: f64) -> (f64, f64) {
         let x = cosine - self.p;
         (x * self.tan + self.scale * (sine - self.q), x)
@@ -241,7 +241,7 @@ fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
     if 1.0 - correlation < THIN { Err(FitError::Line) } else { Ok(()) }
 }
 
-/// The 5 × 5 normal equations, in the scale of the moments.
+/// Returns the 5 × 5 normal equations, in the scale of the moments.
 fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
     /// Powers of x and y in the columns A … E.
     const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];

@@ -34,7 +34,7 @@ impl InputFilter {
 }
 
 impl Response {
-    /// The lag in 1/32 of a period, the steps of the absolute position.
+    /// Returns the lag in 1/32 of a period, the steps of the absolute position.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0
     }

@@ -132,17 +132,17 @@ impl Density {
         self.square
     }
 
-    /// Cells of a side.
+    /// Returns the number of cells of a side.
     pub fn side(&self) -> usize {
         self.side
     }
 
-    /// Samples in each cell: rows from the least sine upwards, in each from the least cosine on.
+    /// Returns the number of samples in each cell: rows from the least sine upwards, in each from the least cosine on.
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
 
-    /// Samples in the fullest cell.
+    /// Returns the number of samples in the fullest cell.
     pub fn most(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
     }
@@ -152,7 +152,7 @@ impl Density {
         self.outside
     }
 
-    /// Samples that are no numbers.
+    /// Returns the number of samples that are no numbers.
     pub fn bad(&self) -> u64 {
         self.bad
     }

@@ -101,17 +101,17 @@ impl Moments {
         Ok(())
     }
 
-    /// Samples so far.
+    /// Returns the number of samples so far.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Sum of xⁱ·yʲ in the unit of the scale; 0 beyond the fourth power.
+    /// Returns the sum of xⁱ·yʲ in the unit of the scale; 0 beyond the fourth power.
     pub(super) fn sum(&self, i: usize, j: usize) -> f64 {
         if i + j > ORDER { 0.0 } else { self.sums.get(i * ROW + j).copied().unwrap_or(0.0) }
     }
 
-    /// Ranges of the cosine and of the sine channel in volts.
+    /// Returns the ranges of the cosine and of the sine channel in volts.
     pub(super) fn ranges(&self) -> (f64, f64) {
         (self.most.0 - self.least.0, self.most.1 - self.least.1)
     }
@@ -121,7 +121,7 @@ impl Moments {
         [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// The same samples seen from their mean.
+    /// Returns the same samples seen from their mean.
     pub(super) fn moved_to_mean(&self) -> Moments {
         let count = self.sum(0, 0).max(1.0);
         self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
@@ -155,7 +155,7 @@ impl Moments {
         moved
     }
 
-    /// An ellipse found in this scale, in volts.
+    /// Returns an ellipse found in this scale, in volts.
     pub(super) fn in_volts(&self, ellipse: &Ellipse) -> Ellipse {
         Ellipse {
             amplitude_v: ellipse.amplitude_v * self.scale.unit,

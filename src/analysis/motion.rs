@@ -57,7 +57,7 @@ impl Motion {
         Rates { speed, acceleration }
     }
 
-    /// The newest position at or before `time`.
+    /// Returns the newest position at or before `time`.
     fn before(&self, time: Time) -> Option<(Time, i64)> {
         let after = self.recent.partition_point(|(at, _)| *at <= time);
         self.recent.get(after.checked_sub(1)?).copied()

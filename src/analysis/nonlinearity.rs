@@ -133,7 +133,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A reference over `revolutions` and a measurement with an eccentricity of 0.02° and a period error of 0.003°.
+    /// Returns a reference over `revolutions` and a measurement with an eccentricity of 0.02° and a period error of 0.003°.
     fn measured(count: usize, revolutions: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
         (0..count)
             .map(|at| {

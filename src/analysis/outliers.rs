@@ -106,7 +106,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Found
     Found::Outliers(ellipse, outliers)
 }
 
-/// The channel that does not move, single samples aside.
+/// Returns the channel that does not move, single samples aside.
 pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
@@ -167,12 +167,12 @@ fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     rank_of(&mut offs, middle)
 }
 
-/// The value of that rank, counted from the least.
+/// Returns the value of that rank, counted from the least.
 fn rank_of(values: &mut [f64], rank: usize) -> f64 {
     if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
 }
 
-/// The samples that are further from the ellipse than `limit` volts.
+/// Returns the samples that are further from the ellipse than `limit` volts.
 fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
     /// Samples that are checked together: usually there is no outlier among them.
     const BLOCK: usize = 256;

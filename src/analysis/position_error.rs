@@ -103,13 +103,13 @@ impl PositionError {
         PositionError { raw_deg, corrected_deg, basis, corrected_pp_deg }
     }
 
-    /// Peak to peak as measured, in electrical degrees.
+    /// Returns the peak to peak as measured, in electrical degrees.
     pub fn raw_pp_deg(&self) -> f64 {
         peak_to_peak(&self.raw_deg)
     }
 }
 
-/// Peak amplitudes of the first harmonics of a curve over one period, in the unit of the curve.
+/// Returns the peak amplitudes of the first harmonics of a curve over one period, in the unit of the curve.
 pub fn harmonics(curve: &[f64]) -> [f64; HARMONICS] {
     let count = curve.len().max(1) as f64;
     let mut order = 0.0;

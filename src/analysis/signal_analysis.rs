@@ -127,7 +127,7 @@ impl Analysis {
     }
 }
 
-/// The samples scatter by little around a point that is no zero.
+/// Returns whether the samples scatter by little around a point that is no zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     /// Scatter of one channel, rms, as a share of the point's distance from zero: 6° of a signal (U).
     const SCATTER: f64 = 0.1;
@@ -143,7 +143,7 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     away >= LEAST_V && sine_rms.max(cosine_rms) <= SCATTER * away
 }
 
-/// Median angle from one sample to the next, in degrees.
+/// Returns the median angle from one sample to the next, in degrees.
 fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
     /// Number of steps examined.
     const SAMPLED: usize = 1 << 13;

@@ -76,7 +76,7 @@ impl Spectrum {
         self.spacing_hz
     }
 
-    /// Peak amplitudes in volts, from 0 Hz to half the sample rate, [`spacing_hz`](Self::spacing_hz) apart.
+    /// Returns the peak amplitudes in volts, from 0 Hz to half the sample rate, [`spacing_hz`](Self::spacing_hz) apart.
     pub fn amplitudes_v(&self) -> &[f64] {
         &self.amplitudes_v
     }

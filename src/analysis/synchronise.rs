@@ -79,7 +79,7 @@ impl Synchroniser {
         Ok(Synchronised { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
     }
 
-    /// The fine position from a counter of quarters of a period (quadrature counter).
+    /// Returns the fine position from a counter of quarters of a period (quadrature counter).
     pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
         let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.periods()).round();
         let range = u128::from(self.periods.max(1));
@@ -90,12 +90,12 @@ impl Synchroniser {
 }
 
 impl Synchronised {
-    /// The fine position in periods.
+    /// Returns the fine position in periods.
     pub fn periods(&self) -> f64 {
         self.period as f64 + self.phase.periods()
     }
 
-    /// The fine position in steps of 2^`bits` a period (at most 32).
+    /// Returns the fine position in steps of 2^`bits` a period (at most 32).
     pub fn steps(&self, bits: u32) -> u128 {
         (u128::from(self.period) << bits.min(32)) + u128::from(self.phase.step(bits))
     }

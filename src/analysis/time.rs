@@ -11,7 +11,7 @@ pub struct Time(i64);
 impl Time {
     pub const ORIGIN: Time = Time(0);
 
-    /// The point `nanoseconds` after the origin.
+    /// Creates the point `nanoseconds` after the origin.
     pub const fn from_nanoseconds(nanoseconds: i64) -> Self {
         Time(nanoseconds)
     }

@@ -104,7 +104,7 @@ impl Diverged {
         self.saving.session
     }
 
-    /// The file.
+    /// Returns the file.
     pub fn path(&self) -> &std::path::Path {
         &self.saving.path
     }
@@ -135,7 +135,7 @@ impl Diverged {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }
 
-    /// The versions brought together.
+    /// Returns the versions brought together.
     fn merged(&self, kinds: Kinds) -> Result<Document, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));

@@ -98,7 +98,7 @@ impl From<LocksAlone> for RememberedDrives {
 }
 
 impl RememberedDrives {
-    /// Drives of which no limits are unconfirmed.
+    /// Creates drives of which no limits are unconfirmed.
     pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: Measure, unsaved: BTreeMap<u16, i64>) -> Self {
         RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
     }

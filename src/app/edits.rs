@@ -31,7 +31,7 @@ impl<B: EditBase> Default for Edits<B> {
 }
 
 impl<B: EditBase> Edits<B> {
-    /// The memory as it was read.
+    /// Returns the memory as it was read.
     pub fn base(&self) -> &B {
         &self.base
     }

@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// The same of a link that leads to a file.
+    /// Returns the same for a link that leads to a file.
     pub(super) fn with_whole_file(&self, mut url: LinkUrl) -> LinkUrl {
         if url.scheme == Scheme::Replay {
             url.target = self.services.world.folders.absolute(Path::new(&url.target)).display().to_string();

@@ -18,7 +18,7 @@ pub struct Kinds {
 impl Kinds {
     pub const NONE: Kinds = Kinds::new(Formats::new(&[]), &[], &[]);
 
-    /// These.
+    /// Creates a list of these.
     pub const fn new(
         formats: Formats,
         devices: &'static [&'static dyn DeviceKind],

@@ -52,7 +52,7 @@ impl<D: Kind> LiveSession<D> {
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
-    /// The job that runs, as text.
+    /// Returns the job that runs, as text.
     pub fn progressing(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
         let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.what)));
@@ -69,7 +69,7 @@ impl<D: Kind> LiveSession<D> {
         Ok(id)
     }
 
-    /// The job that runs.
+    /// Returns the job that runs.
     pub fn running(&self) -> Option<&Running<D::JobStep>> {
         self.running.as_ref()
     }
@@ -124,12 +124,12 @@ impl<D: Kind> LiveSession<D> {
         self.worker.is_ended() && self.worker.events().is_empty()
     }
 
-    /// Samples since the last time, and how many were dropped.
+    /// Returns the samples since the last time, and how many were dropped.
     pub(super) fn samples(&mut self) -> (Vec<D::Sample>, u64) {
         self.worker.samples().drain()
     }
 
-    /// Frames since the last time, and how many were dropped.
+    /// Returns the frames since the last time, and how many were dropped.
     pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
         self.trace.drain()
     }

@@ -27,7 +27,7 @@ impl Studio {
         self.motions().any(MotionControl::moves_by_hand)
     }
 
-    /// A motion that was asked for here has not ended.
+    /// Returns whether a motion that was asked for here has not ended.
     pub fn is_under_way(&self) -> bool {
         self.motions().any(MotionControl::is_under_way)
     }

@@ -28,7 +28,7 @@ pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -
     number(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-/// A whole number from `least` to `most`, decimal or with `0x` in front.
+/// Returns a whole number from `least` to `most`, decimal or with `0x` in front.
 ///
 /// # Errors
 /// Why the entry is invalid.

@@ -42,7 +42,7 @@ impl Picture {
         write_atomically(path, &self.png().map_err(refused)?)
     }
 
-    /// The file's content.
+    /// Returns the file's content.
     fn png(&self) -> Result<Vec<u8>, std::io::Error> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width, self.height);

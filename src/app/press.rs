@@ -103,7 +103,7 @@ impl FreshKeys {
         matches!(self.get(key), Seen::Released(_) | Seen::Up)
     }
 
-    /// The key was seen down, and not up since.
+    /// Returns whether the key was seen down, and not up since.
     pub fn is_down(&self, key: PressKey) -> bool {
         self.get(key) == Seen::Down
     }

@@ -74,12 +74,12 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// The plan that is being carried out.
+    /// Returns the plan that is being carried out.
     pub(crate) fn writing(&self) -> Option<&K::Prepared> {
         self.prepared().filter(|_| self.is_writing())
     }
 
-    /// The plan is being made.
+    /// Returns whether the plan is being made.
     pub fn is_planning(&self) -> bool {
         matches!(self.state, ReviewState::Planning)
     }
@@ -139,7 +139,7 @@ pub struct ChangeWords {
 }
 
 impl OpWords {
-    /// An operation that changes one thing.
+    /// Creates an operation that changes one thing.
     pub fn one(item: Text, old: Text, new: Text) -> Self {
         OpWords { item, changes: vec![ChangeWords { part: None, old, new }] }
     }
@@ -294,7 +294,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     /// Returns the cost as text.
     fn cost(prepared: &Self::Prepared) -> Text;
 
-    /// The device counts as worn after it.
+    /// Returns whether the device counts as worn after it.
     fn is_worn(prepared: &Self::Prepared) -> bool {
         let seen = prepared.cycles_seen().unwrap_or(0);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
@@ -303,7 +303,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     /// Returns the result of the write as text.
     fn written(written: &Self::Written) -> Text;
 
-    /// The same for the end of a review, which shows each operation.
+    /// Returns the same for the end of a review, which shows each operation.
     fn verified(written: &Self::Written) -> Text {
         Self::written(written)
     }
@@ -349,7 +349,7 @@ impl<K: Reviewed> Review<K> {
         self.sheet_with(done, K::op)
     }
 
-    /// The same with the words that the device on the desk has for an operation.
+    /// Returns the same with the words that the device on the desk has for an operation.
     pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> ReviewSheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {

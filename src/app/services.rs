@@ -39,7 +39,7 @@ pub struct World {
 }
 
 impl World {
-    /// This machine, with these kinds of devices and tools.
+    /// Creates the real environment, with these kinds of devices and tools.
     pub fn real(store: Store, kinds: Kinds) -> Self {
         World {
             store,
@@ -134,7 +134,7 @@ impl Services {
         }
     }
 
-    /// The time of day.
+    /// Returns the time of day.
     pub(crate) fn now(&self) -> Zoned {
         (self.world.now)()
     }
@@ -163,7 +163,7 @@ impl Services {
         Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
     }
 
-    /// Jobs, the newest last.
+    /// Returns the jobs, the newest last.
     pub fn jobs(&self) -> impl DoubleEndedIterator<Item = &JobRecord> + ExactSizeIterator {
         self.jobs.iter()
     }

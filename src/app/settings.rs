@@ -141,7 +141,7 @@ impl Settings {
         self.drives = from.drives.clone();
     }
 
-    /// The settings as text.
+    /// Returns the settings as text.
     pub fn emit(&self) -> String {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
     }

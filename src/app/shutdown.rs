@@ -57,7 +57,7 @@ pub(super) struct Leaving {
 
 /// Released worker, for any device.
 pub(crate) trait Left: Send + Sync {
-    /// The thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
 
     /// Waits at most `patience` for the end; returns whether it has come.

@@ -185,7 +185,7 @@ impl Studio {
         self.services.tasks.mailbox()
     }
 
-    /// The file that the user is to be asked for, once.
+    /// Returns the file that the user is to be asked for, once.
     pub fn take_file_question(&mut self) -> Option<FileQuestion> {
         self.services.file_question.take()
     }
@@ -195,7 +195,7 @@ impl Studio {
         self.path_question.take()
     }
 
-    /// Profiles that are being read from the disk.
+    /// Returns the profiles that are being read from the disk.
     pub fn opening_files(&self) -> &[PathBuf] {
         &self.services.opening_files
     }
@@ -222,7 +222,7 @@ impl Studio {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
 
-    /// A tab that needs no device.
+    /// Returns whether the tab needs no device.
     fn is_tool(&self, tab: Tab) -> bool {
         self.tools.iter().any(|(own, _)| *own == tab)
     }

@@ -51,7 +51,7 @@ impl Tasks {
         self.wake.clone()
     }
 
-    /// The next thing that is done.
+    /// Returns the next thing that is done.
     pub(crate) fn next(&self) -> Option<Action> {
         self.receiver.try_recv().ok()
     }

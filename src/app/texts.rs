@@ -73,7 +73,7 @@ enum Output {
 }
 
 impl Text {
-    /// The common text of that name.
+    /// Creates the common text of that name.
     pub fn new(id: &'static str) -> Self {
         COMMON.text(id)
     }
@@ -168,7 +168,7 @@ impl Text {
     }
 }
 
-/// A number in digits with the language's decimal sign.
+/// Returns a number in digits with the language's decimal sign.
 pub(crate) fn signed(number: &str, language: Language) -> String {
     Argument::Number(number.to_owned()).text_for(Output::Window(language))
 }
@@ -185,7 +185,7 @@ impl From<&'static str> for Text {
 }
 
 impl Catalogue {
-    /// The catalogue that this RON is.
+    /// Creates the catalogue from RON.
     pub const fn new(source: &'static str) -> Self {
         Catalogue { source, rows: OnceLock::new() }
     }
@@ -210,7 +210,7 @@ impl Catalogue {
         self.rows().keys().map(String::as_str)
     }
 
-    /// The RON.
+    /// Returns the RON.
     pub fn source(&self) -> &'static str {
         self.source
     }
@@ -247,7 +247,7 @@ mod tests {
         places
     }
 
-    /// The files of texts by their names.
+    /// Returns the files of texts by their names.
     fn catalogues() -> BTreeMap<String, String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/texts");
         let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

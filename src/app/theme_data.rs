@@ -104,7 +104,7 @@ impl ThemeData {
         BUILT_IN.as_ref().map_err(String::as_str)
     }
 
-    /// The colours of a theme.
+    /// Returns the colours of a theme.
     pub fn palette(&self, theme: ColorScheme) -> &Palette {
         match theme {
             ColorScheme::Dark => &self.dark,
@@ -126,7 +126,7 @@ impl TryFrom<String> for Rgb {
 }
 
 impl Rgb {
-    /// Contrast against another colour, 1 to 21, as WCAG 2 defines it.
+    /// Returns the contrast against another colour, 1 to 21, as WCAG 2 defines it.
     pub fn contrast(self, other: Rgb) -> f64 {
         let (a, b) = (self.luminance(), other.luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)

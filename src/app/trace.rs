@@ -40,7 +40,7 @@ pub struct Explained {
 }
 
 impl Explained {
-    /// A frame that is broken, and why.
+    /// Creates a frame that is broken, and why.
     pub fn broken(why: Text) -> Self {
         Explained { meaning: vec![why], fault: Some(TraceFault::Broken) }
     }
@@ -81,7 +81,7 @@ impl TraceLog {
         self.lines.drain(..surplus);
     }
 
-    /// Frames, the oldest first.
+    /// Returns the frames, the oldest first.
     pub fn lines(&self) -> &VecDeque<TraceLine> {
         &self.lines
     }
@@ -91,7 +91,7 @@ impl TraceLog {
         self.dropped
     }
 
-    /// The time of day of a frame.
+    /// Returns the time of day of a frame.
     pub fn time_of(&self, line: &TraceLine) -> Option<Zoned> {
         self.began.as_ref()?.checked_add(line.at.since_start()).ok()
     }

@@ -128,7 +128,7 @@ impl<W: Watchable> Default for Track<W> {
 }
 
 impl<W: Watchable> Track<W> {
-    /// A recorder for positions that have this meaning.
+    /// Creates a recorder for positions that have this meaning.
     fn about(meaning: &Meaning) -> Self {
         let mut recorder = Recorder::new(SPAN);
         let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -296,7 +296,7 @@ impl<W: Watchable> Track<W> {
         self.dropped
     }
 
-    /// Positions that are recorded.
+    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         let [line, ..] = self.lines;
         let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());

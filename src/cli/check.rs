@@ -39,7 +39,7 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found faults, named above.".to_owned()])) }
 }
 
-/// The word for a verdict that scripts rely on.
+/// Returns the word for a verdict that scripts rely on.
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Skipped => "skipped",

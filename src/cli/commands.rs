@@ -214,7 +214,7 @@ impl Commands {
     /// The core alone.
     pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
 
-    /// These.
+    /// Creates a list of these.
     pub const fn new(
         devices: &'static [&'static dyn DeviceCommands],
         protocols: &'static [&'static dyn ProtocolDecoder],
@@ -231,7 +231,7 @@ impl Commands {
         self.protocols
     }
 
-    /// The options that kinds of device add to every command and to the window.
+    /// Returns the options that kinds of device add to every command and to the window.
     pub(super) fn common_options(self) -> impl Iterator<Item = Arg> {
         self.devices.iter().flat_map(|device| device.common_options())
     }
@@ -251,18 +251,18 @@ impl Commands {
         Some(self.refusal(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
     }
 
-    /// The commands that are not in the core.
+    /// Returns the commands that are not in the core.
     pub(super) fn own(self) -> impl Iterator<Item = &'static dyn OwnCommand> {
         let of_devices = self.devices.iter().flat_map(|device| device.own_commands());
         of_devices.chain(self.further).copied()
     }
 
-    /// The protocol of a name.
+    /// Returns the protocol of a name.
     pub(super) fn protocol(self, name: &str) -> Option<&'static dyn ProtocolDecoder> {
         self.protocols.iter().copied().find(|protocol| protocol.name() == name)
     }
 
-    /// The kind of device of a name.
+    /// Returns the kind of device of a name.
     ///
     /// # Errors
     /// Returns an error if there is no such kind.
@@ -306,7 +306,7 @@ impl OwnOptions {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
 
-    /// The text of an option that takes one.
+    /// Returns the text of an option that takes one.
     pub(super) fn text(&self, id: &str) -> Option<&String> {
         self.0.get_one(id)
     }
@@ -317,12 +317,12 @@ pub(crate) fn parse<O: FromArgMatches>(matches: &ArgMatches) -> Result<O> {
     O::from_arg_matches(matches).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-/// The options of a derived structure.
+/// Returns the options of a derived structure.
 pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
     O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
 }
 
-/// The values of a derived enumeration.
+/// Returns the values of a derived enumeration.
 pub(crate) fn values_of<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }

@@ -64,7 +64,7 @@ pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     if parts.len() > 1 && parts.iter().all(|part| part.len() >= 3) { Ok(parts) } else { Ok(vec![parts.concat()]) }
 }
 
-/// The hex bytes of an argument.
+/// Returns the hex bytes of an argument.
 pub(crate) fn bytes(word: &str) -> Result<Vec<u8>> {
     parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not hex bytes: {why}")))
 }

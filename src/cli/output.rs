@@ -37,17 +37,17 @@ impl Output {
         Output { json, formats, commands }
     }
 
-    /// The same, with results as text.
+    /// Creates the same, with results as text.
     pub(crate) fn as_text(&self) -> Self {
         Output { json: false, formats: self.formats, commands: self.commands }
     }
 
-    /// The formats of profiles that can be read.
+    /// Returns the formats of profiles that can be read.
     pub(super) fn formats(&self) -> Formats {
         self.formats
     }
 
-    /// The kinds of device that there are commands for.
+    /// Returns the kinds of device that there are commands for.
     pub(super) fn commands(&self) -> Commands {
         self.commands
     }

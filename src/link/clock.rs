@@ -7,7 +7,7 @@ use crate::units::Moment;
 
 /// A source of time that can wait.
 pub trait Clock: Send + Sync {
-    /// Now.
+    /// Returns the current time.
     fn now(&self) -> Moment;
 
     /// Returns when `moment` has come.
@@ -19,7 +19,7 @@ pub trait Clock: Send + Sync {
 pub struct RealClock(Instant);
 
 impl RealClock {
-    /// A clock that starts now.
+    /// Creates a clock that starts now.
     pub fn start() -> Self {
         RealClock(Instant::now())
     }

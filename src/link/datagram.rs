@@ -8,7 +8,7 @@ use crate::units::Moment;
 
 /// Packets to and from one target.
 pub trait Datagrams: Send {
-    /// The port of ours to which the target has to send.
+    /// Returns the port of ours to which the target has to send.
     fn port(&self) -> u16;
 
     /// Sends further packets to this port of the target.

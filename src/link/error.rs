@@ -48,7 +48,7 @@ pub enum LinkErrorKind {
 }
 
 impl LinkError {
-    /// An error at `target`.
+    /// Creates an error at `target`.
     pub fn new(target: impl Into<String>, kind: LinkErrorKind) -> Self {
         LinkError { target: target.into(), kind }
     }

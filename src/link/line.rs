@@ -58,12 +58,12 @@ pub(crate) struct SerialLine<'a> {
 }
 
 impl<'a> SerialLine<'a> {
-    /// The line of a job.
+    /// Creates the line of a job.
     pub(crate) fn new(ctx: Ctx<'a>) -> Self {
         SerialLine { ctx, patience: None, shielded: false, passed: None }
     }
 
-    /// Now.
+    /// Returns the current time.
     pub(crate) fn now(&self) -> Moment {
         self.ctx.clock.now()
     }

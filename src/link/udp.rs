@@ -65,7 +65,7 @@ impl DatagramPort for UdpPort {
     }
 }
 
-/// The address of ours from which packets to a target leave.
+/// Returns the address of ours from which packets to a target leave.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
     // Sends nothing, and selects the network interface.

@@ -37,7 +37,7 @@ impl Scheme {
         (Scheme::Enip, "enip"),
     ];
 
-    /// The word before the colon.
+    /// Returns the word before the colon.
     pub fn word(self) -> &'static str {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
@@ -172,7 +172,7 @@ impl FromStr for LinkUrl {
 }
 
 impl LinkUrl {
-    /// The virtual device as delivered.
+    /// Creates the virtual device as delivered.
     pub fn sim() -> Self {
         LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
     }
@@ -214,7 +214,7 @@ const MODBUS_PORT: &str = ":502";
 /// Default port of EtherNet/IP explicit messages.
 const ENIP_PORT: &str = ":44818";
 
-/// A host alone, which may be an IPv6 address in brackets.
+/// Returns whether a text is a host alone, which may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
     !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
 }
@@ -248,7 +248,7 @@ impl FromStr for Query {
 }
 
 impl Query {
-    /// The value of a parameter.
+    /// Returns the value of a parameter.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
     }

@@ -31,7 +31,7 @@ pub trait Values {
         false
     }
 
-    /// The meaning of the value of a key.
+    /// Returns the meaning of the value of a key.
     ///
     /// # Errors
     /// Returns the allowed values.

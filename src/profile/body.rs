@@ -34,7 +34,7 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
 
 /// The parser for the profiles of one kind of device.
 pub trait ProfileFormat: fmt::Debug + Sync {
-    /// The word for the kind of device.
+    /// Returns the word for the kind of device.
     fn kind(&self) -> &'static str;
 
     /// Reads a profile.
@@ -46,7 +46,7 @@ pub trait ProfileFormat: fmt::Debug + Sync {
 
 /// The saved content of a device. Implemented for every [`Profile`].
 pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
-    /// The word for the kind of device.
+    /// Returns the word for the kind of device.
     fn kind(&self) -> &'static str;
 
     /// Writes the entries into the document.
@@ -109,12 +109,12 @@ impl<P: Profile> ProfileFormat for FormatOf<P> {
 pub struct Body(Box<dyn ProfileBody>);
 
 impl Body {
-    /// A profile of a kind of device.
+    /// Creates a profile of a kind of device.
     pub fn new<P: Profile>(profile: P) -> Self {
         Body(Box::new(profile))
     }
 
-    /// The word for the kind of device.
+    /// Returns the word for the kind of device.
     pub fn kind(&self) -> &'static str {
         self.0.kind()
     }
@@ -143,13 +143,13 @@ impl Body {
         any.downcast_ref()
     }
 
-    /// The same, to be changed.
+    /// Returns the same, to be changed.
     pub fn get_mut<P: Profile>(&mut self) -> Option<&mut P> {
         let any: &mut dyn Any = self.0.as_mut();
         any.downcast_mut()
     }
 
-    /// The profile of a kind of device.
+    /// Returns the profile of a kind of device.
     ///
     /// # Errors
     /// [`ProfileError::OtherKind`].
@@ -183,12 +183,12 @@ impl PartialEq for Body {
 pub struct Formats(&'static [&'static dyn ProfileFormat]);
 
 impl Formats {
-    /// These.
+    /// Creates a list of these.
     pub const fn new(formats: &'static [&'static dyn ProfileFormat]) -> Self {
         Formats(formats)
     }
 
-    /// The words for the kinds of devices.
+    /// Returns the words for the kinds of devices.
     pub fn kinds(self) -> impl Iterator<Item = &'static str> {
         self.0.iter().map(|format| format.kind())
     }

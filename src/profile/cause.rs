@@ -24,7 +24,7 @@ impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
 }
 
 impl Cause {
-    /// An error of a device.
+    /// Creates an error of a device.
     pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
         Cause(Box::new(error))
     }

@@ -42,7 +42,7 @@ impl Comparison {
         }
     }
 
-    /// Items that only one side has.
+    /// Returns the items that only one side has.
     pub fn missing(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()
     }

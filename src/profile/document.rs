@@ -35,7 +35,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// A document of now.
+    /// Creates a document with the current time.
     pub fn new(saved: String, body: Body) -> Self {
         Document { saved: Some(saved), note: None, body, unknown: Unknown::new(), schema: SCHEMA, beyond: Vec::new() }
     }
@@ -98,7 +98,7 @@ impl Document {
         if self.is_newer() { Err(ProfileError::Schema { found: self.schema, known: SCHEMA }) } else { Ok(self) }
     }
 
-    /// The profile's text.
+    /// Returns the profile's text.
     pub fn emit(&self) -> String {
         let mut writer = Writer::default();
         writer.open("", '(');
@@ -116,7 +116,7 @@ impl Document {
         writer.finish()
     }
 
-    /// The word for the kind of device, as on the command line.
+    /// Returns the word for the kind of device, as on the command line.
     pub fn device(&self) -> &'static str {
         self.body.kind()
     }

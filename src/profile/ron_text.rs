@@ -282,7 +282,7 @@ impl Writer {
         self.line(&format!("{bracket}{comma}"));
     }
 
-    /// The text.
+    /// Returns the text.
     pub(super) fn finish(self) -> String {
         self.out
     }
@@ -293,7 +293,7 @@ impl Writer {
     }
 }
 
-/// A RON string.
+/// Returns a RON string.
 pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }

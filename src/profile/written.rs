@@ -15,9 +15,9 @@ pub struct Written {
 
 /// The record of a write that a kind of device keeps.
 pub trait WriteRecord: Default {
-    /// Operations carried out, of the plan's.
+    /// Returns the number of operations of the plan that were carried out.
     fn ops(&self) -> usize;
-    /// Persistent writes spent, or that may have been.
+    /// Returns the number of persistent writes spent, or that may have been.
     fn write_cycles(&self) -> u64;
 }
 

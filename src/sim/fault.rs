@@ -25,7 +25,7 @@ pub const FAULTS: FaultList = FaultList;
 pub struct FaultList;
 
 impl FaultList {
-    /// The faults that a setting names.
+    /// Returns the faults that a setting names.
     ///
     /// # Errors
     /// Returns the first invalid one.
@@ -96,7 +96,7 @@ impl Faults {
     /// Longest delay in milliseconds.
     const MAX_DELAY_MS: u32 = 60_000;
 
-    /// Added before each reply.
+    /// Returns the delay added before each reply.
     pub fn delay(&self) -> Duration {
         self.delay
     }

@@ -27,7 +27,7 @@ pub trait ByteDevice: Send {
     /// the bytes still in transmission.
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]);
 
-    /// Bytes that have completely arrived at the host by `now` and were not fetched yet.
+    /// Returns the bytes that have completely arrived at the host by `now` and were not fetched yet.
     fn poll(&mut self, now: Moment) -> Vec<u8>;
 
     /// Returns when [`poll`](Self::poll) should be called next; `None` if nothing will happen by itself.

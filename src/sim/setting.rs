@@ -115,7 +115,7 @@ impl Values for Rpm {
     }
 }
 
-/// The keys and values of a query, for a test.
+/// Returns the keys and values of a query, for a test.
 #[cfg(test)]
 pub(crate) fn pairs(query: &str) -> Vec<(String, String)> {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));

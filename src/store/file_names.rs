@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The text of a name, read without regard to case.
+    /// Returns the text of a name, read without regard to case.
     fn read_back(name: &str) -> Vec<u8> {
         let name = name.to_ascii_uppercase();
         if name == "%NONE" {

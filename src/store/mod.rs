@@ -52,7 +52,7 @@ pub enum StoreError {
 }
 
 impl Store {
-    /// The folders that the system keeps for this user and this program.
+    /// Creates the folders that the system keeps for this user and this program.
     ///
     /// # Errors
     /// [`StoreError::NoHome`] if there are none.
@@ -94,7 +94,7 @@ impl Store {
         self.data.join("encoder-studio.log")
     }
 
-    /// The file for [`Logbook::open`].
+    /// Returns the file for [`Logbook::open`].
     pub fn logbook_path(&self) -> PathBuf {
         self.data.join("logbook.sqlite")
     }

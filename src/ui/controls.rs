@@ -20,7 +20,7 @@ pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
 
-/// A card with a heading.
+/// Draws a card with a heading.
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, theme, title, |_| {}, content)
 }
@@ -126,7 +126,7 @@ pub(crate) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)
 }
 
-/// A button that may not be pressed now.
+/// Draws a button that may not be pressed now.
 pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
@@ -147,7 +147,7 @@ pub(crate) fn allowed_button(
     }
 }
 
-/// The one button of a screen that the eye ends at.
+/// Draws the main button of a screen.
 pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };

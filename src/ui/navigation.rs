@@ -79,7 +79,7 @@ fn pages_ui(
     pressed
 }
 
-/// An entry of the navigation, as wide as it.
+/// Draws an entry of the navigation, as wide as it.
 fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
     let size = egui::vec2(ui.available_width(), 32.0);
     let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);

@@ -9,13 +9,13 @@ const NARROW: f32 = 720.0;
 /// Room above a page, and below it at most.
 const ABOVE: i8 = 16;
 
-/// The room at the sides of a page.
+/// Returns the room at the sides of a page.
 pub(crate) fn sides(ui: &Ui, theme: &Theme) -> i8 {
     let narrow = ui.available_width() < NARROW;
     (if narrow { theme.space.groups } else { theme.space.around }) as i8
 }
 
-/// The room around a page.
+/// Returns the room around a page.
 pub(crate) fn around(ui: &Ui, theme: &Theme) -> Margin {
     let sides = sides(ui, theme);
     Margin { left: sides, right: sides, top: ABOVE, bottom: sides.min(ABOVE) }

@@ -20,7 +20,7 @@ fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
     ctx.data_mut(|data| act(data.get_temp_mut_or_default(id)))
 }
 
-/// The pointer goes down on a button that stops, in this frame.
+/// Returns whether the pointer goes down on a button that stops, in this frame.
 pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if goes {

@@ -39,7 +39,7 @@ impl Theme {
         }
     }
 
-    /// The text of that name in the window's language.
+    /// Returns the text of that name in the window's language.
     pub fn say(&self, id: &'static str) -> String {
         Text::new(id).words(self.language)
     }
@@ -49,7 +49,7 @@ impl Theme {
         text.words(self.language)
     }
 
-    /// A number with the language's decimal sign.
+    /// Returns a number with the language's decimal sign.
     pub fn number(&self, value: f64, decimals: usize) -> String {
         crate::app::decimal(value, decimals, self.language)
     }
@@ -75,22 +75,22 @@ impl Theme {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
-    /// The heading of a section or a card.
+    /// Returns the heading of a section or a card.
     pub fn heading(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(self.strong(self.sizes.section))
     }
 
-    /// Bytes, registers, and every number that changes.
+    /// Returns text for bytes, registers, and every number that changes.
     pub fn mono(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.body))
     }
 
-    /// The main value of a card.
+    /// Returns text for the main value of a card.
     pub fn value(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.value))
     }
 
-    /// The heavier of the two weights.
+    /// Returns the heavier of the two weights.
     pub fn strong(&self, size: f32) -> FontId {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }

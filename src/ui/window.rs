@@ -32,7 +32,7 @@ const TAB_KEYS: [Key; 9] =
     [Key::Num1, Key::Num2, Key::Num3, Key::Num4, Key::Num5, Key::Num6, Key::Num7, Key::Num8, Key::Num9];
 
 impl Window {
-    /// A window on a studio, with these tabs.
+    /// Creates a window on a studio, with these tabs.
     pub fn new(studio: Studio, look: &'static ThemeData, tabs: TabViews) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views::new(tabs);
@@ -246,7 +246,7 @@ impl Window {
         self.studio.connect.is_some() || self.asks() || dialog
     }
 
-    /// A consent is asked for.
+    /// Returns whether a consent is asked for.
     fn asks(&self) -> bool {
         let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
         asks || self.studio.shown().is_some_and(AnyDevice::is_reviewing)

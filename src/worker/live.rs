@@ -85,7 +85,7 @@ impl Live {
         self.sampling.request();
     }
 
-    /// The token of the samples.
+    /// Returns the token of the samples.
     pub(super) fn sampling(&self) -> &Cancel {
         &self.sampling
     }

@@ -300,7 +300,7 @@ impl<D: Device> Worker<D> {
         &self.samples
     }
 
-    /// A job runs.
+    /// Returns whether a job runs.
     pub fn is_busy(&self) -> bool {
         self.busy.load(Ordering::SeqCst)
     }
@@ -310,7 +310,7 @@ impl<D: Device> Worker<D> {
         &self.events
     }
 
-    /// The thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the wire is free.
     pub fn is_ended(&self) -> bool {
         has_ended(&self.ended)
     }
@@ -355,7 +355,7 @@ impl<D: Device> Ending<D> {
         &self.events
     }
 
-    /// The thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the wire is free.
     pub fn is_ended(&self) -> bool {
         has_ended(&self.ended)
     }

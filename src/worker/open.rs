@@ -71,7 +71,7 @@ pub fn open_bytes(
     })
 }
 
-/// The wire to a virtual device in this process.
+/// Opens the connection to a virtual device in this process.
 pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
@@ -81,7 +81,7 @@ pub fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
-/// A recorded trace.
+/// Returns a recorded trace.
 ///
 /// # Errors
 /// [`OpenError::File`], [`OpenError::Recording`].

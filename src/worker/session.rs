@@ -20,7 +20,7 @@ pub struct SessionContext {
 }
 
 impl SessionContext {
-    /// The context of a procedure on `wire`.
+    /// Returns the context of a procedure on `wire`.
     pub fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
@@ -33,7 +33,7 @@ pub struct Session<D> {
 }
 
 impl<D: Device> Session<D> {
-    /// A session with a device.
+    /// Creates a session with a device.
     pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
         Session { desk: SessionContext { clock, cancel, trace, store, is_virtual }, device }

@@ -220,7 +220,7 @@ fn every_module_says_what_it_is_and_none_is_long() {
     }
 }
 
-/// The names of a catalogue of texts.
+/// Returns the names of a catalogue of texts.
 fn ids_of(owner: &Owner) -> BTreeSet<String> {
     let name = match owner {
         Owner::Core => "common",

@@ -20,7 +20,7 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Registers written since the last time, without bank selection.
+/// Returns the registers written since the last time, without bank selection.
 fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }

@@ -22,7 +22,7 @@ struct Signal {
 const REFERENCE: Signal =
     Signal { amplitude: 0.5, offset_cosine: 0.02, offset_sine: -0.03, ratio: 1.05, phase_deg: 3.0 };
 
-/// Sine and cosine at an angle in periods.
+/// Returns the sine and cosine at an angle in periods.
 fn at(signal: &Signal, periods: f64) -> (f64, f64) {
     let (angle, phase) = (TAU * periods, signal.phase_deg.to_radians());
     let sine = (signal.amplitude * angle.sin() * phase.cos() - signal.amplitude * angle.cos() * phase.sin())

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::support::{Bench, finish};
 
-/// A profile of the virtual encoder with one field.
+/// Returns a profile of the virtual encoder with one field.
 fn profile(bench: &Bench) -> String {
     let file = bench.file("good.ron");
     let ran = bench.run(&["save", "hiperface", "--link", "sim:?serial=HF0000001", "-o", &file]);
@@ -128,7 +128,7 @@ fn a_search_without_a_terminal_needs_the_word_that_no_drive_is_there() {
     bench.run(&["identify", "biss", "--only-master", "--link", "sim:"]).fails(2, &["--only-master"]);
 }
 
-/// A ready-made profile.
+/// Returns a ready-made profile.
 fn ready_made(kind: &str, name: &str) -> String {
     format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
 }

@@ -29,7 +29,7 @@ fn a_port_in_use_is_not_taken_away() {
     second.fails(1, &["in use"]);
 }
 
-/// A device server that serves one client, then ends.
+/// Starts a device server that serves one client, then ends.
 fn server(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("tcp:{}", listener.local_addr().unwrap());

@@ -48,7 +48,7 @@ impl Tapped {
         self.heard().into_iter().filter(|request| request.starts_with("10 ")).collect()
     }
 
-    /// The program with the link to it, and JSON.
+    /// Runs the program with the link to it, and JSON.
     pub(crate) fn ask(&self, bench: &Bench, words: &[&str]) -> Ran {
         bench.run(&[words, &["--link", &self.url, "--json"]].concat())
     }

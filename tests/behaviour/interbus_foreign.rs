@@ -116,7 +116,7 @@ fn what_the_encoder_or_another_master_does_wrong_is_told() {
     assert_eq!(error.to_string(), expected);
 }
 
-/// Other cams in these programs, cam 0 among them.
+/// Returns the other cams in these programs, cam 0 among them.
 fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Interbus>, Prepared) {
     let mut session = session(bench, foreign, "?cycle=1");
     let parameters = match session.run_inline(InterbusJob::Survey).unwrap() {

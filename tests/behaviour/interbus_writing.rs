@@ -18,7 +18,7 @@ fn written(encoder: &Foreign) -> Vec<String> {
     encoder.requests().into_iter().filter(|line| !reads.iter().any(|begin| line.starts_with(begin))).collect()
 }
 
-/// Cam c of program p, as start and stop, by arithmetic alone.
+/// Returns the cam c of program p, as start and stop, by arithmetic alone.
 fn edges(program: u32, cam: u32) -> (u32, u32) {
     (100 * cam + program, 100 * cam + program + 49)
 }

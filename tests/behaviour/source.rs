@@ -9,7 +9,7 @@ use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wiring::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{References, Settings, Source};
 
-/// A second and a half of one revolution per second, 512 periods each, 50 kHz.
+/// Returns a second and a half of one revolution per second, 512 periods each, 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
     let source = Source::new(settings.checked().unwrap(), Time::ORIGIN);

@@ -73,7 +73,7 @@ fn layouts() -> Vec<(String, Layout)> {
     all
 }
 
-/// Positions of the layout, disturbed ones, and any bits.
+/// Returns the positions of the layout, disturbed ones, and any bits.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut rng = fastrand::Rng::with_seed(11);
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];

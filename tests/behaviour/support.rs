@@ -38,7 +38,7 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    /// Path of a file as an argument.
+    /// Returns the path of a file as an argument.
     pub(crate) fn file(&self, name: &str) -> String {
         self.path(name).to_str().unwrap().to_owned()
     }
@@ -52,7 +52,7 @@ impl Bench {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// The program, about to be started.
+    /// Returns the program, about to be started.
     pub(crate) fn program(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_encoder-studio"));
         command
@@ -71,14 +71,14 @@ impl Bench {
         finish(self.program(arguments))
     }
 
-    /// Everything in all files below the folder, of those that are text.
+    /// Returns everything in all files below the folder, of those that are text.
     pub(crate) fn everything_kept(&self) -> String {
         let mut text = String::new();
         collect(self.folder.path(), &mut text);
         text
     }
 
-    /// A text without the folder's random name.
+    /// Returns a text without the folder's random name.
     pub(crate) fn without_folder(&self, text: &str) -> String {
         text.replace(self.folder.path().to_str().unwrap(), "")
     }
@@ -209,7 +209,7 @@ impl Ran {
         self.json_with(0)
     }
 
-    /// The one JSON object that was printed.
+    /// Returns the one JSON object that was printed.
     #[track_caller]
     pub(crate) fn json_with(&self, status: i32) -> Value {
         assert_eq!(self.status, Some(status), "{self:?}");

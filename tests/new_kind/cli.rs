@@ -31,7 +31,7 @@ fn start(home: &Path, arguments: &[&str]) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Status, result and remarks of a command.
+/// Returns the status, result and remarks of a command.
 fn run(home: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output = start(home, arguments).wait_with_output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

@@ -61,7 +61,7 @@ fn width_of(positions: u64) -> u32 {
 }
 
 impl Recording {
-    /// The recording of this number.
+    /// Creates the recording of this number.
     pub(crate) fn of(seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed ^ 0x5851_F42D_4C95_7F2D);
         let (word, positions) = word(&mut rng);

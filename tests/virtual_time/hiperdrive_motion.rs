@@ -29,7 +29,7 @@ fn to(target: i32) -> MotionRequest {
     MotionRequest::Move { target, effort: FULL }
 }
 
-/// The words that were sent, each once, in the order of their sending.
+/// Returns the words that were sent, each once, in the order of their sending.
 fn words(bench: &mut Bench) -> String {
     let words: Vec<String> = bench.take_words().iter().map(|word| format!("{word:04X}")).collect();
     words.join(" ")

@@ -165,7 +165,7 @@ pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
 
-/// A virtual line as `sim:?…` describes it.
+/// Returns a virtual line as `sim:?…` describes it.
 pub(crate) fn bus(query: &str) -> Bus {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
     let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
@@ -181,7 +181,7 @@ impl Desk {
         Self::at(bus(query), &VirtualClock::default(), station)
     }
 
-    /// A desk with this line, not before the time of `clock`.
+    /// Creates a desk with this line, not before the time of `clock`.
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());
@@ -217,7 +217,7 @@ impl Desk {
         desk
     }
 
-    /// A copy of all this, line and time included, with nothing kept on disk.
+    /// Returns a copy of all this, line and time included, with nothing kept on disk.
     pub(crate) fn copied(&self) -> Desk {
         let bus = self.bus.lock().unwrap().clone();
         Self::at(bus, &self.clock, self.session.station().clone())
@@ -302,12 +302,12 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
     Change::Restore { profile: Box::new(profile.clone()), options: RestoreOptions::default() }
 }
 
-/// The profile in a backup file.
+/// Returns the profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
     Document::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
 
-/// Bytes that repeat themselves late and differ for different seeds.
+/// Returns the bytes that repeat themselves late and differ for different seeds.
 pub(crate) fn bytes(seed: u8, count: usize) -> Vec<u8> {
     assert!(count <= MAX_TRANSFER);
     (0..count).map(|at| (at as u8).wrapping_mul(37).wrapping_add(seed.wrapping_mul(101)) ^ (at >> 3) as u8).collect()
@@ -369,7 +369,7 @@ pub(crate) fn check_words(text: &str) {
     }
 }
 
-/// The requests that are in a trace, with the replies that were shown after them.
+/// Returns the requests that are in a trace, with the replies that were shown after them.
 pub(crate) fn exchanges(trace: &[TraceEntry]) -> Vec<(String, Vec<Vec<u8>>)> {
     let mut exchanges: Vec<(String, Vec<Vec<u8>>)> = Vec::new();
     for entry in trace {

@@ -37,7 +37,7 @@ fn edits(desk: &Desk) -> usize {
     shown(&desk.studio).unwrap().edits()
 }
 
-/// The value that [`NOVO`] edits first.
+/// Returns the value that [`NOVO`] edits first.
 fn value(desk: &Desk) -> u16 {
     shown(&desk.studio).unwrap().get::<Encoder>().unwrap().wanted().unwrap()[1]
 }

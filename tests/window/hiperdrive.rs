@@ -76,7 +76,7 @@ fn sets(desk: &Desk) -> usize {
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
 }
 
-/// A device that answers when all in the network are asked.
+/// Returns a device that answers when all in the network are asked.
 fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> Found {
     let identity = Identity {
         vendor,

@@ -50,7 +50,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// The same for an act of the shown drive.
+/// Does the same for an act of the shown drive.
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,

@@ -248,7 +248,7 @@ fn what_is_typed_for_one_drive_stands_on_its_page() {
     assert!(stands(&screen, "12345"));
 }
 
-/// Some entry has this in it.
+/// Returns whether some entry has this in it.
 fn stands(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }

@@ -72,7 +72,7 @@ fn places(screen: &Screen, id: &'static str) -> Vec<Pos2> {
     places
 }
 
-/// STOP of the header.
+/// Returns STOP of the header.
 fn stop(screen: &Screen) -> Pos2 {
     places(screen, "hd_bar.stop")[0]
 }
@@ -234,7 +234,7 @@ fn escape_that_is_held_stops_what_begins_meanwhile() {
     assert!(matches!(ended, Some((_, Ended::Stopped))) && is_watched(&screen), "{ended:?}");
 }
 
-/// A drive that is watched here, and moved by another master.
+/// Returns a drive that is watched here, and moved by another master.
 fn moved_by_somebody_else() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());

@@ -204,7 +204,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// The sheet of the review that is shown.
+/// Returns the sheet of the review that is shown.
 fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.shown().unwrap().sheet().unwrap()
 }

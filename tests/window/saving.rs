@@ -30,7 +30,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     (desk, path)
 }
 
-/// The profile of a file is shown.
+/// Returns whether the profile of a file is shown.
 fn is_open(studio: &Studio) -> bool {
     studio.shown().is_some_and(|own| *own.phase() == Phase::Offline)
 }

@@ -40,7 +40,7 @@ impl Screen {
         Self::of(outside, studio, size)
     }
 
-    /// A window on a studio of that world.
+    /// Creates a window on a studio of that world.
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
@@ -49,7 +49,7 @@ impl Screen {
         Screen { harness, outside }
     }
 
-    /// A window that begins with this link in this tab.
+    /// Creates a window that begins with this link in this tab.
     pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
         screen.act(Action::ShowTab(tab));
@@ -59,7 +59,7 @@ impl Screen {
         screen
     }
 
-    /// A window in which the virtual encoder is connected and read.
+    /// Creates a window in which the virtual encoder is connected and read.
     pub(crate) fn begun(size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), None, size);
         screen.until("the encoder is read", |studio| {

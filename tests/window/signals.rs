@@ -306,7 +306,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
     desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
 }
 
-/// Nothing is worse than good to know.
+/// Returns whether nothing is worse than good to know.
 fn is_good(findings: &[DiagnosisFinding]) -> bool {
     findings.iter().all(|own| own.severity == encoder_studio::analysis::diagnosis::Severity::Notice)
 }

@@ -12,7 +12,7 @@ use encoder_studio::devices::ssi::state::{Edit, Encoder, Entry, Field, Format, H
 
 use crate::support::Desk;
 
-/// The tab of a desk on which nothing was connected.
+/// Returns the tab of a desk on which nothing was connected.
 fn layout() -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));

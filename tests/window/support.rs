@@ -191,7 +191,7 @@ pub(crate) struct Desk {
 }
 
 impl Desk {
-    /// Samples of the position that are recorded without a value to believe.
+    /// Returns the samples of the position that are recorded without a value to believe.
     pub(crate) fn bad_positions(&self) -> u64 {
         let recorder = &self.encoder().record().recorder();
         let history = recorder.history(&recorder.lines()[0]).unwrap();
@@ -204,7 +204,7 @@ impl Desk {
         Desk { studio: outside.studio(), outside }
     }
 
-    /// The same, with the kind that the tests bring along.
+    /// Creates the same, with the kind that the tests bring along.
     pub(crate) fn with_novo() -> Self {
         let outside = Outside { program: crate::tabs::with_novo(), ..Outside::new("") };
         Desk { studio: outside.studio(), outside }
@@ -226,7 +226,7 @@ impl Desk {
         desk
     }
 
-    /// Connected to the virtual encoder, which is read.
+    /// Creates one that is connected to the virtual encoder, which is read.
     pub(crate) fn begun(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.studio.begin(None, None);
@@ -234,7 +234,7 @@ impl Desk {
         desk
     }
 
-    /// Connected to [`PORT`], which is read.
+    /// Creates one that is connected to [`PORT`], which is read.
     pub(crate) fn at_port(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.open(&format!("serial:{PORT}"));
@@ -356,7 +356,7 @@ impl Desk {
         self.ask(Hiperface::Put { field, address, bytes: bytes.to_vec() });
     }
 
-    /// Edits, as field, address and byte.
+    /// Returns the edits, as field, address and byte.
     pub(crate) fn edits(&self) -> Vec<(u8, usize, u8)> {
         self.encoder().staged.edits().collect()
     }
@@ -399,7 +399,7 @@ impl Desk {
         self.until_written();
     }
 
-    /// Names of the texts in all notices of at least this severity.
+    /// Returns the names of the texts in all notices of at least this severity.
     pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()

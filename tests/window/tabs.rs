@@ -85,12 +85,12 @@ pub(crate) fn choose_answer(at: usize) -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
 }
 
-/// The search of a dialog.
+/// Returns the search of a dialog.
 pub(crate) fn search(dialog: &Connect) -> Option<&Search> {
     dialog.finder::<SearchFinder>()?.search.as_ref()
 }
 
-/// The question to the network of a dialog.
+/// Returns the question to the network of a dialog.
 pub(crate) fn discovery(dialog: &Connect) -> Option<&Discovery> {
     dialog.finder::<DiscoveryFinder>()?.discovery.as_ref()
 }

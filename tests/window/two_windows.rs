@@ -22,7 +22,7 @@ use crate::support::{Desk, LONG, Outside};
 
 const HUB: &str = "sim:?hub=4&drives=1,1&requested=1";
 
-/// Two windows over one folder.
+/// Returns two windows over one folder.
 fn two() -> (Desk, Desk) {
     let first = Desk::fresh("");
     let second = Desk { studio: first.outside.studio(), outside: Outside::new("") };

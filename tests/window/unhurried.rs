@@ -29,7 +29,7 @@ impl Clock for Unhurried {
     }
 }
 
-/// A session with the virtual drives of a `sim:` link, on such a clock.
+/// Returns a session with the virtual drives of a `sim:` link, on such a clock.
 pub(crate) fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenError> {
     let clock: Arc<dyn Clock> = Arc::new(Unhurried(RealClock::start()));
     let target = Target::new(&Config::from_pairs(&url.query.without(&["rpi", "udp", "timeout"]))?);

@@ -22,7 +22,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// The cam page of an encoder with 3600 steps per turn and cams of 450 steps in program 1.
+/// Returns the cam page of an encoder with 3600 steps per turn and cams of 450 steps in program 1.
 fn page() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
     screen.until("it is read", |studio| {

@@ -137,7 +137,7 @@ impl Wire {
         self.clock.clone()
     }
 
-    /// The HIPERFACE encoders.
+    /// Returns the HIPERFACE encoders.
     fn bus(&self) -> MutexGuard<'_, Bus> {
         let End::Hiperface(bus) = &self.end else { panic!("{} leads to no HIPERFACE encoder", self.target) };
         bus.lock().unwrap()

@@ -282,7 +282,7 @@ fn what_comes_late_for_another_encoder_is_dropped() {
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
-/// A second field, so that the first is no longer the last.
+/// Returns a second field, so that the first is no longer the last.
 fn with_two_fields() -> Desk {
     let mut desk = Desk::begun("");
     let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), CodeNumber::ZERO, true);

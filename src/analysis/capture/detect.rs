@@ -62,7 +62,7 @@ impl Delimiter {
     /// All delimiters, the most certain first: a comma may also be a decimal sign.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
-    /// The character.
+    /// Returns the character.
     pub const fn byte(self) -> u8 {
         match self {
             Delimiter::Comma => b',',
@@ -172,7 +172,7 @@ fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<Sam
     }
 }
 
-/// The delimiter that most lines have, the surest first.
+/// Returns the delimiter that most lines have, the surest first.
 fn delimiter(text: &[u8]) -> Option<Delimiter> {
     let lines = || text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
     let count = lines().count();

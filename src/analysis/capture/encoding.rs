@@ -26,7 +26,7 @@ pub(super) struct Decoder {
     high: Option<u16>,
 }
 
-/// The beginning of a table in UTF-8.
+/// Returns the beginning of a table in UTF-8.
 pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
     Decoder::of(head).decode(head)
 }
@@ -46,7 +46,7 @@ impl Decoder {
         Decoder { encoding, mark, half: None, high: None }
     }
 
-    /// The next piece in UTF-8.
+    /// Returns the next piece in UTF-8.
     pub(super) fn decode<'b>(&mut self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
         let skipped = self.mark.min(bytes.len());
         self.mark -= skipped;

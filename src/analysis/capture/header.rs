@@ -42,7 +42,7 @@ impl Columns {
     pub const PLAIN: Columns =
         Columns { time: Some(1), sine: 2, cosine: 3, references: None, reference_angle: None, absolute: None };
 
-    /// The last column that is needed.
+    /// Returns the last column that is needed.
     pub fn last(&self) -> usize {
         let (refsin, refcos) = self.references.unwrap_or_default();
         let others = [self.time, self.reference_angle, self.absolute].map(Option::unwrap_or_default);

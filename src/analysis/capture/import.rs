@@ -103,7 +103,7 @@ impl Import {
         &self.layout
     }
 
-    /// Rows so far.
+    /// Returns the number of rows so far.
     pub fn rows(&self) -> usize {
         self.capture.sine_v.len()
     }
@@ -122,7 +122,7 @@ impl Import {
         Ok(())
     }
 
-    /// The samples, after the last bytes.
+    /// Returns the samples, after the last bytes.
     ///
     /// # Errors
     /// If no row had numbers, or most of them had none.

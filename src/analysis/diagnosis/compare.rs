@@ -75,7 +75,7 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
     changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
 }
 
-/// A finding of the second capture is new, or more than in the first.
+/// Returns whether a finding of the second capture is new, or more than in the first.
 fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -> bool {
     match finding.what {
         // Without an ellipse for comparison, only these can be reported.

@@ -117,7 +117,7 @@ pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u3
     Some((most - least) / (most + least))
 }
 
-/// Sine and cosine of the samples that were not left out.
+/// Returns the sine and cosine of the samples that were not left out.
 fn good<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
     let (sine, cosine) = (samples.sine_v, samples.cosine_v);
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);

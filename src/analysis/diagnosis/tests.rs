@@ -330,7 +330,7 @@ fn of_two_captures_it_is_told_what_became_worse() {
     near(*to_v, (0.01 * 0.01 / 12.0 + 5e-4 * 5e-4_f64).sqrt(), 6e-5);
 }
 
-/// Amplitude, offset of the sine, phase error in radians.
+/// Returns the amplitude, offset of the sine, phase error in radians.
 fn ellipse(amplitude: f64, offset: f64, phase: f64) -> Made {
     made(steady, move |_, angle, (_, cosine)| (amplitude * 0.5 * (angle - phase).sin() + offset, amplitude * cosine))
 }

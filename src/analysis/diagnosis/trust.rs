@@ -51,7 +51,7 @@ pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<What> {
     (share > 0.0).then_some(What::Uncertain { share })
 }
 
-/// SIN and COS against ground instead of against their references.
+/// Returns SIN and COS against ground instead of against their references.
 pub(super) fn single_ended(ellipse: &Ellipse) -> Option<What> {
     let within = |value: f64, (least, most): (f64, f64)| (least..=most).contains(&value);
     let (sine_v, cosine_v) = (ellipse.offset_sine_v, ellipse.offset_cosine_v);

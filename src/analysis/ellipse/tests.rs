@@ -12,7 +12,7 @@ const REFERENCE: Ellipse = Ellipse {
     phase_error_rad: 0.052_359_877_559_829_89, // 3°
 };
 
-/// Samples of the model at evenly spread angles from `start` periods on.
+/// Returns the samples of the model at evenly spread angles from `start` periods on.
 fn signals(ellipse: &Ellipse, count: usize, start: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
     (0..count).map(|i| ellipse.at(TAU * (start + periods * i as f64 / count as f64))).unzip()
 }

@@ -61,7 +61,7 @@ impl Bucket {
         other.low >= self.low && other.high <= self.high
     }
 
-    /// A value is so far from the base that no `f32` reaches it.
+    /// Returns whether a value is so far from the base that no `f32` reaches it.
     fn is_beyond(self) -> bool {
         self.low == f32::NEG_INFINITY || self.high == f32::INFINITY
     }
@@ -175,7 +175,7 @@ impl<T: Number> Block<T> {
         known.with(Extent { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
-    /// Count, mean and deviation of some samples, from the samples themselves.
+    /// Returns the count, mean and deviation of some samples, from the samples themselves.
     pub(super) fn spread(&self, range: Range<usize>) -> Option<Spread<T>> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
@@ -219,7 +219,7 @@ impl<T: Number> Block<T> {
         None
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let spread = self.spread.as_ref().map_or(0, |_| size_of::<Spread<T>>());
         let buckets = self.buckets.len() * size_of::<Bucket>();

@@ -126,7 +126,7 @@ impl FlagBlock {
         Good { samples, range }
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         self.kept.as_ref().map_or(0, |_| size_of::<[Flags; BLOCK]>())
     }

@@ -64,7 +64,7 @@ impl<'a> Part<'a> {
         Part { values: Values::Real(values), flags: &[] }
     }
 
-    /// Values of a [`Kind::Whole`] column.
+    /// Creates values of a [`Kind::Whole`] column.
     pub fn whole(values: &'a [i64]) -> Self {
         Part { values: Values::Whole(values), flags: &[] }
     }
@@ -189,7 +189,7 @@ impl History {
         Ok(())
     }
 
-    /// The samples that are there, by index.
+    /// Returns the samples that are there, by index.
     pub fn all(&self) -> Range<u64> {
         self.times.first()..self.times.end()
     }
@@ -202,7 +202,7 @@ impl History {
         self.times.get(first.max(self.times.first()))
     }
 
-    /// The samples from `from` on, before `to`, by index.
+    /// Returns the samples from `from` on, before `to`, by index.
     pub fn indices(&self, from: Time, to: Time) -> Range<u64> {
         let from = self.times.search(from);
         from..self.times.search(to).max(from)

@@ -54,16 +54,16 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::NEG_INFINITY)
     }
 
-    /// `self − base`, rounded to the nearest.
+    /// Returns `self − base`, rounded to the nearest.
     fn minus(self, base: Self) -> f64;
 
-    /// The greatest `f64` that is not above.
+    /// Returns the greatest `f64` that is not above.
     fn below(self) -> f64;
 
-    /// The least `f64` that is not below.
+    /// Returns the least `f64` that is not below.
     fn above(self) -> f64;
 
-    /// The number itself.
+    /// Returns the number itself.
     fn value(self) -> Value;
 }
 

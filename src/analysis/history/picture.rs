@@ -34,7 +34,7 @@ impl Grid {
         Grid { start: Time::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
     }
 
-    /// Pixel columns.
+    /// Returns the number of pixel columns.
     pub fn pixels(&self) -> usize {
         self.pixels
     }

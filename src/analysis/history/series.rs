@@ -18,7 +18,7 @@ pub(super) struct Series<T> {
 }
 
 impl<T: Number> Series<T> {
-    /// Room for `blocks` blocks, which are allocated when they are needed.
+    /// Creates room for `blocks` blocks, which are allocated when they are needed.
     pub(super) fn new(blocks: usize) -> Self {
         Series { blocks: VecDeque::with_capacity(blocks), first: 0 }
     }
@@ -41,7 +41,7 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// The sample `index` as it was appended.
+    /// Returns the sample `index` as it was appended.
     pub(super) fn get(&self, index: u64) -> Option<(T, Flags)> {
         let (block, at) = self.place(index);
         let block = self.blocks.get(block).filter(|_| index >= self.first)?;
@@ -118,7 +118,7 @@ impl<T: Number> Series<T> {
         self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_surely_good(at))
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Block::memory).sum();
         blocks + self.blocks.capacity() * size_of::<Block<T>>()

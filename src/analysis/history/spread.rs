@@ -89,7 +89,7 @@ fn greater<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 
-/// Eight sums side by side, which a processor does in little more time than one.
+/// Returns the eight sums side by side, which a processor does in little more time than one.
 fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -16,7 +16,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// Room for `blocks` blocks, which are allocated when they are needed.
+    /// Creates room for `blocks` blocks, which are allocated when they are needed.
     pub(super) fn new(blocks: usize) -> Self {
         Times { blocks: VecDeque::with_capacity(blocks), starts: VecDeque::with_capacity(blocks), first: 0 }
     }
@@ -75,7 +75,7 @@ impl Times {
         self.first + (number * BLOCK + inside) as u64
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Vec::capacity).sum();
         (blocks + self.starts.capacity()) * size_of::<Time>() + self.blocks.capacity() * size_of::<Vec<Time>>()

@@ -126,7 +126,7 @@ impl Connect {
         self.typed = Some(link);
     }
 
-    /// A search for a device runs, on the wire of the form.
+    /// Returns whether a search for a device runs, on the wire of the form.
     pub fn is_searching(&self) -> bool {
         self.forms.iter().any(|(_, form)| form.is_running())
     }

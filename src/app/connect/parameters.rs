@@ -82,7 +82,7 @@ impl Parameters {
         }
     }
 
-    /// The link with them.
+    /// Returns the link with them.
     ///
     /// # Errors
     /// A sentence if a character would end a part of the link, or the parts make no link.

@@ -9,7 +9,7 @@ use crate::link::{LinkUrl, UrlError};
 use crate::sim::ConfigError;
 use crate::worker::OpenError;
 
-/// An entry without the blanks around it.
+/// Returns an entry without the blanks around it.
 ///
 /// # Errors
 /// `missing`, if it is empty.
@@ -74,7 +74,7 @@ pub(crate) fn other(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
 
-/// Host and port as a link takes them.
+/// Returns the host and port as a link takes them.
 ///
 /// # Errors
 /// A sentence that names the invalid one.
@@ -122,7 +122,7 @@ pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 
-/// The target of a link to an adapter in the network.
+/// Returns the target of a link to an adapter in the network.
 ///
 /// # Errors
 /// As [`host_and_port`].

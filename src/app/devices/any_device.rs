@@ -31,7 +31,7 @@ impl AnyDevice {
         self.state().id
     }
 
-    /// The name by which the log and the jobs call it.
+    /// Returns the name by which the log and the jobs call it.
     pub fn name(&self) -> String {
         self.state().name()
     }
@@ -89,7 +89,7 @@ impl AnyDevice {
         &self.state().statuses
     }
 
-    /// A review of a write is open.
+    /// Returns whether a review of a write is open.
     pub fn is_reviewing(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_reviewing)
     }

@@ -170,7 +170,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.with_memory(services, |memory, services| memory.save(path, services));
     }
 
-    /// A profile can be saved now.
+    /// Returns whether a profile can be saved now.
     fn is_savable(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_savable)
     }
@@ -251,7 +251,7 @@ pub trait MotionControl {
     /// Returns whether something moves, or is about to, at the request of this window.
     fn moves_by_hand(&self) -> bool;
 
-    /// A motion that was asked for in this window has not ended.
+    /// Returns whether a motion that was asked for in this window has not ended.
     fn is_under_way(&self) -> bool;
 
     /// Returns whether this window has control: values then arrive unrequested.
@@ -263,7 +263,7 @@ pub trait DeviceMemory {
     /// Reviews the write of the edits.
     fn review_edits(&mut self, services: &mut Services);
 
-    /// A review of a write is open.
+    /// Returns whether a review of a write is open.
     fn is_reviewing(&self) -> bool;
 
     /// Returns the review of a write, if there is one.
@@ -287,7 +287,7 @@ pub trait DeviceMemory {
     /// Saves a profile.
     fn save(&mut self, path: PathBuf, services: &mut Services);
 
-    /// A profile can be saved now.
+    /// Returns whether a profile can be saved now.
     fn is_savable(&self) -> bool;
 
     /// Reads a backup, to be restored.

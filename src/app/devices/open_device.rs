@@ -29,7 +29,7 @@ pub trait OpenDevice: Any {
     fn state(&self) -> &SessionState;
     #[doc(hidden)]
     fn state_mut(&mut self) -> &mut SessionState;
-    /// The tab that shows it.
+    /// Returns the tab that shows it.
     fn tab(&self) -> Tab;
     /// The device lives in this process.
     fn is_virtual(&self) -> bool;

@@ -15,12 +15,12 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    /// The device that a tab shows.
+    /// Returns the device that a tab shows.
     pub(crate) fn of(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()
     }
 
-    /// The device that was shown last, in whichever tab.
+    /// Returns the device that was shown last, in whichever tab.
     pub(in crate::app) fn last(&self) -> Option<SessionId> {
         self.last
     }

@@ -12,7 +12,7 @@ use crate::profile::{ProfileError, SyntaxProblem};
 use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookProblem};
 
-/// A text that is no link, or a parameter that it does not take.
+/// Returns the text for a text that is no link, or a parameter that it does not take.
 pub fn url(error: &UrlError) -> Text {
     match error {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
@@ -38,7 +38,7 @@ pub fn url(error: &UrlError) -> Text {
     }
 }
 
-/// A setting that a virtual device does not take.
+/// Returns the text for a setting that a virtual device does not take.
 pub fn setting(error: &ConfigError) -> Text {
     match error {
         ConfigError::Key { device, key, known } => {
@@ -101,7 +101,7 @@ fn hex(error: &HexError) -> Text {
     }
 }
 
-/// A file that is no recording.
+/// Returns the text for a file that is no recording.
 pub fn recording(error: &TraceFileError) -> Text {
     match error {
         TraceFileError::Header => Text::new("detail.no_trace").with("header", TRACE_HEADER),
@@ -112,7 +112,7 @@ pub fn recording(error: &TraceFileError) -> Text {
     }
 }
 
-/// A logbook that cannot be used.
+/// Returns the text for a logbook that cannot be used.
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
         LogbookProblem::Folder(error) => file(error),

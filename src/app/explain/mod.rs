@@ -45,7 +45,7 @@ pub fn link(error: &LinkError) -> Text {
     }
 }
 
-/// A link that cannot be opened.
+/// Returns the text for a link that cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),

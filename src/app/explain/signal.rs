@@ -16,7 +16,7 @@ use crate::app::number::decimals;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
-/// A file that could not be read as a capture.
+/// Returns the text for a file that could not be read as a capture.
 pub fn read(path: &Path, error: &ReadCaptureError) -> Text {
     match error {
         ReadCaptureError::File(error) => file(error),

@@ -106,7 +106,7 @@ pub(in crate::app) struct Writing {
 }
 
 impl Export {
-    /// Rows written and rows to be written, about.
+    /// Returns the rows written and those to be written, approximately.
     pub fn progress(&self) -> (u64, u64) {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }
@@ -122,7 +122,7 @@ impl Export {
 }
 
 impl Recorder {
-    /// The table that is being written.
+    /// Returns the table that is being written.
     pub fn export(&self) -> Option<&Export> {
         self.export.as_ref()
     }
@@ -262,7 +262,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
     Cell { value, flags }
 }
 
-/// The name and unit as a column of a table has them, which do not depend on the window's language.
+/// Returns the name and unit as a column of a table has them, which do not depend on the window's language.
 fn heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),

@@ -20,7 +20,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A unit of which one of the samples' own unit is `factor`.
+    /// Creates a unit of which one of the samples' own unit is `factor`.
     pub fn new(unit: &'static str, factor: f64, decimals: usize) -> Self {
         Scale { unit: Text::new(unit), factor, decimals }
     }
@@ -71,13 +71,13 @@ impl Series {
         }
     }
 
-    /// The same, hidden.
+    /// Creates the same, hidden.
     #[must_use]
     pub(crate) fn hidden(self) -> Self {
         Series { shown: false, ..self }
     }
 
-    /// The same, calculated from another line.
+    /// Creates the same, calculated from another line.
     #[must_use]
     pub(crate) fn derived(self) -> Self {
         Series { derived: true, ..self }
@@ -88,7 +88,7 @@ impl Series {
         self.column
     }
 
-    /// The units to choose from.
+    /// Returns the units to choose from.
     pub fn scales(&self) -> &[Scale] {
         &self.scales
     }
@@ -98,12 +98,12 @@ impl Series {
         self.scale
     }
 
-    /// The unit that is shown.
+    /// Returns the unit that is shown.
     pub fn scale(&self) -> Option<&Scale> {
         self.scales.get(self.scale)
     }
 
-    /// The unit that the user has chosen; `None` for the default.
+    /// Returns the unit that the user has chosen; `None` for the default.
     pub(super) fn chosen(&self) -> Option<Text> {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
@@ -123,7 +123,7 @@ impl Series {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 
-    /// The value of a sample in the shown unit.
+    /// Returns the value of a sample in the shown unit.
     pub fn value(&self, sample: &Sample) -> f64 {
         sample.value.to_f64() * self.factor()
     }

@@ -248,7 +248,7 @@ impl Recorder {
         &self.lines
     }
 
-    /// The line of that number.
+    /// Returns the line of that number.
     pub fn line(&self, id: LineId) -> Option<&Series> {
         self.lines.iter().find(|line| line.id == id)
     }
@@ -287,18 +287,18 @@ impl Recorder {
         self.groups.values().all(|group| group.history.all().is_empty())
     }
 
-    /// The raw sample of a line that is nearest to a point in time.
+    /// Returns the raw sample of a line that is nearest to a point in time.
     pub fn nearest(&self, line: &Series, time: Time) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest(time)?)
     }
 
-    /// Bytes that the samples take.
+    /// Returns the number of bytes that the samples take.
     pub fn memory(&self) -> usize {
         self.groups.values().map(|group| group.history.memory()).sum()
     }
 
-    /// The first and the last sample of all, by time.
+    /// Returns the first and the last sample of all, by time.
     pub fn recorded(&self) -> Option<(Time, Time)> {
         let ends = self.groups.values().filter_map(|Group { history, .. }| {
             let all = history.all();

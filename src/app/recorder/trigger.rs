@@ -150,7 +150,7 @@ impl Recorder {
         }
     }
 
-    /// A held picture would lose samples if more were added to this group.
+    /// Returns whether a held picture would lose samples if more were added to this group.
     pub(super) fn would_lose_picture(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };

@@ -8,6 +8,6 @@ pub trait HasSession {
 
     fn session(&self) -> &Session<Self::Device>;
 
-    /// The same, to be changed.
+    /// Returns the same, to be changed.
     fn session_mut(&mut self) -> &mut Session<Self::Device>;
 }

@@ -43,7 +43,7 @@ pub trait Kind: Device + Sized {
         explain::open_failed(failed, Self::open_error)
     }
 
-    /// A job as text.
+    /// Returns a job as text.
     fn job_text(job: &Self::Job) -> Text;
 
     /// A job changes the device's memory.
@@ -54,7 +54,7 @@ pub trait Kind: Device + Sized {
     /// Returns the job that reads everything displayed about the device.
     fn survey() -> Self::Job;
 
-    /// A step of a job as text.
+    /// Returns a step of a job as text.
     fn step_text(what: &Self::JobStep) -> Text;
 
     /// Returns the result of a writing job; `None` for any other.

@@ -28,12 +28,12 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         self.session().review.as_ref()
     }
 
-    /// The same, to be changed.
+    /// Returns the same, to be changed.
     fn review_mut(&mut self) -> &mut Option<Review<Self::Device>> {
         &mut self.session_mut().review
     }
 
-    /// An operation of a plan, as text.
+    /// Returns an operation of a plan, as text.
     fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
         Self::Device::op(prepared, op)
     }
@@ -54,15 +54,15 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         false
     }
 
-    /// A plan was made for another device than the one that was read before.
+    /// Returns whether a plan was made for another device than the one that was read before.
     fn is_of_another(&self, prepared: &Prepared<Self>) -> bool {
         self.key().is_some_and(|own| own != prepared.device(own.is_virtual))
     }
 
-    /// The job that makes a plan.
+    /// Creates the job that makes a plan.
     fn prepare(change: Change<Self>) -> Job<Self>;
 
-    /// The job that carries a plan out.
+    /// Returns the job that carries a plan out.
     fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
     /// Forgets all known data of the device: another one replies.

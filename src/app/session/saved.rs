@@ -22,7 +22,7 @@ pub fn without_edits(count: usize) -> Option<Text> {
 
 /// A device that can be saved and restored.
 pub trait Saved: WithMemory {
-    /// The job that reads everything that can be restored.
+    /// Creates the job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
 
     /// Returns the edited profile, if this is one.

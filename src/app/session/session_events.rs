@@ -57,7 +57,7 @@ pub trait SessionEvents: HasSession {
     /// Handles a step of the running job.
     fn progressed(&mut self, _what: JobStep<Self>) {}
 
-    /// The result of a job is an answer of the device.
+    /// Returns whether the result of a job is an answer of the device.
     fn is_answer(_output: &Output<Self>) -> bool {
         true
     }

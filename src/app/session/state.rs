@@ -68,7 +68,7 @@ impl SessionState {
         }
     }
 
-    /// The name by which the log and the jobs call it.
+    /// Returns the name by which the log and the jobs call it.
     pub fn name(&self) -> String {
         match (&self.source, &self.title) {
             (Source::File { path, .. }, _) => {

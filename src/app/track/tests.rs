@@ -140,7 +140,7 @@ fn names(track: &Track<Nothing>) -> Vec<(String, bool)> {
     track.recorder.lines().iter().map(|line| (line.heading.clone(), line.ended)).collect()
 }
 
-/// Positions of lines, by their headings.
+/// Returns the positions of lines, by their headings.
 fn steps(track: &Track<Nothing>, heading: &str) -> Vec<f64> {
     let at = track.recorder.lines().iter().position(|line| line.heading == heading).unwrap();
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()

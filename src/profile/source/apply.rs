@@ -152,7 +152,7 @@ fn after_comment(text: &str) -> &str {
     }
 }
 
-/// The blanks with which the line of a place begins.
+/// Returns the blanks with which the line of a place begins.
 fn indent_at(text: &str, at: usize) -> &str {
     let line = text.get(..at).unwrap_or_default().rfind('\n').map_or(0, |at| at + 1);
     let line = text.get(line..).unwrap_or_default();

@@ -103,7 +103,7 @@ fn name_of(text: &str, element: &Node) -> Option<Step> {
     matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
 }
 
-/// A value in one notation, so that `0x10` and `16` are one name.
+/// Returns a value in one notation, so that `0x10` and `16` are one name.
 fn plain(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }

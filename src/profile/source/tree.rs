@@ -42,7 +42,7 @@ impl Part {
 }
 
 impl Node {
-    /// The elements or entries.
+    /// Returns the elements or entries.
     pub(super) fn parts(&self) -> &[Part] {
         match &self.kind {
             Kind::Plain => &[],
@@ -167,7 +167,7 @@ impl<'t> Reader<'t> {
         None
     }
 
-    /// A number or a name.
+    /// Parses a number or a name.
     fn word(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         let ends = |c: char| c.is_whitespace() || "()[]{},:\"'".contains(c) || c == '/';
@@ -200,7 +200,7 @@ impl<'t> Reader<'t> {
         Some(Node { span: start..self.at, kind })
     }
 
-    /// A structure, or a tuple, which counts as a whole.
+    /// Parses a structure, or a tuple, which counts as a whole.
     fn bracket(&mut self) -> Option<Kind> {
         let (parts, named) = self.parts('(', ')')?;
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })

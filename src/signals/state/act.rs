@@ -144,17 +144,17 @@ impl Signals {
         self.periods
     }
 
-    /// Absolute and analogue position brought together.
+    /// Returns the absolute and analogue position brought together.
     pub fn synchronise(&self) -> &Synchronise {
         &self.synchronise
     }
 
-    /// The capture that is shown.
+    /// Returns the capture that is shown.
     pub fn measurement(&self) -> Option<&Arc<Measurement>> {
         self.measurement.as_ref()
     }
 
-    /// The virtual encoder, or an adapter.
+    /// Returns the virtual encoder, or an adapter.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -164,7 +164,7 @@ impl Signals {
         self.comparison.as_ref()
     }
 
-    /// The table that was read last, whether it could be or not.
+    /// Returns the table that was read last, whether it could be or not.
     pub fn table(&self) -> Option<&Table> {
         self.table.as_ref()
     }
@@ -179,7 +179,7 @@ impl Signals {
         self.reading.as_ref()
     }
 
-    /// The signals over time.
+    /// Returns the signals over time.
     pub fn scope(&self) -> &Scope {
         &self.scope
     }

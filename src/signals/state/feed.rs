@@ -120,7 +120,7 @@ impl AdapterLink {
 const WAITING: usize = 200_000;
 
 impl Feed {
-    /// The virtual encoder.
+    /// Creates the virtual encoder.
     ///
     /// # Errors
     /// No thread is left.
@@ -138,7 +138,7 @@ impl Feed {
         }
     }
 
-    /// Samples lost since the beginning.
+    /// Returns the number of samples lost since the beginning.
     pub(super) fn lost(&self) -> u64 {
         match self {
             Feed::Virtual(stream) => stream.lost(),

@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};
 use crate::signals::state::TEXTS;
 
-/// Signal periods in a revolution.
+/// Returns the signal periods in a revolution.
 ///
 /// # Errors
 /// Why the entry is invalid.
@@ -20,7 +20,7 @@ pub fn number(text: &str) -> Result<f64, Text> {
     crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
 
-/// Volts in one unit of a table.
+/// Returns the volts in one unit of a table.
 ///
 /// # Errors
 /// Why the entry is invalid.

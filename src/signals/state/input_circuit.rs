@@ -74,7 +74,7 @@ impl Form {
 }
 
 impl Circuit {
-    /// The signals are within the encoder's bandwidth at the speed that was typed.
+    /// Returns whether the signals are within the encoder's bandwidth at the speed that was typed.
     pub fn is_within(&self) -> bool {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
@@ -85,7 +85,7 @@ impl Circuit {
         (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
     }
 
-    /// The error in electrical degrees that reading both channels one microsecond apart makes at the typed speed.
+    /// Returns the error in electrical degrees that reading both channels one microsecond apart makes at the typed speed.
     pub fn degrees_per_microsecond(&self) -> f64 {
         360.0 * self.here.frequency_hz * 1e-6
     }

@@ -129,12 +129,12 @@ impl Source {
         self.problem.as_ref()
     }
 
-    /// The link to the adapter, as typed.
+    /// Returns the link to the adapter, as typed.
     pub fn link(&self) -> &str {
         &self.link
     }
 
-    /// Samples per second that are requested from an adapter.
+    /// Returns the samples per second that are requested from an adapter.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
     }
@@ -159,7 +159,7 @@ impl Source {
         self.live.as_ref().and_then(|live| live.feed.streaming())
     }
 
-    /// The source that runs lives in this process.
+    /// Returns whether the source that runs lives in this process.
     pub fn is_virtual(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
     }

@@ -51,7 +51,7 @@ impl Origin {
 }
 
 impl TableSource {
-    /// The name of the file, without folders.
+    /// Returns the name of the file, without folders.
     pub fn name(&self) -> Text {
         let path = self.path();
         let name = path.file_name().unwrap_or(path.as_os_str());
@@ -191,7 +191,7 @@ fn beside_reference(
     reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
-/// A picture of all samples, around zero, corrected or as they are.
+/// Returns a picture of all samples, around zero, corrected or as they are.
 fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Density> {
     /// Samples that are corrected at once.
     const PORTION: usize = 1 << 14;

@@ -99,7 +99,7 @@ impl Quantity {
         self
     }
 
-    /// Judged by a limit beyond which the position is still right.
+    /// Returns the quantity judged by a limit beyond which the position is still right.
     fn bounded(mut self, bound: Bound) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });

@@ -58,7 +58,7 @@ pub enum NoOffset {
 }
 
 impl NoOffset {
-    /// The reason as text.
+    /// Returns the reason as text.
     pub fn text(self) -> Text {
         TEXTS.text(match self {
             NoOffset::NoSignal => "synchronise.no_signal",
@@ -70,7 +70,7 @@ impl NoOffset {
 /// Stretches that a curve is drawn of.
 const STRETCHES: usize = 512;
 
-/// DNL and INL of a capture; `None` without a reference angle.
+/// Returns DNL and INL of a capture; `None` without a reference angle.
 pub(super) fn nonlinearities(
     capture: &Capture,
     analysis: &Analysis,
@@ -101,7 +101,7 @@ impl Part {
     }
 }
 
-/// DNL and INL as ± values.
+/// Returns DNL and INL as ± values.
 pub fn nonlinearity_quantities(told: &Nonlinearities) -> Vec<Quantity> {
     /// Seconds of arc in a degree.
     const ARC_SECONDS: f64 = 3600.0;

@@ -35,7 +35,7 @@ const LEAST_PEAK: f64 = 1e-4;
 const NOISE: f64 = 6.0;
 
 impl Spectra {
-    /// The spectra of a capture.
+    /// Creates the spectra of a capture.
     ///
     /// # Errors
     /// [`SpectrumError`]: there are no times, they are uneven, or there are too few samples.

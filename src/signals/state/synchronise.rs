@@ -95,7 +95,7 @@ const LEAST_READINGS: usize = 2;
 const MOST_TURNS: u32 = 65_536;
 
 impl Default for Form {
-    /// The second row of the reference's table.
+    /// Creates the second row of the reference's table.
     fn default() -> Self {
         let typed = |text: &str| text.to_owned();
         Form {

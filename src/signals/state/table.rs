@@ -61,12 +61,12 @@ impl Table {
         self.wishes.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
     }
 
-    /// Columns that are taken.
+    /// Returns the columns that are taken.
     pub fn columns(&self) -> Option<Columns> {
         self.wishes.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
-    /// The column that is taken for something, from 1.
+    /// Returns the column that is taken for something, from 1.
     pub fn column(&self, column: Column) -> Option<usize> {
         let columns = self.columns()?;
         match column {
@@ -91,7 +91,7 @@ impl Table {
         self.head.iter().map(fields).max().unwrap_or(0).max(named).min(MOST_COLUMNS)
     }
 
-    /// The name of a column in the table's header.
+    /// Returns the name of a column in the table's header.
     pub fn name(&self, column: usize) -> Option<&str> {
         let name = self.layout.as_ref()?.names.get(column.checked_sub(1)?)?;
         Some(name.as_str()).filter(|name| !name.is_empty())

@@ -120,7 +120,7 @@ fn bars(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Res
     });
 }
 
-/// Raw and corrected, of one capture or of both.
+/// Returns the raw and corrected traces, of one capture or of both.
 fn series(
     error: &PositionError,
     compared: Option<&PositionError>,

@@ -70,7 +70,7 @@ impl Source {
         self.segments.push_back(segment);
     }
 
-    /// The settings in force after the latest change.
+    /// Returns the settings in force after the latest change.
     pub fn settings(&self) -> Option<&Settings> {
         self.segments.back().map(|segment| segment.checked.settings())
     }
@@ -99,7 +99,7 @@ impl Source {
         Some(wires)
     }
 
-    /// The segment of a sample.
+    /// Returns the segment of a sample.
     fn segment(&self, index: u64) -> Option<&Segment> {
         self.segments.iter().rev().find(|segment| segment.from <= index)
     }
@@ -248,7 +248,7 @@ fn remainder(number: i128, whole: u64) -> u64 {
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 
-/// Two independent numbers of the normal distribution, the same for the same place (Box and Muller 1958).
+/// Returns two independent numbers of the normal distribution, the same for the same place (Box and Muller 1958).
 fn gaussian(seed: u64, place: u64) -> [f64; 2] {
     let first = scramble(seed ^ scramble(place));
     let second = scramble(first ^ seed);

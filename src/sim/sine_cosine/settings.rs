@@ -157,7 +157,7 @@ impl Quantity {
         }
     }
 
-    /// Least and greatest value.
+    /// Returns the least and greatest value.
     pub const fn range(self) -> (f64, f64) {
         match self {
             Quantity::Periods => (1.0, 65_536.0),
@@ -179,12 +179,12 @@ impl Quantity {
 }
 
 impl Settings {
-    /// The value of a quantity.
+    /// Returns the value of a quantity.
     pub fn get(&self, quantity: Quantity) -> f64 {
         *self.clone().place(quantity)
     }
 
-    /// The same settings with another value of a quantity.
+    /// Returns the same settings with another value of a quantity.
     #[must_use]
     pub fn with(mut self, quantity: Quantity, value: f64) -> Self {
         *self.place(quantity) = value;

@@ -195,7 +195,7 @@ impl Logbook {
             .map_err(|error| self.failed(error))
     }
 
-    /// The last `limit` entries about a device, newest first.
+    /// Returns the last `limit` entries about a device, newest first.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.
@@ -223,7 +223,7 @@ impl Logbook {
         self.database.execute(sql, row).map(drop).map_err(|error| self.failed(error))
     }
 
-    /// The last `limit` readings of status codes from a device, newest first.
+    /// Returns the last `limit` readings of status codes from a device, newest first.
     ///
     /// # Errors
     /// Returns an error if the logbook cannot be read.

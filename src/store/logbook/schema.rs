@@ -71,7 +71,7 @@ pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, Logboo
     Ok(database)
 }
 
-/// A time as the tables hold it.
+/// Returns a time as the tables hold it.
 pub(super) fn parse_time(text: &str) -> rusqlite::Result<Timestamp> {
     text.parse().map_err(|error: jiff::Error| rusqlite::Error::FromSqlConversionFailure(0, Type::Text, Box::new(error)))
 }

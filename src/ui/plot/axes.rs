@@ -21,7 +21,7 @@ pub(super) fn decimals(step: f64) -> usize {
     (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize
 }
 
-/// The multiples of `step` from `low` to `high`.
+/// Returns the multiples of `step` from `low` to `high`.
 pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
     /// More than fit into any picture; a step of zero would loop forever.
     const MOST: i64 = 200;
@@ -31,7 +31,7 @@ pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64>
     (0..count).map(move |at| (first + at as f64) * step + 0.0)
 }
 
-/// A value as a label of an axis with such steps.
+/// Returns a value as a label of an axis with such steps.
 pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     let decimals = decimals(step);
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
@@ -99,7 +99,7 @@ pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language
     TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
-/// A second, minute or hour before `from`.
+/// Returns a second, minute or hour before `from`.
 fn coarse_base(from: Time, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.nanoseconds().div_euclid(grain).saturating_mul(grain)
@@ -177,7 +177,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
-/// A point in time as exactly as a picture of that many nanoseconds shows it.
+/// Returns a point in time as exactly as a picture of that many nanoseconds shows it.
 pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     let nanoseconds = time.nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
@@ -192,7 +192,7 @@ pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     }
 }
 
-/// The number of the sample at that place.
+/// Returns the number of the sample at that place.
 pub(super) fn sample_number(time: Time) -> String {
     time.nanoseconds().div_euclid(SAMPLE).to_string()
 }

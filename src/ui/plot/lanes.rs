@@ -148,7 +148,7 @@ fn letters(lanes: &[Lane]) -> usize {
     lanes.iter().filter(|lane| !lane.empty).map(longest).max().unwrap_or(0)
 }
 
-/// The lines of each lane.
+/// Returns the lines of each lane.
 fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
     let shown: Vec<&Series> = recorder.shown().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }

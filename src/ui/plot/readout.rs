@@ -93,7 +93,7 @@ fn name(ui: &mut Ui, theme: &Theme, line: &Series) {
     ui.label(theme.caption(theme.words(&line.name)));
 }
 
-/// The raw sample under the pointer, or the newest.
+/// Returns the raw sample under the pointer, or the newest.
 fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
     let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
@@ -135,7 +135,7 @@ fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured
     }
 }
 
-/// The last sample of a line.
+/// Returns the last sample of a line.
 fn newest(context: &Context<'_>, line: &Series) -> Option<Sample> {
     let history = context.recorder.history(line)?;
     history.sample(line.column(), history.all().end.checked_sub(1)?)

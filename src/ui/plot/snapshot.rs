@@ -28,7 +28,7 @@ impl Shot {
         ctx.request_repaint();
     }
 
-    /// The next frame may be the one that is kept.
+    /// Returns whether the next frame may be the one that is kept.
     pub(super) fn is_wanted(&self) -> bool {
         !matches!(self, Shot::None)
     }

@@ -179,7 +179,7 @@ fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'stati
     hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
-/// A step of 1, 2 or 5 times a power of ten, of which about five fit.
+/// Returns a step of 1, 2 or 5 times a power of ten, of which about five fit.
 fn round_step((least, most): (f64, f64)) -> f64 {
     let rough = ((most - least).abs() / 5.0).clamp(1e-12, 1e12);
     let power = 10_f64.powf(rough.log10().floor());
@@ -201,7 +201,7 @@ fn tick(theme: &Theme, mark: GridMark) -> String {
     theme.number(mark.value, decimals)
 }
 
-/// A number with four figures.
+/// Returns a number with four figures.
 fn figures(theme: &Theme, value: f64) -> String {
     let decimals = (3.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
     theme.number(value, decimals)

@@ -186,7 +186,7 @@ fn tip(response: Response, tooltip: &str) {
     }
 }
 
-/// The handle at the end of the last field.
+/// Draws the handle at the end of the last field.
 fn handle(
     ui: &Ui,
     theme: &Theme,

@@ -74,7 +74,7 @@ pub enum HexEdit {
 }
 
 impl<'a> HexModel<'a> {
-    /// Bytes that can be edited, without marks.
+    /// Creates bytes that can be edited, without marks.
     pub fn new(device: &'a [u8], wanted: &'a [u8]) -> Self {
         HexModel { device, wanted, marks: &[], read_only: None, lines: 16 }
     }
@@ -126,7 +126,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
     edits
 }
 
-/// The header and the lines.
+/// Draws the header and the lines.
 fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
     let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
     paint::header(ui, theme, grid, header, model, view);

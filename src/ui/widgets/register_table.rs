@@ -147,7 +147,7 @@ const MARGIN: i8 = 4;
 /// Characters of the longest number: −2³¹ is eleven.
 const NUMBER: usize = 12;
 
-/// Width of a value, with the distance to the next column.
+/// Returns the width of a value, with the distance to the next column.
 fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
     let characters = match kind {
         RegisterKind::Bytes { widest } => widest * 3,

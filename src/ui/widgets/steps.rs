@@ -88,7 +88,7 @@ pub enum StepsEvent {
 }
 
 impl Gauge {
-    /// The value is there and allowed.
+    /// Returns whether the value is there and allowed.
     pub fn fits(&self) -> bool {
         self.value.is_some_and(|value| self.allowed.contains(&value))
     }

@@ -44,7 +44,7 @@ impl Request {
     }
 }
 
-/// The reply to a request.
+/// Returns the reply to a request.
 pub(crate) fn reply(request: Request, word: u16) -> [u8; REPLY] {
     let [high, low] = word.to_be_bytes();
     [high, low, request.emit().iter().fold(high ^ low, |check, byte| check ^ byte)]

@@ -100,7 +100,7 @@ pub(crate) fn filter() -> Change {
     Change::SelectFilter(Filter::Dynamic)
 }
 
-/// Three bytes of OEM data, in two runs and two banks.
+/// Returns three bytes of OEM data, in two runs and two banks.
 pub(crate) fn data() -> Change {
     let edit = |place: &str, bytes: &[u8]| (place.parse().unwrap(), bytes.to_vec());
     Change::Write(vec![

@@ -24,7 +24,7 @@ use super::support::{Bench, Way, at};
 
 const WAYS: [Way; 2] = [Way::ConfigPin, Way::Adapter];
 
-/// The profile with other bytes in a bank.
+/// Returns the profile with other bytes in a bank.
 fn with_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
     let mut wanted = profile.clone();
     let mut bank = profile.bank(number).unwrap();

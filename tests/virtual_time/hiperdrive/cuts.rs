@@ -24,7 +24,7 @@ const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
 const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
 const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
 
-/// Three parameters and a save.
+/// Returns three parameters and a save.
 fn write() -> Change {
     Change::Write(image(&[(24, 7), (166, 200), (186, 30)]))
 }

@@ -42,14 +42,14 @@ pub(crate) fn image(values: &[(u16, i64)]) -> Box<Image> {
 }
 
 impl Stand {
-    /// A device as `sim:?…` describes it.
+    /// Creates a device as `sim:?…` describes it.
     pub(crate) fn new(query: &str) -> Self {
         let pairs = query.split('&').filter_map(|item| item.split_once('='));
         let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
         Stand::at(Target::new(&Config::from_pairs(&pairs).unwrap()), Arc::new(VirtualClock::default()))
     }
 
-    /// Another session with a device.
+    /// Creates another session with a device.
     pub(crate) fn at(target: Target, clock: Arc<VirtualClock>) -> Self {
         let tap = Arc::<Mutex<Tap>>::default();
         let connection = target.connection(Ipv4Addr::UNSPECIFIED);
@@ -108,7 +108,7 @@ impl Stand {
         std::fs::create_dir_all(Store::at(self.folder.path()).logbook_path()).unwrap();
     }
 
-    /// A parameter as the device has it.
+    /// Returns a parameter as the device has it.
     pub(crate) fn value(&self, own: u16) -> i64 {
         let now = self.clock.now();
         match self.target.with(|station| station.read(now, number(own))).unwrap() {

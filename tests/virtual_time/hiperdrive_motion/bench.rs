@@ -133,7 +133,7 @@ impl Bench {
         actual.speed != 0 || actual.status.state() == State::Moving
     }
 
-    /// The words sent since the last time, each once, beginning with the one that was on the wire.
+    /// Returns the words sent since the last time, each once, beginning with the one that was on the wire.
     pub(super) fn take_words(&mut self) -> Vec<u16> {
         let last = self.words.last().copied();
         std::mem::replace(&mut self.words, last.into_iter().collect())

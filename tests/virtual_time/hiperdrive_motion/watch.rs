@@ -24,7 +24,7 @@ fn run(direction: Direction, end: RunEnd) -> MotionRequest {
     MotionRequest::Run { direction, end, effort: FULL }
 }
 
-/// A drive with a defect between ±1 turn.
+/// Returns a drive with a defect between ±1 turn.
 fn bench(defect: Option<Defect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());

@@ -36,7 +36,7 @@ fn requests(job: impl Fn(&mut Stand) -> InterbusJob) -> usize {
     tap.sent.len()
 }
 
-/// Two parameters and a mask.
+/// Returns two parameters and a mask.
 fn write(stand: &mut Stand) -> InterbusJob {
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
         InterbusOutput::Surveyed(survey) => *survey,

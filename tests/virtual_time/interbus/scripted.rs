@@ -139,7 +139,7 @@ impl ProcessData for Script {
     }
 }
 
-/// The encoder that a script is.
+/// Returns the encoder that a script is.
 pub(crate) fn identity() -> Identity {
     Identity {
         serial_number: "3".to_owned(),
@@ -193,7 +193,7 @@ pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<In
     (ended, steps, sent)
 }
 
-/// Parameters in one parameterisation.
+/// Returns the parameters in one parameterisation.
 pub(crate) fn parameters(changes: &[(Parameter, u32)]) -> Vec<Op> {
     let change = |(parameter, to): &(Parameter, u32)| ParameterChange { parameter: *parameter, from: 0, to: *to };
     vec![Op::Parameterise(changes.iter().map(change).collect())]

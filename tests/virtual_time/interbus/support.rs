@@ -37,7 +37,7 @@ pub(crate) fn station(query: &str) -> Station {
 }
 
 impl Stand {
-    /// An encoder as `sim:?…` describes it.
+    /// Creates an encoder as `sim:?…` describes it.
     pub(crate) fn new(query: &str) -> Self {
         Stand::with(gateway(query), station(""))
     }
@@ -137,7 +137,7 @@ impl Stand {
             .collect()
     }
 
-    /// OUT as the encoder has it, and the mode that it would start with.
+    /// Returns OUT as the encoder has it, and the mode that it would start with.
     pub(crate) fn left(&self) -> (u32, StartupMode) {
         self.gateway.with_encoder(|encoder| (encoder.out(), encoder.startup_mode()))
     }

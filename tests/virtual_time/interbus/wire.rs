@@ -67,7 +67,7 @@ fn reply(request: &[u8], body: &[u8]) -> Vec<u8> {
     [&request[..2], &[0, 0], &length, body].concat()
 }
 
-/// The reply to a reading of two registers.
+/// Returns the reply to a reading of two registers.
 fn registers(request: &[u8], word: u32) -> Vec<u8> {
     reply(request, &[&[request[6], request[7], 4][..], &word.to_be_bytes()].concat())
 }

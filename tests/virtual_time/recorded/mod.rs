@@ -86,7 +86,7 @@ fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Read
     assert_recorded(name, &text);
 }
 
-/// FNV-1a of 64 bits.
+/// Returns FNV-1a of 64 bits.
 fn sum(lines: &[String]) -> u64 {
     let bytes = lines.iter().flat_map(|line| line.bytes().chain([b'\n']));
     bytes.fold(0xCBF2_9CE4_8422_2325, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))

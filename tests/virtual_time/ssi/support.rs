@@ -82,7 +82,7 @@ impl Stand {
         (0..1000).map(|_| bytes(1)).sum()
     }
 
-    /// The requests of an operation.
+    /// Returns the requests of an operation.
     pub(crate) fn requests(&self, operation: Operation) -> Vec<Packet> {
         let mut receiver = Receiver::default();
         self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));

@@ -316,7 +316,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
     desk
 }
 
-/// Saved, before the check over the supply.
+/// Returns the saved axis, before the check over the supply.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(until_test(link, drive, rough));
     next(&mut desk, AxisStep::Save);

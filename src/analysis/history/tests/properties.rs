@@ -78,7 +78,7 @@ fn value(kind: Kind, shape: Shape, offset: i64, at: usize, random: &mut fastrand
     })
 }
 
-/// A history and its model with the same samples.
+/// Returns a history and its model with the same samples.
 fn build(kind: Kind, runs: &[Run], capacity: usize) -> (History, Model) {
     let mut history = History::new(&[Kind::Real, kind], capacity).with_longest_pause(PAUSE);
     let mut model = Model::default();

@@ -28,7 +28,7 @@ const SLOWNESS: i128 = 4000;
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl Drift {
-    /// Our time for `own_ns` of the adapter's, which cannot be later than `latest`.
+    /// Returns our time for `own_ns` of the adapter's, which cannot be later than `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
         let most = i128::from(latest.nanoseconds()) - own_ns;
         let told = self.least_lead(own_ns, most);
@@ -46,7 +46,7 @@ impl Drift {
         Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// The least of the stretch and of the one before.
+    /// Returns the least of the stretch and of the one before.
     fn least_lead(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {

@@ -186,7 +186,7 @@ impl AdapterState {
         self.power.found = Some(is_supplied);
     }
 
-    /// The supply has to be switched off at the end of the session.
+    /// Returns whether the supply has to be switched off at the end of the session.
     pub(crate) fn supply_goes_off(&self) -> bool {
         self.power.goes_off()
     }

@@ -171,7 +171,7 @@ impl Wanted {
     }
 }
 
-/// Rounded to whole nanoseconds.
+/// Rounds to whole nanoseconds.
 fn period_ns(sample_hz: u32) -> i64 {
     let hz = i64::from(sample_hz.max(1));
     (1_000_000_000 + hz / 2) / hz

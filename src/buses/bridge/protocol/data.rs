@@ -67,7 +67,7 @@ impl Data {
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
 
-    /// Number of the first sample, how many there are, and how many the adapter has lost before them.
+    /// Returns the number of the first sample, how many there are, and how many the adapter has lost before them.
     pub const fn extent(&self) -> (u32, usize, u16) {
         match self {
             Data::Ssi(data) => (data.first_index, data.values.len(), data.lost),

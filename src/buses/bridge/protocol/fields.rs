@@ -81,7 +81,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// A number of `width` bytes, at most eight.
+    /// Returns a number of `width` bytes, at most eight.
     pub(super) fn wide(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))

@@ -65,7 +65,7 @@ impl Packet {
         Ok(Packet { seq, op, body: bytes })
     }
 
-    /// The stuffed bytes and the 00 that ends them.
+    /// Returns the stuffed bytes and the 00 that ends them.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
         bytes.extend([self.seq, self.op]);
@@ -77,7 +77,7 @@ impl Packet {
     }
 }
 
-/// CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1 from FFFFh on, highest bit first.
+/// Returns CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1 from FFFFh on, highest bit first.
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc: u16, byte| {
         let [high, _] = crc.to_be_bytes();

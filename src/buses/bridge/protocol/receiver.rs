@@ -21,7 +21,7 @@ impl Receiver {
         self.bytes.extend(bytes);
     }
 
-    /// The next whole packet.
+    /// Returns the next whole packet.
     pub fn next_packet(&mut self) -> Option<Packet> {
         loop {
             let behind = self.bytes.get(self.searched..).unwrap_or_default();
@@ -58,7 +58,7 @@ impl Receiver {
         self.broken.take()
     }
 
-    /// Broken packets so far.
+    /// Returns the number of broken packets so far.
     pub const fn dropped(&self) -> u64 {
         self.dropped
     }

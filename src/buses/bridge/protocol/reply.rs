@@ -162,7 +162,7 @@ impl Capabilities {
         Capabilities(word)
     }
 
-    /// All bits.
+    /// Returns all bits.
     pub const fn word(self) -> u32 {
         self.0
     }
@@ -172,7 +172,7 @@ impl Capabilities {
         self.0 & others.0 == others.0
     }
 
-    /// These and those.
+    /// Returns the union of both.
     #[must_use]
     pub const fn and(self, others: Capabilities) -> Self {
         Capabilities(self.0 | others.0)
@@ -246,7 +246,7 @@ impl Message {
         Reply::parse(packet).map(Message::Reply)
     }
 
-    /// The packet for the host.
+    /// Returns the packet for the host.
     pub fn emit(&self, seq: u8) -> Packet {
         match self {
             Message::Reply(reply) => reply.emit(seq),

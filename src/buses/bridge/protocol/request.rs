@@ -209,7 +209,7 @@ impl Request {
         }
     }
 
-    /// The packet for the adapter.
+    /// Returns the packet for the adapter.
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {

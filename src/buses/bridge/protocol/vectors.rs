@@ -133,7 +133,7 @@ fn messages() -> Vec<(u8, Message, &'static str)> {
     ]
 }
 
-/// The packet in bytes that end with 00.
+/// Returns the packet in bytes that end with 00.
 fn packet(bytes: &[u8]) -> Result<Packet, PacketError> {
     assert_eq!(bytes.last(), Some(&0));
     Packet::parse(&bytes[..bytes.len() - 1])

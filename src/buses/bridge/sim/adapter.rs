@@ -110,7 +110,7 @@ impl Adapter {
         device.downcast_ref()
     }
 
-    /// The same, to change it.
+    /// Returns the same, to change it.
     pub fn device_mut<T: BissDevice>(&mut self) -> Option<&mut T> {
         let device: &mut dyn Any = &mut **self.bus.biss.as_mut()?;
         device.downcast_mut()

@@ -40,7 +40,7 @@ pub trait BissDevice: Any + Send {
     /// Returns whether its registers can be read at `now`.
     fn answers(&mut self, now: Moment) -> bool;
 
-    /// A control frame can have this address.
+    /// Returns whether a control frame can have this address.
     fn has_address(&self, address: u8) -> bool;
 
     /// Reads a register at `now`; `None`: it refuses.

@@ -84,7 +84,7 @@ impl Bus {
         }
     }
 
-    /// The first `bits` bits of an SSI word taken at a moment.
+    /// Returns the first `bits` bits of an SSI word taken at a moment.
     pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
         // Without power neither encoder sends.
         let place = self.place(at);

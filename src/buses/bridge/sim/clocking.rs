@@ -20,7 +20,7 @@ pub(super) struct BissSetting {
 }
 
 impl BissSetting {
-    /// Acknowledge, start and control bit, frame, time-out.
+    /// Returns the duration of acknowledge, start and control bit, frame, time-out.
     pub(super) fn frame(self) -> Duration {
         let clocks = u64::from(self.bits) + 2;
         let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
@@ -38,7 +38,7 @@ pub(super) struct SsiSetting {
 }
 
 impl SsiSetting {
-    /// The clocks of a word.
+    /// Returns the duration of the clocks of a word.
     pub(super) fn burst(self) -> Duration {
         let nanoseconds = u64::from(self.clocks) * 1_000_000_000;
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))

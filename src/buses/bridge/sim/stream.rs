@@ -88,7 +88,7 @@ pub(super) struct Clocked {
 impl Clocked {
     const HEAD: usize = 20;
 
-    /// `bits` of each value.
+    /// Creates `bits` of each value.
     pub(super) fn new(kind: Kind, start: Moment, period: Duration, bits: u8) -> Self {
         let width = bits.div_ceil(8).clamp(1, 8);
         let size = usize::from(width) + usize::from(kind == Kind::Biss);

@@ -118,7 +118,7 @@ impl NetworkParameters {
         }
     }
 
-    /// Bytes, with sequence count and run/idle header.
+    /// Returns the number of bytes, with sequence count and run/idle header.
     pub const fn size(self) -> u16 {
         self.0 & SIZE
     }

@@ -106,7 +106,7 @@ impl Frame {
     /// The version of the protocol.
     pub const VERSION: u16 = 1;
 
-    /// A request outside of any session.
+    /// Creates a request outside of any session.
     fn request(command: Command, context: [u8; 8], body: &Body) -> Self {
         Frame { command, session: 0, status: EncapsulationStatus::OK, context, options: 0, data: body.emit() }
     }
@@ -127,7 +127,7 @@ impl Frame {
         Frame { session, ..Frame::request(Command::UNREGISTER_SESSION, [0; 8], &Body::Empty) }
     }
 
-    /// A CIP message in a session.
+    /// Creates a CIP message in a session.
     pub fn unconnected(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
         let items = Items(vec![Item::Null, Item::UnconnectedData(message)]);
         Frame {
@@ -245,7 +245,7 @@ impl Body {
         }
     }
 
-    /// The CIP message in it.
+    /// Returns the CIP message in it.
     pub fn message(&self) -> Option<&[u8]> {
         match self {
             Body::Data { items, .. } => items.unconnected_data(),

@@ -104,7 +104,7 @@ pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     bytes.extend(ascii);
 }
 
-/// The characters of a text as they are sent.
+/// Returns the characters of a text as they are sent.
 pub(super) fn ascii(text: &str) -> impl Iterator<Item = u8> {
     text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' })
 }

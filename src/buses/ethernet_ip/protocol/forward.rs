@@ -150,7 +150,7 @@ impl ForwardOpen {
         })
     }
 
-    /// The request.
+    /// Returns the request.
     pub fn request(&self) -> Request {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         data.extend([self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes));
@@ -187,7 +187,7 @@ impl ForwardOpened {
         })
     }
 
-    /// The data of the reply.
+    /// Returns the data of the reply.
     pub fn emit(&self) -> Vec<u8> {
         let mut data: Vec<u8> =
             [self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes).collect();
@@ -214,7 +214,7 @@ impl ForwardRefused {
         fields.end(ForwardRefused { owner, remaining_path_words })
     }
 
-    /// The data of the reply.
+    /// Returns the data of the reply.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = Vec::new();
         self.owner.push_to(&mut data);
@@ -222,7 +222,7 @@ impl ForwardRefused {
         data
     }
 
-    /// The reply to `request` with an extended status.
+    /// Returns the reply to `request` with an extended status.
     pub fn reply(&self, request: &Request, extended: u16) -> Reply {
         Reply {
             extended: vec![extended],
@@ -248,7 +248,7 @@ impl ForwardClose {
         fields.end(ForwardClose { timeout, owner, path })
     }
 
-    /// The request.
+    /// Returns the request.
     pub fn request(&self) -> Request {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         self.owner.push_to(&mut data);
@@ -273,7 +273,7 @@ impl ForwardClosed {
         fields.end(ForwardClosed { owner, application })
     }
 
-    /// The data of the reply.
+    /// Returns the data of the reply.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = Vec::new();
         self.owner.push_to(&mut data);

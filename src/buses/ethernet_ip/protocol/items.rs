@@ -93,7 +93,7 @@ impl Items {
         bytes
     }
 
-    /// The CIP message in it.
+    /// Returns the CIP message in it.
     pub fn unconnected_data(&self) -> Option<&[u8]> {
         self.0.iter().find_map(|item| match item {
             Item::UnconnectedData(data) => Some(data.as_slice()),
@@ -172,7 +172,7 @@ impl SocketAddress {
     pub const INTERNET: u16 = 2;
     pub(super) const LENGTH: usize = 16;
 
-    /// An address of IP, version 4.
+    /// Creates an address of IP, version 4.
     pub const fn new(address: Ipv4Addr, port: u16) -> Self {
         SocketAddress { family: SocketAddress::INTERNET, port, address }
     }

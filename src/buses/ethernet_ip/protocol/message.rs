@@ -149,12 +149,12 @@ impl Request {
         bytes
     }
 
-    /// The reply that it was done.
+    /// Returns the reply for success.
     pub fn done(&self, data: Vec<u8>) -> Reply {
         Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
     }
 
-    /// The reply that it was not.
+    /// Returns the reply for a failure.
     pub fn refused(&self, status: GeneralStatus) -> Reply {
         Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
     }

@@ -76,12 +76,12 @@ const DATA: u8 = 0x80;
 const WHAT: &str = "the path";
 
 impl Path {
-    /// An object.
+    /// Creates an object.
     pub fn instance(class: u16, instance: u16) -> Self {
         Path(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
     }
 
-    /// An attribute of an object.
+    /// Creates an attribute of an object.
     pub fn attribute(class: u16, instance: u16, attribute: u16) -> Self {
         let Path(mut segments) = Path::instance(class, instance);
         segments.push(Segment::new(LogicalKind::Attribute, attribute));
@@ -96,7 +96,7 @@ impl Path {
         Path(segments)
     }
 
-    /// The first number of a kind.
+    /// Returns the first number of a kind.
     pub fn number(&self, wanted: LogicalKind) -> Option<u16> {
         self.numbers(wanted).next()
     }
@@ -146,7 +146,7 @@ impl Path {
 }
 
 impl Segment {
-    /// A number, as narrow as it can be sent.
+    /// Creates a number, as narrow as it can be sent.
     pub const fn new(kind: LogicalKind, number: u16) -> Self {
         let width = if number > 0xFF { Width::Word } else { Width::Byte };
         Segment::Logical { kind, number, width }

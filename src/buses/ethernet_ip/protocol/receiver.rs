@@ -20,7 +20,7 @@ impl Receiver {
         }
     }
 
-    /// The next whole frame.
+    /// Returns the next whole frame.
     ///
     /// # Errors
     /// [`PacketError`], from then on always: after a wrong header the start of the next one is not known, and the

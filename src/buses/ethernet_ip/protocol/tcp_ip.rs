@@ -105,7 +105,7 @@ impl ConfigurationControl {
         }
     }
 
-    /// The same with another source.
+    /// Returns the same with another source.
     pub const fn with(self, source: AddressSource) -> Self {
         let number = match source {
             AddressSource::Stored => 0,

@@ -69,7 +69,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// The bytes on the line, checksum last.
+    /// Returns the bytes on the line, checksum last.
     pub fn emit(&self) -> Vec<u8> {
         // A payload has at most 64 bytes.
         let length = u16::try_from(self.payload.len()).unwrap_or(u16::MAX);
@@ -82,7 +82,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// The inverted sum of all bytes.
+/// Returns the inverted sum of all bytes.
 fn checksum(bytes: &[u8]) -> u8 {
     !bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }

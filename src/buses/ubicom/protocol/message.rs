@@ -237,7 +237,7 @@ impl Reply {
         }
     }
 
-    /// The frame for the line.
+    /// Returns the frame for the line.
     pub fn emit(self) -> Vec<u8> {
         let payload = match self {
             Reply::Value(value) => vec![value],

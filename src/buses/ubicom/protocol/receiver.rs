@@ -57,12 +57,12 @@ impl Receiver {
         }
     }
 
-    /// A frame has begun and is not complete.
+    /// Returns whether a frame has begun and is not complete.
     pub fn is_waiting(&self) -> bool {
         !self.bytes.is_empty()
     }
 
-    /// Bytes so far that belonged to no frame.
+    /// Returns the number of bytes so far that belonged to no frame.
     pub const fn skipped(&self) -> u64 {
         self.skipped
     }

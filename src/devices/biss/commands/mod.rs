@@ -146,7 +146,7 @@ impl Simulated for sim::Port {
     }
 }
 
-/// The registers that a user names.
+/// Returns the registers that a user names.
 fn item(text: &str) -> Result<RegisterRange> {
     text.parse().map_err(|error: ItemError| Failure::Usage(error.to_string()))
 }

@@ -81,7 +81,7 @@ pub(super) fn crc_errors(runner: &Runner) -> u64 {
     runner.remarks.iter().map(count).sum()
 }
 
-/// The registers of a run.
+/// Returns the registers of a run.
 pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
     read_registers(runner, range).map(|read| read.bytes)
 }

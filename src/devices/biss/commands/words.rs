@@ -37,7 +37,7 @@ pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
     }
 }
 
-/// The word for a filter, as `do biss filter` takes it.
+/// Returns the word for a filter, as `do biss filter` takes it.
 pub(super) fn filter(filter: Filter) -> String {
     match filter {
         Filter::Balanced => "balanced".to_owned(),

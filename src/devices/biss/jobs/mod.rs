@@ -55,7 +55,7 @@ impl fmt::Debug for Biss {
 }
 
 impl Biss {
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }

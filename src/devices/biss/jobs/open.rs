@@ -42,7 +42,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     Ok(Session::over(wire, clock, station, store, motor))
 }
 
-/// The line, and the virtual encoder, which counts for a link to it alone.
+/// Returns the line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = way(url)?;
     let is_virtual = url.scheme == Scheme::Sim;

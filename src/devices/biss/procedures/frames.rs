@@ -64,18 +64,18 @@ impl FrameRun {
         FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 
-    /// A stream begins.
+    /// Returns whether a stream begins.
     pub const fn begins(&self) -> bool {
         self.first == self.lost
     }
 
-    /// Each frame with the moment in which it was taken.
+    /// Returns each frame with the moment in which it was taken.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
     }
 
-    /// Frames with a wrong checksum.
+    /// Returns the number of frames with a wrong checksum.
     pub fn crc_errors(&self) -> usize {
         let is_wrong = |frame: &&Frame| matches!(frame, Err(NoReading::Frame(FrameError::Crc { .. })));
         self.frames.iter().filter(is_wrong).count()

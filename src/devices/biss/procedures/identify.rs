@@ -211,7 +211,7 @@ fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind,
     })
 }
 
-/// A description of the same manufacturer and profile that is for another device.
+/// Returns a description of the same manufacturer and profile that is for another device.
 fn near_miss(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types

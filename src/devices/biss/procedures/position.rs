@@ -61,7 +61,7 @@ impl PositionReading {
         }
     }
 
-    /// The position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
+    /// Returns the position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
     pub const fn raw(&self) -> Word {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
@@ -76,7 +76,7 @@ impl PositionReading {
         self.is_split_known.then(|| self.degrees())
     }
 
-    /// Degrees within the revolution, from 0 up to 360.
+    /// Returns the degrees within the revolution, from 0 up to 360.
     pub fn degrees(&self) -> f64 {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }

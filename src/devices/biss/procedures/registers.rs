@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::{Decoded, Description, Firmware, Register, R
 pub struct Registers(BTreeMap<RegisterAddress, u8>);
 
 impl Registers {
-    /// The value of one.
+    /// Returns the value of one.
     pub fn get(&self, address: RegisterAddress) -> Option<u8> {
         self.0.get(&address).copied()
     }

@@ -81,7 +81,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// The link parameters that mean something over it.
+    /// Returns the link parameters that mean something over it.
     pub fn parameters(self) -> Vec<&'static str> {
         match self {
             Way::ConfigPin => [PinParameters::KEYS, LineParameters::KEYS, FrameParameters::KEYS].concat(),

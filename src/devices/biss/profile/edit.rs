@@ -90,7 +90,7 @@ fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     locks || description.procedures().iter().any(leads)
 }
 
-/// The procedure of an encoder.
+/// Returns the procedure of an encoder.
 ///
 /// # Errors
 /// [`PlanError::NoProcedure`], [`PlanError::FirmwareTooOld`].

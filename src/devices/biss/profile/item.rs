@@ -20,7 +20,7 @@ pub struct RegisterRange {
 pub struct ItemError(pub String);
 
 impl RegisterRange {
-    /// One register.
+    /// Creates one register.
     pub const fn one(start: RegisterAddress) -> Self {
         RegisterRange { start, count: 1 }
     }
@@ -30,7 +30,7 @@ impl RegisterRange {
         start.plus(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
     }
 
-    /// The first.
+    /// Returns the first.
     pub const fn start(self) -> RegisterAddress {
         self.start
     }

@@ -94,7 +94,7 @@ pub enum PresetParts {
 }
 
 impl PresetParts {
-    /// The command that carries it out.
+    /// Returns the command that carries it out.
     pub const fn command(self) -> PresetCommand {
         match self {
             PresetParts::Both => PresetCommand::Both,
@@ -129,7 +129,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// A motor turns the shaft for it.
+    /// Returns whether a motor turns the shaft for it.
     pub fn turns(&self) -> bool {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }

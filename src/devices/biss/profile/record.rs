@@ -156,7 +156,7 @@ impl BissProfile {
         }
     }
 
-    /// A register belongs to the mounting.
+    /// Returns whether a register belongs to the mounting.
     pub fn is_mounting(&self, address: RegisterAddress) -> bool {
         self.mounting.iter().any(|mark| match mark.item {
             MountingItem::Registers(range) => range.contains(address),
@@ -194,7 +194,7 @@ impl BissProfile {
 }
 
 impl ProfileIdentity {
-    /// The kind of encoder.
+    /// Returns the kind of encoder.
     pub fn kind(&self) -> Identity {
         Identity { profile: self.profile_id, manufacturer: self.manufacturer, device_id: self.device_id }
     }
@@ -204,7 +204,7 @@ impl Bank {
     /// Registers of a bank.
     pub const SIZE: usize = RegisterAddress::BANK_SIZE as usize;
 
-    /// A bank with the same byte everywhere.
+    /// Creates a bank with the same byte everywhere.
     pub const fn filled(number: u8, byte: u8) -> Self {
         Bank { number, bytes: [byte; Self::SIZE] }
     }

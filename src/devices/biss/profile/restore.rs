@@ -110,7 +110,7 @@ pub enum PlanError {
     DrivenByThisEncoder,
 }
 
-/// The banks that have to be read before a restore of this profile can be planned.
+/// Returns the banks that have to be read before a restore of this profile can be planned.
 pub fn banks_needed(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
     let there = |bank: &u8| areas.iter().any(|area| area.contains(*bank));
     profile.banks().map(|bank| bank.number).filter(there).collect()
@@ -269,7 +269,7 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    /// The registers of a bank that differ and may be written.
+    /// Returns the registers of a bank that differ and may be written.
     fn changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
         let mut changes = Vec::new();
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
@@ -333,7 +333,7 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// The registers of the preset value.
+/// Returns the registers of the preset value.
 fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
     BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }

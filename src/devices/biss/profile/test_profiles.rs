@@ -3,7 +3,7 @@
 use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, Recorded};
 use crate::devices::biss::protocol::{Access, Area, Filter, Firmware, PresetValue, ProfileId};
 
-/// The areas of the manual's table 12.
+/// Returns the areas of the manual's table 12.
 pub(super) fn areas() -> [Area; 2] {
     let area = |name: &str, first, last, open| Area {
         name: crate::devices::biss::protocol::Name::new(name),

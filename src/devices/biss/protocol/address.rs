@@ -25,17 +25,17 @@ impl RegisterAddress {
     /// 78h…7Dh, common to all encoders: the device ID; after it the manufacturer.
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
-    /// A direct register, 40h…7Fh.
+    /// Creates a direct register, 40h…7Fh.
     pub const fn direct(address: u8) -> Option<Self> {
         if 0x40 <= address && address <= 0x7F { Some(RegisterAddress(address as u16 - 0x40)) } else { None }
     }
 
-    /// A register of a bank, 00h…3Fh.
+    /// Creates a register of a bank, 00h…3Fh.
     pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
     }
 
-    /// The first register of a bank.
+    /// Creates the first register of a bank.
     pub const fn start_of(bank: u8) -> Self {
         RegisterAddress(0x40 + 0x40 * bank as u16)
     }

@@ -75,17 +75,17 @@ impl Crc {
         self.polynomial
     }
 
-    /// The register before the first bit.
+    /// Returns the register before the first bit.
     pub const fn start(&self) -> u32 {
         self.start
     }
 
-    /// The result is sent inverted.
+    /// Returns whether the result is sent inverted.
     pub const fn is_inverted(&self) -> bool {
         self.inverted
     }
 
-    /// Bits of the checksum, 1…32.
+    /// Returns the number of bits of the checksum, 1…32.
     pub const fn width(&self) -> u8 {
         self.polynomial.ilog2() as u8 // at most 32
     }
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The remainder by long division in a wide number, with nothing of the code under test.
+    /// Returns the remainder by long division in a wide number, with nothing of the code under test.
     fn divided(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);

@@ -135,12 +135,12 @@ impl Description {
         self.lock
     }
 
-    /// The registers, in the order of the file.
+    /// Returns the registers, in the order of the file.
     pub fn registers(&self) -> &[Register] {
         &self.registers
     }
 
-    /// Banks of plain data.
+    /// Returns the banks of plain data.
     pub fn areas(&self) -> &[Area] {
         &self.areas
     }
@@ -151,22 +151,22 @@ impl Description {
         area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
     }
 
-    /// The guided procedures.
+    /// Returns the guided procedures.
     pub fn procedures(&self) -> &[Procedure] {
         &self.procedures
     }
 
-    /// The register that plays a role.
+    /// Returns the register that plays a role.
     pub fn with_role(&self, role: Role) -> Option<&Register> {
         self.registers.iter().find(|register| register.role == Some(role))
     }
 
-    /// The register to which a byte belongs.
+    /// Returns the register to which a byte belongs.
     pub fn at(&self, address: RegisterAddress) -> Option<&Register> {
         self.registers.iter().find(|register| register.contains(address))
     }
 
-    /// The area to which a byte belongs.
+    /// Returns the area to which a byte belongs.
     pub fn area_at(&self, address: RegisterAddress) -> Option<&Area> {
         self.areas.iter().find(|area| address.bank().is_some_and(|bank| area.contains(bank)))
     }
@@ -230,7 +230,7 @@ impl Descriptions {
         (Descriptions(read), errors)
     }
 
-    /// The built-in ones.
+    /// Creates the built-in ones.
     pub fn built_in() -> Self {
         // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0

@@ -287,7 +287,7 @@ fn sum(bytes: &[u8; 64]) -> u8 {
 }
 
 impl EdsField {
-    /// The number in the field, high byte first.
+    /// Returns the number in the field, high byte first.
     pub fn raw(&self, bank: &[u8; 64]) -> u32 {
         let first = usize::from(self.offset);
         let bytes = bank.get(first..first + usize::from(self.width)).unwrap_or_default();
@@ -317,7 +317,7 @@ impl EdsField {
 }
 
 impl EdsValue {
-    /// Whole degrees Celsius of a temperature.
+    /// Returns whole degrees Celsius of a temperature.
     pub fn celsius(self) -> Option<i32> {
         match self {
             EdsValue::Kelvin(kelvin) => Some(i32::from(kelvin) - 273),
@@ -325,7 +325,7 @@ impl EdsValue {
         }
     }
 
-    /// The time of a number of ticks, with the length of one.
+    /// Returns the time of a number of ticks, with the length of one.
     pub fn duration(self, tick: Duration) -> Option<Duration> {
         match self {
             EdsValue::Ticks(ticks) => Some(tick * u32::from(ticks)),

@@ -62,7 +62,7 @@ impl Cycle {
         Ok(Cycle { acknowledge, control: *control, raw })
     }
 
-    /// The samples from the acknowledge to the first of the time-out.
+    /// Returns the samples from the acknowledge to the first of the time-out.
     pub fn emit(&self, layout: &Layout) -> Vec<bool> {
         let mut samples = vec![false; self.acknowledge.max(1)];
         samples.extend([true, self.control]);

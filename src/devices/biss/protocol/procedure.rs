@@ -50,7 +50,7 @@ macro_rules! codes {
                 }
             }
 
-            /// The register's value.
+            /// Returns the register's value.
             pub const fn byte(self) -> u8 {
                 match self {
                     $($name::$variant => $code,)*
@@ -249,12 +249,12 @@ impl PresetValue {
         [s0, s1, s2, m0, m1, m2]
     }
 
-    /// Place within the revolution.
+    /// Returns the place within the revolution.
     pub const fn singleturn(self) -> u32 {
         self.singleturn
     }
 
-    /// Revolutions.
+    /// Returns the revolutions.
     pub const fn multiturn(self) -> u32 {
         self.multiturn
     }
@@ -287,12 +287,12 @@ impl PulseVoltage {
         PulseVoltage(tenths)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Volts, from 0 to 25.5.
+    /// Returns the volts, from 0 to 25.5.
     pub fn volts(self) -> f64 {
         f64::from(self.0) / 10.0
     }

@@ -99,12 +99,12 @@ impl Layout {
         if bits > 64 { Err(LayoutError::Long(bits)) } else { Ok(layout) }
     }
 
-    /// Bits of the revolutions, 0…32.
+    /// Returns the number of bits of the revolutions, 0…32.
     pub const fn multiturn_bits(&self) -> u8 {
         self.multiturn_bits
     }
 
-    /// Bits within a revolution, 0…32.
+    /// Returns the number of bits within a revolution, 0…32.
     pub const fn singleturn_bits(&self) -> u8 {
         self.singleturn_bits
     }
@@ -124,17 +124,17 @@ impl Layout {
         self.crc.as_ref()
     }
 
-    /// Position, error and warning bit, without the checksum.
+    /// Returns the number of bits of position, error and warning, without the checksum.
     pub const fn data_bits(&self) -> u8 {
         self.multiturn_bits + self.singleturn_bits + self.error_bit as u8 + self.warning_bit as u8
     }
 
-    /// Bits of the checksum.
+    /// Returns the number of bits of the checksum.
     pub fn crc_bits(&self) -> u8 {
         self.crc.as_ref().map_or(0, Crc::width)
     }
 
-    /// The whole frame, 1…64.
+    /// Returns the number of bits of the whole frame, 1…64.
     pub fn bits(&self) -> u8 {
         self.data_bits() + self.crc_bits()
     }
@@ -179,12 +179,12 @@ impl Layout {
         }
     }
 
-    /// Degrees within the revolution, from 0 up to 360.
+    /// Returns the degrees within the revolution, from 0 up to 360.
     pub fn degrees(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Multiturn and singleturn as one number of steps.
+    /// Returns the multiturn and singleturn as one number of steps.
     pub fn steps(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }

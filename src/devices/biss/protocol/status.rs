@@ -33,7 +33,7 @@ impl ErrorRegister {
         ErrorRegister(byte)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -53,7 +53,7 @@ impl WarningRegister {
         WarningRegister(byte)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -91,12 +91,12 @@ impl Temperature {
         Temperature(u8::try_from(celsius.saturating_add(Self::OFFSET).clamp(0, 0xFF)).unwrap_or(0))
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Whole degrees Celsius, −50…205.
+    /// Returns whole degrees Celsius, −50…205.
     pub fn celsius(self) -> i16 {
         i16::from(self.0) - Self::OFFSET
     }
@@ -133,7 +133,7 @@ impl DeviceMode {
         DeviceMode(byte)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -202,7 +202,7 @@ pub struct Firmware {
 }
 
 impl Firmware {
-    /// A release.
+    /// Creates a release.
     pub const fn new(major: u8, minor: u8, patch: u8) -> Self {
         Firmware { major, minor, patch }
     }
@@ -224,7 +224,7 @@ impl ProfileId {
         ProfileId(word)
     }
 
-    /// Both bytes, the first the higher.
+    /// Returns both bytes, the first the higher.
     pub const fn word(self) -> u16 {
         self.0
     }

@@ -45,12 +45,12 @@ mod tests {
         Crc::new(Crc::POSITION, 0, true).unwrap()
     }
 
-    /// The first 64 bits of a line on which `frame` of `bits` bits goes and 0 follows.
+    /// Returns the first 64 bits of a line on which `frame` of `bits` bits goes and 0 follows.
     fn clocked(frame: u64, bits: u8) -> u64 {
         frame << (64 - bits)
     }
 
-    /// Frames of a shaft that turns by `step`.
+    /// Returns the frames of a shaft that turns by `step`.
     fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
         let place = |at: u32| 0x155 + at * step;
         let reading = |at| PositionData { multiturn: 3, singleturn: place(at), ..PositionData::default() };

@@ -199,7 +199,7 @@ impl Encoder {
         (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
     }
 
-    /// The bank of the registers 00h…3Fh that is selected.
+    /// Returns the bank of the registers 00h…3Fh that is selected.
     pub const fn bank(&self) -> u8 {
         self.bank
     }

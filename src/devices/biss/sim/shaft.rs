@@ -68,7 +68,7 @@ impl Shaft {
         self.offset = (self.layout.steps(&wanted) % range + range - self.whole_steps(at)) % range;
     }
 
-    /// Steps in a revolution.
+    /// Returns the steps in a revolution.
     fn steps(&self) -> u64 {
         1 << self.layout.singleturn_bits()
     }

@@ -70,7 +70,7 @@ impl Port {
         }
     }
 
-    /// The encoder.
+    /// Returns the encoder.
     pub const fn encoder(&self) -> &Encoder {
         &self.encoder
     }

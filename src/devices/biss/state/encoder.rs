@@ -192,7 +192,7 @@ impl Encoder {
     }
 }
 
-/// The name by which the log and the jobs call an encoder.
+/// Returns the name by which the log and the jobs call an encoder.
 fn title(identity: &Identity) -> String {
     let name = identity.description.name();
     if identity.serial_number.is_empty() { name.to_owned() } else { format!("{name} · {}", identity.serial_number) }

@@ -57,7 +57,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
     }
 }
 
-/// An exchange with a BiSS encoder that failed.
+/// Returns the text for an exchange with a BiSS encoder that failed.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -153,7 +153,7 @@ pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(profile_unsaved_in)
 }
 
-/// A profile that was read in this device mode.
+/// Returns the text for a profile that was read in this device mode.
 pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
     in_mode("biss.profile_unsaved", mode)
 }
@@ -197,7 +197,7 @@ pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
     }
 }
 
-/// A description of the user's own that cannot be read or used.
+/// Returns the text for a description of the user's own that cannot be read or used.
 fn description(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<DescriptionError>() {

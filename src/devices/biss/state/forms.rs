@@ -39,7 +39,7 @@ impl PresetForm {
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
     }
 
-    /// The revolutions.
+    /// Returns the revolutions.
     ///
     /// # Errors
     /// A sentence that names the valid entries.

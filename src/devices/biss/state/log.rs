@@ -42,7 +42,7 @@ impl Encoder {
     }
 }
 
-/// One thing that an operation changes, old and new.
+/// Returns the text for one thing that an operation changes, old and new.
 fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),

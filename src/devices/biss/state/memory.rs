@@ -169,7 +169,7 @@ impl Memory {
     }
 }
 
-/// The registers of an area in their order.
+/// Returns the registers of an area in their order.
 pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
     area.banks().flat_map(|bank| {
         (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::banked(bank, offset))

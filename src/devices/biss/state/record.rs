@@ -61,7 +61,7 @@ pub struct Streamed {
 }
 
 impl Streamed {
-    /// Frames per second.
+    /// Returns the frames per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -201,7 +201,7 @@ impl Record {
         self.stream.as_ref()
     }
 
-    /// Positions that are recorded.
+    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }

@@ -56,12 +56,12 @@ impl Table {
         Table { groups: groups.map(|bank| Group::of(description, bank)).collect() }
     }
 
-    /// The direct registers, then the banks.
+    /// Returns the direct registers, then the banks.
     pub fn groups(&self) -> &[Group] {
         &self.groups
     }
 
-    /// The group of a bank, or of the direct registers.
+    /// Returns the group of a bank, or of the direct registers.
     pub fn position(&self, bank: Option<u8>) -> Option<usize> {
         self.groups.iter().position(|group| group.bank == bank)
     }

@@ -37,7 +37,7 @@ pub(super) fn not_edited(error: MemoryError) -> Text {
     }
 }
 
-/// A filter of the position.
+/// Returns the text for a filter of the position.
 pub fn filter(filter: Filter) -> Text {
     match filter {
         Filter::Balanced => TEXTS.text("biss_status.balanced"),

@@ -90,7 +90,7 @@ struct Mounting<'v> {
     form: &'v mut PresetForm,
 }
 
-/// The stored preset value, to begin with.
+/// Returns the stored preset value, to begin with.
 fn stored(encoder: &Encoder) -> PresetForm {
     let value = encoder.survey.as_ref().and_then(|survey| survey.preset);
     let layout = encoder.identity().map(|identity| &identity.layout);

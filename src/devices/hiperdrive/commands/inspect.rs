@@ -159,7 +159,7 @@ pub(super) fn error_text(code: ErrorCode) -> String {
     format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
 }
 
-/// A state for scripts.
+/// Returns a state for scripts.
 pub(super) fn state_word(state: State) -> &'static str {
     match state {
         State::NotReady => "not-ready",

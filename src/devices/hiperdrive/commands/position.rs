@@ -31,7 +31,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     })
 }
 
-/// A part of the scale.
+/// Returns a part of the scale.
 fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
     let Some(number) = ParameterNumber::of_drive(number, drive) else { return Ok(None) };
     Ok(match value(runner, number)? {

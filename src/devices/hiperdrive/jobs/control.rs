@@ -151,7 +151,7 @@ impl Hiperdrive {
         }
     }
 
-    /// The program ends, and drives are in control still.
+    /// Returns whether the program ends, and drives are in control still.
     pub(super) fn is_to_end(&self) -> bool {
         self.control.open.is_some() && self.control.motion.is_leaving()
     }

@@ -109,7 +109,7 @@ impl Drop for Cyclic {
 }
 
 impl Pump {
-    /// A connection that was opened just now, through a port that is aimed at the target.
+    /// Creates a connection that was opened just now, through a port that is aimed at the target.
     pub fn new(
         port: Box<dyn Datagrams>,
         opened: &Opened,

@@ -61,7 +61,7 @@ const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 type ProgressSink<'t> = &'t mut dyn FnMut(Tell<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
-    /// The host's side of explicit messages.
+    /// Returns the host's side of explicit messages.
     fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }

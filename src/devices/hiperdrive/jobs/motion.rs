@@ -123,7 +123,7 @@ impl Motion {
         self.intend(drive, MotionRequest::Stop);
     }
 
-    /// The act of this number is the latest.
+    /// Returns whether the act of this number is the latest.
     pub fn is_latest(&self, number: u64) -> bool {
         self.lock().intent.number == number
     }
@@ -133,7 +133,7 @@ impl Motion {
         self.lock().view.clone()
     }
 
-    /// The cyclic connection is there.
+    /// Returns whether the cyclic connection is there.
     pub fn is_open(&self) -> bool {
         self.lock().view.open
     }
@@ -271,12 +271,12 @@ impl Motion {
         self.lock().leaving = true;
     }
 
-    /// The program ends.
+    /// Returns whether the program ends.
     pub(super) fn is_leaving(&self) -> bool {
         self.lock().leaving
     }
 
-    /// The target holds a cyclic connection that was opened here and has not been closed.
+    /// Returns whether the target holds a cyclic connection that was opened here and has not been closed.
     pub fn is_connected(&self) -> bool {
         self.lock().connected
     }

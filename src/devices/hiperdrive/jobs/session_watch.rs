@@ -69,7 +69,7 @@ impl SessionWatch {
         self.broken = true;
     }
 
-    /// The device has not answered for too long to move anything, or with bytes that are no frame.
+    /// Returns whether the device has not answered for too long to move anything, or with bytes that are no frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
         let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;

@@ -157,7 +157,7 @@ impl DeadMan {
         self.act.map_or(self.ended.map_or(0, |(number, _)| number), |act| act.number)
     }
 
-    /// The last act that ended, and how.
+    /// Returns the last act that ended, and how.
     pub const fn ended(&self) -> Option<(u64, Ended)> {
         self.ended
     }
@@ -292,7 +292,7 @@ impl DeadMan {
         Ok(())
     }
 
-    /// Last safeguard: replaces any word that could start a motion unless an act with a motion is running.
+    /// Applies the last safeguard: replaces any word that could start a motion unless an act with a motion is running.
     fn guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
         let meant = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
         if meant || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }

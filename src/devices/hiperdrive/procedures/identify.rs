@@ -123,7 +123,7 @@ pub struct DriveReading {
 }
 
 impl Identity {
-    /// A drive that is plugged in.
+    /// Returns a drive that is plugged in.
     pub fn drive(&self, number: DriveNumber) -> Option<&DriveIdentity> {
         self.drives.iter().find(|drive| drive.number == number)
     }
@@ -306,12 +306,12 @@ fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Err
     Ok(master.read_number(of(152, drive)?)? != 0)
 }
 
-/// A number of 16 bits, as bits.
+/// Returns a number of 16 bits, as bits.
 fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
     Ok(master.read_number(of(base, drive)?)? as u16)
 }
 
-/// A parameter of the device.
+/// Returns a parameter of the device.
 pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }

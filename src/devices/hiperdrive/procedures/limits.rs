@@ -63,7 +63,7 @@ impl DriveLimits {
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
-    /// The parameters as they were read last.
+    /// Returns the parameters as they were read last.
     pub const fn rules(&self) -> Rules {
         self.rules
     }
@@ -92,7 +92,7 @@ impl DriveLimits {
         self.unconfirmed = true;
     }
 
-    /// The limits have to be confirmed before the drive moves.
+    /// Returns whether the limits have to be confirmed before the drive moves.
     pub const fn is_unconfirmed(&self) -> bool {
         self.unconfirmed
     }
@@ -184,7 +184,7 @@ mod tests {
 
     const HDA30A: (Topology, Variant) = (Topology::Adapter, Variant::new(7));
 
-    /// Factory values of an HDA30A: ±511 turns of 65536 steps (reference 5).
+    /// Returns the factory values of an HDA30A: ±511 turns of 65536 steps (reference 5).
     fn factory(number: u16) -> Option<i64> {
         Some(match number {
             152 => 1,

@@ -65,7 +65,7 @@ enum Repeats {
 const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
-    /// A master over a station's wire, for one job.
+    /// Creates a master over a station's wire, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }

@@ -56,7 +56,7 @@ pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     Ok(NetworkSettings { source: control.source(), interface })
 }
 
-/// An attribute of the TCP/IP object.
+/// Returns an attribute of the TCP/IP object.
 fn attribute<T>(
     master: &mut Master<'_>,
     attribute: u16,

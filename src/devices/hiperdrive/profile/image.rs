@@ -24,7 +24,7 @@ impl Image {
         self.values.get(&number).copied()
     }
 
-    /// A drive's parameter by the number of drive 1.
+    /// Returns a drive's parameter by the number of drive 1.
     pub fn of_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         self.get(ParameterNumber::of_drive(number, drive)?)
     }
@@ -43,7 +43,7 @@ impl Image {
         PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
     }
 
-    /// A drive's limits, lower and upper (158, 160), in steps as scaled.
+    /// Returns a drive's limits, lower and upper (158, 160), in steps as scaled.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
         Some((self.of_drive(drive, LOWER)?, self.of_drive(drive, UPPER)?))
     }

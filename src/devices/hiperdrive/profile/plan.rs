@@ -28,7 +28,7 @@ impl Base {
     }
 }
 
-/// The parameters that a plan writes, as they will be.
+/// Returns the parameters that a plan writes, as they will be.
 pub fn written(plan: &HiperdrivePlan) -> Image {
     let written = plan.ops.iter().filter_map(|op| match op {
         Op::Write { number, new, .. } => Some((*number, *new)),

@@ -113,12 +113,12 @@ fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, opti
     item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
 }
 
-/// An item belongs to the mounting of another device or drive.
+/// Returns whether an item belongs to the mounting of another device or drive.
 fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     profile.is_mounting(item) && !is_same_place(profile, device, item)
 }
 
-/// The profile was read from this very device, and the drive's parameter from this very drive.
+/// Returns whether the profile was read from this very device, and the drive's parameter from this very drive.
 fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     let types = other_types(&profile.identity, device);
     let is_other = |own: &OtherType| match own {

@@ -32,7 +32,7 @@ pub(super) fn image_of(values: &[(u16, i64)]) -> Image {
     Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
 }
 
-/// A device with drives at these places.
+/// Returns a device with drives at these places.
 pub(super) fn image(places: &[u8]) -> Image {
     let mut image = image_of(&[(24, 0), (26, 7)]);
     for place in places {

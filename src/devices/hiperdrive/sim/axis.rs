@@ -106,7 +106,7 @@ impl Axis {
         self.speed = 0.0;
     }
 
-    /// A millisecond.
+    /// Simulates a millisecond.
     pub(super) fn tick(&mut self, wanted: Wanted, load: &Load) -> Came {
         let gain = ACCELERATION * TICK_S;
         let aim = match wanted {

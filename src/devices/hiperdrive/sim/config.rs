@@ -73,7 +73,7 @@ impl Config {
         Ok(config)
     }
 
-    /// The control supply, in tenths of a volt.
+    /// Returns the control supply, in tenths of a volt.
     pub(super) fn supply_tenths(&self) -> u16 {
         // At most 1000.
         (self.volts * 10.0).round() as u16

@@ -81,7 +81,7 @@ const WARMING: f64 = 40.0;
 const WARMING_S: f64 = 60.0;
 
 impl Drive {
-    /// A drive from the factory, switched on at the start of the clock.
+    /// Creates a drive from the factory, switched on at the start of the clock.
     pub fn new(variant: Variant, topology: Topology, load: Load) -> Self {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {

@@ -27,7 +27,7 @@ impl Memory {
         Memory { now: factory.clone(), kept: factory.clone(), factory }
     }
 
-    /// `None` for a parameter that is not held here.
+    /// Returns the value; `None` for a parameter that is not stored here.
     pub(super) fn get(&self, number: u16) -> Option<i64> {
         self.now.get(&number).copied()
     }

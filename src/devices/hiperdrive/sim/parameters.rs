@@ -45,7 +45,7 @@ impl Refused {
 }
 
 impl Drive {
-    /// A parameter by the number of drive 1.
+    /// Returns a parameter by the number of drive 1.
     pub(super) fn read(&mut self, now: Moment, number: u16) -> Option<Value> {
         let actual = self.actual(now);
         let text = |text: &str| Some(Value::Text(text.to_owned()));

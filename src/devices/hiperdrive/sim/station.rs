@@ -86,7 +86,7 @@ pub(super) const RESETS: Duration = Duration::from_secs(1);
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for Setup {
-    /// An adapter with a drive HDA30A.
+    /// Creates an adapter with a drive HDA30A.
     fn default() -> Self {
         let drives = vec![Some((Variant::new(7), Load::default()))];
         Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
@@ -94,7 +94,7 @@ impl Default for Setup {
 }
 
 impl Station {
-    /// A station from the factory, switched on at the start of the clock.
+    /// Creates a station from the factory, switched on at the start of the clock.
     pub fn new(setup: Setup) -> Self {
         let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
         let drives = places
@@ -168,7 +168,7 @@ impl Station {
         self.hindered.is_cut_off()
     }
 
-    /// A drive that is plugged in.
+    /// Returns a drive that is plugged in.
     pub fn drive(&mut self, number: DriveNumber) -> Option<&mut Drive> {
         self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
     }

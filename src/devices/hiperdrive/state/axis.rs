@@ -173,7 +173,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
-    /// The drive is moved by hand in it.
+    /// Returns whether the drive is moved by hand in it.
     pub const fn jogs(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
@@ -226,7 +226,7 @@ impl Axis {
         self.drive
     }
 
-    /// The step that is shown.
+    /// Returns the step that is shown.
     pub const fn step(&self) -> AxisStep {
         self.step
     }
@@ -276,7 +276,7 @@ impl Axis {
         self.travel
     }
 
-    /// The position that was set.
+    /// Returns the position that was set.
     pub fn reference(&self) -> Option<i32> {
         self.reference.map(|(position, _)| position)
     }
@@ -325,7 +325,7 @@ impl Axis {
         Origin::of(seen, self.jumps)
     }
 
-    /// The facts of now on which results rest.
+    /// Returns the facts of now on which results rest.
     fn basis(&self, seen: &Seen) -> Basis {
         Basis {
             requested: seen.requested,

@@ -21,7 +21,7 @@ pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32,
     Ok(steps.saturating_mul(sign))
 }
 
-/// A place as it was typed, within the limits of the drive that is shown.
+/// Returns a place as it was typed, within the limits of the drive that is shown.
 ///
 /// # Errors
 /// Why the entry is invalid.
@@ -57,7 +57,7 @@ pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     })
 }
 
-/// A share that was typed, from 1 to 100.
+/// Returns a share that was typed, from 1 to 100.
 ///
 /// # Errors
 /// Why the entry is invalid.
@@ -86,7 +86,7 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
 }
 
-/// Millimetres that were typed, above 0 and exact to the nanometre.
+/// Returns the millimetres that were typed, above 0 and exact to the nanometre.
 ///
 /// # Errors
 /// Why the entry is invalid.

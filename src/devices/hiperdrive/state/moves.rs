@@ -144,7 +144,7 @@ impl Moves {
         std::mem::take(&mut self.limits_changed)
     }
 
-    /// The cyclic connection was opened since this was asked last.
+    /// Returns whether the cyclic connection was opened since this was asked last.
     pub(super) fn take_taken(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
@@ -349,7 +349,7 @@ impl Moves {
         locks
     }
 
-    /// A jog is held.
+    /// Returns whether a jog is held.
     pub fn is_held(&self) -> bool {
         let held = self.act.filter(|act| act.kind == Kind::Held && !self.has_ended(act.number, act.drive));
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))

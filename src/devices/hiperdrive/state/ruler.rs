@@ -54,7 +54,7 @@ impl Ruler {
         Some(steps as f64 / self.steps_in(measure)?)
     }
 
-    /// The step that is nearest.
+    /// Returns the step that is nearest.
     ///
     /// # Errors
     /// [`Beyond`] if there are none.

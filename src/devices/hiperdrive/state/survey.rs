@@ -74,7 +74,7 @@ impl Unit {
         }
     }
 
-    /// The drive has other limits, another scale or another reference than the table of parameters shows.
+    /// Returns whether the drive has other limits, another scale or another reference than the table of parameters shows.
     fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::seen).is_some_and(|own| {
@@ -108,7 +108,7 @@ impl Unit {
         self.confirms(drive).map(|_| ())
     }
 
-    /// The limits that are shown, and would be confirmed.
+    /// Returns the limits that are shown, and would be confirmed.
     fn confirms(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
         self.why_unread(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
@@ -179,7 +179,7 @@ fn image(survey: &Survey) -> Image {
     Image { values: survey.values.iter().filter_map(editable).collect() }
 }
 
-/// The name by which the log and the jobs call a device.
+/// Returns the name by which the log and the jobs call a device.
 fn title(identity: &Identity) -> String {
     format!("{} · {}", identity.category, identity.serial_number)
 }

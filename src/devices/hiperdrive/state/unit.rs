@@ -150,7 +150,7 @@ impl Unit {
         }
     }
 
-    /// The drive that is shown.
+    /// Returns the drive that is shown.
     pub fn drive(&self) -> DriveNumber {
         self.drive
     }
@@ -179,12 +179,12 @@ impl Unit {
         self.identity()?.drive(drive)
     }
 
-    /// A parameter as it was read.
+    /// Returns a parameter as it was read.
     pub fn value(&self, number: ParameterNumber) -> Option<&Value> {
         self.survey.as_ref()?.values.get(&number)
     }
 
-    /// A number of a drive as it was read, by the number of drive 1.
+    /// Returns a number of a drive as it was read, by the number of drive 1.
     pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         match self.value(ParameterNumber::of_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
@@ -192,7 +192,7 @@ impl Unit {
         }
     }
 
-    /// State and errors of a drive, as they were read last.
+    /// Returns the state and errors of a drive, as they were read last.
     pub fn drive_status(&self, drive: DriveNumber) -> Option<&DriveStatus> {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }

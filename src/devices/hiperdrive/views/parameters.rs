@@ -110,7 +110,7 @@ fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 }
 
 impl DriveParametersUiState {
-    /// The table closes its editor once the entry is accepted or refused.
+    /// Returns whether the table closes its editor once the entry is accepted or refused.
     fn shows_scale(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }

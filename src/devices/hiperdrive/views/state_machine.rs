@@ -35,7 +35,7 @@ const MOST: f32 = 128.0;
 /// Places of the arrows' heads, and half of how wide one is.
 const HEAD: f32 = 6.0;
 
-/// Columns and row of a state.
+/// Returns the columns and row of a state.
 const fn place(state: State) -> (f32, f32) {
     match state {
         State::NotReady => (0.0, 0.0),

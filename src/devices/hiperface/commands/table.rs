@@ -14,7 +14,7 @@ impl Table {
         Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }
 
-    /// The first line.
+    /// Returns the first line.
     pub(super) fn header(&self) -> &'static str {
         match self.linear {
             true => "t_s,raw,turns,steps,millimetres,valid,codes\n",
@@ -42,7 +42,7 @@ impl Table {
         )
     }
 
-    /// The line of a reading that gave no position.
+    /// Returns the line of a reading that gave no position.
     pub(super) fn row_without_position(&self, codes: &[StatusCode]) -> String {
         format!(",,,,,false,{}\n", words(codes))
     }

@@ -76,7 +76,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
     }
 }
 
-/// A settings byte without reserved values.
+/// Returns a settings byte without reserved values.
 pub(super) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {

@@ -284,7 +284,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// The encoder is there and has no position to give at the moment.
+    /// Returns whether the encoder is there and has no position to give at the moment.
     pub fn means_no_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.means_no_position())
     }

@@ -52,7 +52,7 @@ impl fmt::Debug for Hiperface {
 }
 
 impl Hiperface {
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, desk: &'a mut SessionContext) -> Master<'a> {
         Master::new(desk.ctx(&mut *self.wire), &mut self.station)
     }
@@ -105,7 +105,7 @@ impl Session<Hiperface> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// The access codes that the user knows.
+    /// Returns the access codes that the user knows.
     pub fn codes_mut(&mut self) -> &mut Codes {
         &mut self.device.station.codes
     }

@@ -40,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
 }
 
-/// The line, and the virtual encoder, which counts for a link to it alone.
+/// Returns the line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
         return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));

@@ -16,7 +16,7 @@ pub struct BrokenTypes {
     pub cause: TypeTableError,
 }
 
-/// The built-in table of encoder types; rows in the user's own file go before its rows.
+/// Returns the built-in table of encoder types; rows in the user's own file go before its rows.
 ///
 /// # Errors
 /// If the user's file exists but cannot be read or parsed ([`BrokenTypes`]). [`EncoderTypes::built_in`] can be used

@@ -124,7 +124,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// The limits of the extended label, as far as their channels answer.
+/// Returns the limits of the extended label, as far as their channels answer.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();

@@ -193,7 +193,7 @@ impl Error {
         }
     }
 
-    /// The encoder is there and has no position to give at the moment.
+    /// Returns whether the encoder is there and has no position to give at the moment.
     pub fn means_no_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
     }

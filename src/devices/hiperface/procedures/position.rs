@@ -149,7 +149,7 @@ pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error>
     ask_analogue(master, channel).map(|(_, value)| value)
 }
 
-/// An analogue channel, and when the encoder sampled it.
+/// Returns an analogue channel, and when the encoder sampled it.
 fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
     let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {

@@ -43,7 +43,7 @@ fn save_once(
     Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }
 
-/// A profile of an encoder with these fields.
+/// Returns a profile of an encoder with these fields.
 pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
     let mut profile = HiperfaceProfile {
         identity: ProfileIdentity {

@@ -106,7 +106,7 @@ pub struct Station {
 }
 
 impl Station {
-    /// A line with factory settings.
+    /// Creates a line with factory settings.
     pub fn new(margin: Duration) -> Self {
         Station {
             address: DeviceAddress::FACTORY.byte(),

@@ -342,7 +342,7 @@ pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<()
     }
 }
 
-/// Free memory and number of fields.
+/// Returns the free memory and number of fields.
 ///
 /// # Errors
 /// Errors of the exchange, or a refusal.

@@ -36,7 +36,7 @@ impl CommutationRecord {
     /// Its length in bytes.
     pub const BYTES: usize = HiperfaceProfile::COMMUTATION_BYTES;
 
-    /// The bytes to be stored.
+    /// Returns the bytes to be stored.
     pub fn emit(&self) -> [u8; Self::BYTES] {
         let [o3, o2, o1, o0] = self.offset.bits().to_be_bytes();
         let flags = u8::from(self.confirmed);
@@ -65,7 +65,7 @@ impl CommutationRecord {
     }
 }
 
-/// CRC-16 with polynomial 1021h from FFFFh, bit by bit.
+/// Returns CRC-16 with polynomial 1021h from FFFFh, bit by bit.
 fn crc(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc, byte| {
         let start = crc ^ u16::from(*byte) << 8;

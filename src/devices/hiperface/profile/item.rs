@@ -92,12 +92,12 @@ impl fmt::Display for Item {
 }
 
 impl FieldRange {
-    /// A whole field.
+    /// Creates a whole field.
     pub fn of(field: u8) -> Self {
         FieldRange { field, start: 0, count: None }
     }
 
-    /// A part of a field.
+    /// Creates a part of a field.
     pub fn new(field: u8, start: usize, count: usize) -> Self {
         FieldRange { field, start, count: Some(count) }
     }

@@ -143,7 +143,7 @@ impl Op {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }
 
-    /// The field it touches.
+    /// Returns the field it touches.
     pub fn field(&self) -> Option<u8> {
         match self {
             Op::Define { field, .. } | Op::Store { field, .. } => Some(*field),

@@ -111,7 +111,7 @@ impl HiperfaceProfile {
         }
     }
 
-    /// A byte of a data field belongs to the mounting.
+    /// Returns whether a byte of a data field belongs to the mounting.
     pub fn is_mounting(&self, field: u8, address: usize) -> bool {
         self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }

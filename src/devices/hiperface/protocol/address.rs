@@ -30,7 +30,7 @@ impl DeviceAddress {
         (Self::FIRST.0..=Self::LAST.0).map(DeviceAddress)
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }

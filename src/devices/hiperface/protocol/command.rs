@@ -89,12 +89,12 @@ impl Command {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }
 
-    /// The command byte without the error bit.
+    /// Returns the command byte without the error bit.
     pub const fn byte(self) -> u8 {
         self as u8
     }
 
-    /// The command's line of the manual's table.
+    /// Returns the command's line of the manual's table.
     pub fn row(self) -> &'static CommandRow {
         // The table lists every variant (tested); its first line is a fallback that is never used.
         let [first, ..] = &COMMANDS;

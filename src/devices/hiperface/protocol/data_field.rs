@@ -26,7 +26,7 @@ impl CodeNumber {
         (0..4).map(CodeNumber)
     }
 
-    /// The number on the line.
+    /// Returns the number on the line.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -51,7 +51,7 @@ impl AccessCode {
         AccessCode(byte)
     }
 
-    /// The byte for the line.
+    /// Returns the byte for the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -79,22 +79,22 @@ impl FieldSize {
         Self::from_blocks(u8::try_from(bytes / Self::BLOCK).ok()?)
     }
 
-    /// A size in blocks of 16 bytes, 1…8.
+    /// Creates a size in blocks of 16 bytes, 1…8.
     pub const fn from_blocks(blocks: u8) -> Option<Self> {
         if 0 < blocks && blocks <= 8 { Some(FieldSize(blocks)) } else { None }
     }
 
-    /// Every size, smallest first.
+    /// Returns every size, smallest first.
     pub fn all() -> impl Iterator<Item = FieldSize> {
         (1..=8).map(FieldSize)
     }
 
-    /// Size in bytes.
+    /// Returns the size in bytes.
     pub const fn bytes(self) -> usize {
         self.0 as usize * Self::BLOCK
     }
 
-    /// Size in blocks of 16 bytes.
+    /// Returns the size in blocks of 16 bytes.
     pub const fn blocks(self) -> u8 {
         self.0
     }
@@ -118,13 +118,13 @@ impl DataFieldStatus {
         DataFieldStatus(byte)
     }
 
-    /// An existing, writable field.
+    /// Creates an existing, writable field.
     pub const fn new(size: FieldSize, code: CodeNumber, code_required: bool) -> Self {
         let required = if code_required { Self::CODE_REQUIRED } else { 0 };
         DataFieldStatus(Self::EXISTS | Self::WRITE_ENABLE | code.0 << 4 | required | (size.0 - 1))
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -154,20 +154,20 @@ impl DataFieldStatus {
         FieldSize((self.0 & 7) + 1)
     }
 
-    /// The same field, writable or not.
+    /// Returns the same field, writable or not.
     #[must_use]
     pub const fn with_write_enable(self, writable: bool) -> Self {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
     }
 
-    /// The same field, guarded by another access code, which reading asks for or not.
+    /// Returns the same field, guarded by another access code, which reading asks for or not.
     #[must_use]
     pub const fn with_code(self, code: CodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
         DataFieldStatus(rest | code.0 << 4 | if required { Self::CODE_REQUIRED } else { 0 })
     }
 
-    /// The same field with another size.
+    /// Returns the same field with another size.
     #[must_use]
     pub const fn with_size(self, size: FieldSize) -> Self {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
@@ -207,7 +207,7 @@ pub struct FreeMemory {
 }
 
 impl FreeMemory {
-    /// Free memory in bytes.
+    /// Returns the free memory in bytes.
     pub fn bytes(self) -> usize {
         usize::from(self.blocks) * FieldSize::BLOCK
     }

@@ -91,7 +91,7 @@ impl EncoderTypes {
         file.types.into_iter().map(Row::check).collect::<Result<_, _>>().map(EncoderTypes)
     }
 
-    /// The built-in table.
+    /// Creates the built-in table.
     pub fn built_in() -> Self {
         // A test checks that it can be parsed; an empty table would only make every type unknown.
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
@@ -105,7 +105,7 @@ impl EncoderTypes {
         EncoderTypes(rows)
     }
 
-    /// The row of a type byte.
+    /// Returns the row of a type byte.
     pub fn find(&self, code: u8) -> Option<&EncoderType> {
         self.0.iter().find(|row| row.code == code)
     }

@@ -185,7 +185,7 @@ impl ExtendedLabel {
 mod tests {
     use super::*;
 
-    /// The synthetic label of the reference, 64 bytes, XOR checksum.
+    /// Returns the synthetic label of the reference, 64 bytes, XOR checksum.
     fn label() -> Vec<u8> {
         let mut bytes = crate::bits::parse_hex(
             "53 00 00 00 00 10 00 00 10 00 53 45 4C 33 37 2D 48 46 42 30 2D 4B 30 32 20 20 20 20 00 03 00 48 00 73",

@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// The bytes on the line, checksum last.
+    /// Returns the bytes on the line, checksum last.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.payload.len() + 3);
         bytes.extend([self.address, self.command]);

@@ -35,7 +35,7 @@ impl LineSettings {
         LineSettings(byte)
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -51,13 +51,13 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
-    /// The same interface with a time-out of 44/baud, or of 11/baud.
+    /// Returns the same interface with a time-out of 44/baud, or of 11/baud.
     #[must_use]
     pub const fn with_long_timeout(self, long: bool) -> Self {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// The same interface for a bus of several encoders, or for one.
+    /// Returns the same interface for a bus of several encoders, or for one.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })

@@ -137,7 +137,7 @@ pub enum RequestError {
 }
 
 impl RequestError {
-    /// The status code an encoder answers with.
+    /// Returns the status code an encoder answers with.
     pub fn status(self) -> StatusCode {
         match self {
             RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,

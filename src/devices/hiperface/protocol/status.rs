@@ -92,7 +92,7 @@ impl StatusCode {
         StatusCode(byte)
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }

@@ -41,7 +41,7 @@ impl Timing {
         self.characters(sent + reply) + self.timeout + request.command().row().max_time
     }
 
-    /// Time of `count` characters back to back.
+    /// Returns the time of `count` characters back to back.
     pub fn characters(&self, count: usize) -> Duration {
         self.character.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
     }

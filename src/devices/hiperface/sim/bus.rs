@@ -73,12 +73,12 @@ impl Bus {
         }
     }
 
-    /// The encoders, in the order of their first addresses.
+    /// Returns the encoders, in the order of their first addresses.
     pub fn encoders(&self) -> &[Encoder] {
         &self.encoders
     }
 
-    /// One encoder, 0 first.
+    /// Returns one encoder, 0 first.
     pub fn encoder(&self, index: usize) -> Option<&Encoder> {
         self.encoders.get(index)
     }

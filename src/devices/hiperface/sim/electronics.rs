@@ -81,7 +81,7 @@ impl Electronics {
     const COSINE: u8 = 0x01;
     const TEMPERATURE: u8 = 0x48;
 
-    /// The encoder number `index` of a line, 0 first.
+    /// Creates the encoder number `index` of a line, 0 first.
     pub(super) fn new(config: &Config, index: u8) -> Self {
         let model = config.model;
         let types = EncoderTypes::built_in();

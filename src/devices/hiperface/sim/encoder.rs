@@ -36,7 +36,7 @@ impl Pace {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// A refused frame takes the time of the status that answers it.
+    /// Returns the time of a refused frame: that of the status that answers it.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -143,7 +143,7 @@ impl Encoder {
         }
     }
 
-    /// The address it obeys.
+    /// Returns the address it obeys.
     pub fn address(&self) -> DeviceAddress {
         self.electronics.address
     }
@@ -158,7 +158,7 @@ impl Encoder {
         &self.electronics.wear
     }
 
-    /// The 24-bit counter.
+    /// Returns the 24-bit counter.
     pub fn counter(&self) -> u32 {
         self.electronics.counter
     }
@@ -168,7 +168,7 @@ impl Encoder {
         self.electronics.counter = counter & 0x00FF_FFFF;
     }
 
-    /// The position word at a moment.
+    /// Returns the position word at a moment.
     pub fn position(&self, at: Moment) -> u32 {
         self.electronics.shaft.position(at)
     }
@@ -188,7 +188,7 @@ impl Encoder {
         self.electronics.queue.push(code);
     }
 
-    /// The settings stored with 57h, in force after the next start.
+    /// Returns the settings stored with 57h, in force after the next start.
     pub fn stored_settings(&self) -> LineSettings {
         self.electronics.stored_settings
     }

@@ -34,7 +34,7 @@ impl Memory {
         }
     }
 
-    /// The same memory with a read-only field FFh of 64 bytes.
+    /// Creates the same memory with a read-only field FFh of 64 bytes.
     #[must_use]
     pub(super) fn with_extended_label(mut self, content: &[u8]) -> Self {
         let mut label = content.to_vec();
@@ -43,7 +43,7 @@ impl Memory {
         self
     }
 
-    /// The same memory with other access codes.
+    /// Creates the same memory with other access codes.
     #[must_use]
     pub(super) fn with_codes(mut self, codes: [AccessCode; 4]) -> Self {
         self.codes = codes;
@@ -77,7 +77,7 @@ impl Memory {
         self.bytes.get(self.place(field)?)
     }
 
-    /// The present value of an access code.
+    /// Returns the present value of an access code.
     pub fn code(&self, number: CodeNumber) -> AccessCode {
         // A number is 0…3; the factory value is used for the impossible case.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
@@ -147,7 +147,7 @@ impl Memory {
         Ok(())
     }
 
-    /// The check of every command that asks for one particular code.
+    /// Checks the code for every command that asks for one particular code.
     pub(super) fn check_code(&self, number: CodeNumber, code: AccessCode) -> Result<(), StatusCode> {
         if self.code(number) == code { Ok(()) } else { Err(StatusCode::WRONG_CODE) }
     }
@@ -221,7 +221,7 @@ mod tests {
         DataFieldStatus::from_byte(byte)
     }
 
-    /// Field 0: 32 bytes, field 1: 16 bytes, of 8 blocks.
+    /// Returns a memory with field 0: 32 bytes, field 1: 16 bytes, of 8 blocks.
     fn two_fields() -> Memory {
         let mut memory = Memory::new(8);
         memory.define(0, status(0xC9), CODE).unwrap();

@@ -43,12 +43,12 @@ impl Shaft {
         self.rpm.abs() > Self::MAX_RPM
     }
 
-    /// The position word can have this value.
+    /// Returns whether the position word can have this value.
     pub(super) fn reaches(&self, position: u32) -> bool {
         u64::from(position) < self.range()
     }
 
-    /// The position word at `at`.
+    /// Returns the position word at `at`.
     pub(super) fn position(&self, at: Moment) -> u32 {
         let word = (self.whole_steps(at) + self.offset) % self.range();
         // The range is at most 2³².
@@ -66,7 +66,7 @@ impl Shaft {
         Self::counts(self.phase(at).sin())
     }
 
-    /// The cosine signal, scaled as the sine signal.
+    /// Returns the cosine signal, scaled as the sine signal.
     pub(super) fn cosine(&self, at: Moment) -> i16 {
         Self::counts(self.phase(at).cos())
     }
@@ -85,7 +85,7 @@ impl Shaft {
         self.place(at) as u64 // not negative, below the range
     }
 
-    /// Mechanical place in steps, from 0 up to the range.
+    /// Returns the mechanical place in steps, from 0 up to the range.
     fn place(&self, at: Moment) -> f64 {
         // A linear scale has no turns; there `rpm` counts periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;

@@ -88,7 +88,7 @@ pub enum Kind {
 }
 
 impl Commutation {
-    /// The position for a slot.
+    /// Returns the position for a slot.
     pub fn reading(&self, slot: Slot) -> Option<&RestReading> {
         let [one, other, second] = &self.readings;
         match slot {

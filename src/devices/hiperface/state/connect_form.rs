@@ -139,7 +139,7 @@ impl FormModel for LinkForm {
 }
 
 impl LinkForm {
-    /// The virtual encoders to choose from, the usual one first.
+    /// Returns the virtual encoders to choose from, the usual one first.
     pub fn models() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }

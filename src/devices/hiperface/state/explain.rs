@@ -92,7 +92,7 @@ pub fn written(written: &Written) -> Text {
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
-/// The same for the end of a review.
+/// Returns the same for the end of a review.
 pub fn verified(written: &Written) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
@@ -100,7 +100,7 @@ pub fn verified(written: &Written) -> Text {
     }
 }
 
-/// An exchange with a HIPERFACE encoder that failed.
+/// Returns the text for an exchange with a HIPERFACE encoder that failed.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -169,7 +169,7 @@ pub fn redo(redo: &Redo) -> Text {
     }
 }
 
-/// A data field with bytes of unknown meaning that would go onto another encoder.
+/// Returns the text for a data field with bytes of unknown meaning that would go onto another encoder.
 pub fn unknown_field(field: &UnknownField) -> Text {
     let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
     TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
@@ -186,7 +186,7 @@ pub fn codes_unheard(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }
 
-/// A profile for another type of encoder.
+/// Returns the text for a profile for another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     let OtherType { profile, device } = types;
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
@@ -200,7 +200,7 @@ fn type_name(code: u8) -> String {
     }
 }
 
-/// A plan that cannot be made.
+/// Returns the text for a plan that cannot be made.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {

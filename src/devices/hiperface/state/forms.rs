@@ -24,7 +24,7 @@ pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
     if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(TEXTS.text("entry.codes_differ")) }
 }
 
-/// An address, 40h…5Fh in hexadecimal.
+/// Returns an address, 40h…5Fh in hexadecimal.
 ///
 /// # Errors
 /// Why the entry is invalid.
@@ -40,7 +40,7 @@ pub(super) fn with_addresses(text: Text) -> Text {
     text.with("first", first).with("last", last)
 }
 
-/// An analogue channel in hexadecimal.
+/// Returns an analogue channel in hexadecimal.
 ///
 /// # Errors
 /// Why the entry is invalid.
@@ -96,7 +96,7 @@ pub fn settings(
     Ok(from.with_format(format).ok_or_else(refused)?.with_long_timeout(long_timeout).with_bus(bus))
 }
 
-/// The status of a new, writable field.
+/// Returns the status of a new, writable field.
 pub fn new_field(size: FieldSize, code: CodeNumber, code_required: bool) -> DataFieldStatus {
     DataFieldStatus::new(size, code, code_required)
 }

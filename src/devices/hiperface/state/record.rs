@@ -61,17 +61,17 @@ impl Record {
         self.track.watched()
     }
 
-    /// The last position, as long as the encoder has one to give.
+    /// Returns the last position, as long as the encoder has one to give.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// The encoder has no position to give at the moment.
+    /// Returns whether the encoder has no position to give at the moment.
     pub fn refused(&self) -> bool {
         self.refused
     }
 
-    /// Positions that are recorded.
+    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }

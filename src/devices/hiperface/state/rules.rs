@@ -98,7 +98,7 @@ pub fn edit(field: &FieldImage) -> Allowed {
     Ok(())
 }
 
-/// The largest size that the last field can get.
+/// Returns the largest size that the last field can get.
 pub fn largest(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())

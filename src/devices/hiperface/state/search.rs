@@ -47,7 +47,7 @@ impl Search {
         self.end.is_none()
     }
 
-    /// The link of an encoder that was found.
+    /// Returns the link of an encoder that was found.
     pub(crate) fn link_to(&self, found: &Found) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());

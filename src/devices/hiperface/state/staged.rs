@@ -57,7 +57,7 @@ impl Staged {
         self.read_again(|own| *own = device);
     }
 
-    /// The fields as the encoder has them.
+    /// Returns the fields as the encoder has them.
     pub fn device(&self) -> &[FieldImage] {
         self.base()
     }
@@ -74,7 +74,7 @@ impl Staged {
         fields
     }
 
-    /// One byte as the encoder has it.
+    /// Returns one byte as the encoder has it.
     pub fn on_device(&self, field: u8, address: usize) -> Option<u8> {
         self.field(field)?.bytes.as_ref()?.get(address).copied()
     }
@@ -133,7 +133,7 @@ impl Staged {
         self.take_back(|(field, address)| range.contains(field, address));
     }
 
-    /// The edits, for a draft on disk.
+    /// Returns the edits, for a draft on disk.
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }

@@ -44,7 +44,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-/// The preset that the encoder has.
+/// Returns the preset that the encoder has.
 fn preset(runner: &mut Runner) -> Result<u32> {
     Ok(
         result_of!(runner.run(InterbusJob::Read(Item::Preset))?, InterbusOutput::Item(ItemValue::Number(preset)) => preset),

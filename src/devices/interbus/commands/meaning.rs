@@ -152,7 +152,7 @@ fn stray(bits: u32, place: &str) -> String {
     if bits == 0 { String::new() } else { format!("; warning: 0x{bits:X} {place} should be 0") }
 }
 
-/// A command, and the number in it.
+/// Returns a command, and the number in it.
 fn asked(command: Command) -> (String, Option<u32>) {
     let with = |words: String, value: u32| (words, Some(value));
     match command {

@@ -58,7 +58,7 @@ fn show(output: &Output, reading: &WordReading) -> Result<()> {
     output.show(&json, &format!("{t:10.3} s  0x{:08X}  {}\n", reading.word, words(reading, cams.as_deref())))
 }
 
-/// The cams that are on.
+/// Returns the cams that are on.
 fn on(outputs: u8) -> Vec<u8> {
     CamNumber::all().map(CamNumber::get).filter(|cam| outputs >> cam & 1 != 0).collect()
 }

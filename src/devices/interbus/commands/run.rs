@@ -43,7 +43,7 @@ pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
     Ok(survey)
 }
 
-/// These programs, and the shift of the window.
+/// Returns these programs, and the shift of the window.
 pub(super) fn programs(
     runner: &mut Runner,
     wanted: Vec<ProgramNumber>,

@@ -233,7 +233,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     key_of(&identity.serial_number, is_virtual)
 }
 
-/// The same by the serial number alone.
+/// Returns the same by the serial number alone.
 pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, "K3", serial_number, is_virtual)
 }

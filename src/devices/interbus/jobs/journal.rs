@@ -89,7 +89,7 @@ impl Journal for Notes {
     }
 }
 
-/// The mode in which it was found, then those it was sent into, as read-out 9 numbers them.
+/// Returns the mode in which it was found, then those it was sent into, as read-out 9 numbers them.
 fn emit(excursion: &Excursion) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();

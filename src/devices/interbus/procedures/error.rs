@@ -30,7 +30,7 @@ pub enum RequestedItem {
 }
 
 impl RequestedItem {
-    /// The function of Modbus.
+    /// Returns the function of Modbus.
     pub const fn function(self) -> u8 {
         match self {
             RequestedItem::Input { .. } => 4,
@@ -39,7 +39,7 @@ impl RequestedItem {
         }
     }
 
-    /// The first register.
+    /// Returns the first register.
     pub const fn register(self) -> u16 {
         match self {
             RequestedItem::Input { register }

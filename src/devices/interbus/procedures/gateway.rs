@@ -191,7 +191,7 @@ impl<'a> Gateway<'a> {
     }
 }
 
-/// The frame of a request.
+/// Returns the frame of a request.
 fn request(asked: RequestedItem, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
     let mut request = ModbusRequest::new_tcp_udp(unit, number);
     let mut bytes = Vec::new();

@@ -57,14 +57,14 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// A master over a station's gateway, for one job.
+    /// Creates a master over a station's gateway, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
-    /// A master over other process data, for one job.
+    /// Creates a master over other process data, for one job.
     pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
         Master::with(Box::new(data), &mut station.known, patience)
@@ -118,7 +118,7 @@ impl<'a> Master<'a> {
         self.known.gear = gear;
     }
 
-    /// The gear that was read last.
+    /// Returns the gear that was read last.
     pub(super) fn gear(&self) -> Option<Gear> {
         self.known.gear
     }
@@ -187,7 +187,7 @@ impl<'a> Master<'a> {
         Ok(value)
     }
 
-    /// `80000000`, until the encoder runs.
+    /// Sends `80000000`, until the encoder runs.
     ///
     /// # Errors
     /// [`Error::Refused`] if an error stays; [`Error::TimeOut`]; errors of the exchange.
@@ -197,7 +197,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// `00000000`, until the encoder runs.
+    /// Sends `00000000`, until the encoder runs.
     ///
     /// # Errors
     /// As [`run`](Self::run).

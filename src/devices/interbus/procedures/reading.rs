@@ -66,7 +66,7 @@ impl WordReading {
         }
     }
 
-    /// The cam outputs, in cam mode.
+    /// Returns the cam outputs, in cam mode.
     pub fn cams(&self) -> Option<CamOutput> {
         match self.mode {
             Some(StartupMode::Cams(_)) => CamOutput::parse(self.word).ok(),
@@ -74,7 +74,7 @@ impl WordReading {
         }
     }
 
-    /// Bits that should be 0 in a word that runs.
+    /// Returns the bits that should be 0 in a word that runs.
     pub fn stray(&self) -> u8 {
         match self.reply() {
             Reply::Run { stray, .. } => stray,

@@ -103,7 +103,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     Ok(changes)
 }
 
-/// The edges that differ, by cam and the start first.
+/// Returns the edges that differ, by cam and the start first.
 fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) -> Result<Vec<CamChange>, PlanError> {
     let mut changes = Vec::new();
     for cam in CamNumber::all() {
@@ -121,7 +121,7 @@ fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) 
     Ok(changes)
 }
 
-/// A cam that works must not be left beyond a range that becomes shorter.
+/// Checks that an active cam does not remain beyond a shortened range.
 fn check_cams_that_stay(device: &Image, wanted: &Image) -> Result<(), PlanError> {
     if wanted.parameters.steps >= device.parameters.steps {
         return Ok(());

@@ -41,7 +41,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// The parameter's number.
+    /// Returns the parameter's number.
     pub const fn code(self) -> u32 {
         match self {
             Direction::Clockwise => 3,
@@ -123,7 +123,7 @@ impl Image {
         self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
     }
 
-    /// The place of a program.
+    /// Returns the place of a program.
     pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
         self.programs.get_mut(usize::from(number.get() - 1))
     }

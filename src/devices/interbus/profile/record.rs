@@ -94,7 +94,7 @@ impl InterbusProfile {
         }
     }
 
-    /// An item belongs to the mounting.
+    /// Returns whether an item belongs to the mounting.
     pub fn is_mounting(&self, item: Item) -> bool {
         self.mounting.iter().any(|mark| mark.item == item)
     }
@@ -106,12 +106,12 @@ impl InterbusProfile {
 }
 
 impl Names {
-    /// A program's name.
+    /// Returns a program's name.
     pub fn program(&self, program: ProgramNumber) -> &str {
         self.programs.get(&program).map_or("", String::as_str)
     }
 
-    /// A cam's name.
+    /// Returns a cam's name.
     pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> &str {
         self.cams.get(&(program, cam)).map_or("", String::as_str)
     }

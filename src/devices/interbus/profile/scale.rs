@@ -57,7 +57,7 @@ const SAME: f64 = 1e-9;
 const MOST: f64 = 1e12;
 
 impl Default for Scale {
-    /// Steps, from 0 on.
+    /// Creates a scale in steps, from 0 on.
     fn default() -> Self {
         Scale { unit: Unit::Steps, steps: 1.0, zero: 0 }
     }
@@ -115,7 +115,7 @@ impl Scale {
         self.unit
     }
 
-    /// Steps in one unit.
+    /// Returns the steps in one unit.
     pub const fn steps_in_unit(&self) -> f64 {
         self.steps
     }

@@ -237,7 +237,7 @@ impl CamTable {
         self.rows.iter().filter(|row| row.start.is_off() || row.stop.is_off())
     }
 
-    /// The most that an edge is off, in units.
+    /// Returns the most that an edge is off, in units.
     pub fn most_off(&self) -> f64 {
         let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
         edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)

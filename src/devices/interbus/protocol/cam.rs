@@ -47,7 +47,7 @@ impl CamNumber {
         CamNumber::EACH.into_iter()
     }
 
-    /// `None` beyond 7.
+    /// Creates it from a number; `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
     }

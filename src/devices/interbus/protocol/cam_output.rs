@@ -44,7 +44,7 @@ const WINDOW_BITS: u32 = 17;
 const OUTPUT_BITS: u32 = 8;
 
 impl WindowShift {
-    /// `None` beyond 25.
+    /// Creates it from a number; `None` beyond 25.
     pub const fn new(shift: u8) -> Option<Self> {
         if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
     }

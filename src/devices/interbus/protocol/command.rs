@@ -72,7 +72,7 @@ const START: u32 = 0b010 << 29;
 const STOP: u32 = 0b011 << 29;
 
 impl Command {
-    /// The word.
+    /// Returns the word.
     pub fn emit(self) -> u32 {
         let edge =
             |which: u32, cam: CamNumber, position: Value| which | u32::from(cam.get()) << Value::BITS | position.get();

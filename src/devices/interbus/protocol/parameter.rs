@@ -119,7 +119,7 @@ impl Parameter {
         }
     }
 
-    /// A number for this parameter.
+    /// Returns a number for this parameter.
     ///
     /// # Errors
     /// [`OutOfRange`] with the limits of this gear.

@@ -177,7 +177,7 @@ impl Flags {
         self.0.get() & 2 != 0
     }
 
-    /// The type of encoder that they make.
+    /// Returns the type of encoder that they make.
     pub const fn type_name(self) -> &'static str {
         match (self.multiturn(), self.steps_minus_one()) {
             (true, false) => "multiturn",

@@ -14,7 +14,7 @@ impl Value {
     /// 1FFFFFFh.
     pub const MAX: Value = Value((1 << Value::BITS) - 1);
 
-    /// `None` beyond 25 bits.
+    /// Creates it from a number; `None` beyond 25 bits.
     pub const fn new(number: u32) -> Option<Self> {
         if number <= Value::MAX.0 { Some(Value(number)) } else { None }
     }
@@ -30,14 +30,14 @@ impl Value {
         (self.0 << above) as i32 >> above
     }
 
-    /// The field of a word.
+    /// Creates the field of a word.
     pub const fn of_word(word: u32) -> Self {
         Value(word & Value::MAX.0)
     }
 }
 
 impl Code {
-    /// `None` beyond 4 bits.
+    /// Creates it from a number; `None` beyond 4 bits.
     pub const fn new(code: u8) -> Option<Self> {
         if code < 16 { Some(Code(code)) } else { None }
     }
@@ -47,7 +47,7 @@ impl Code {
         self.0
     }
 
-    /// The field of a word.
+    /// Creates the field of a word.
     pub const fn of_word(word: u32) -> Self {
         Code((word >> Value::BITS & 0xF) as u8)
     }

@@ -27,7 +27,7 @@ impl WordOrder {
     pub const WORDS: Words<WordOrder> =
         Words(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 
-    /// The registers of a word.
+    /// Returns the registers of a word.
     pub const fn registers(self, word: u32) -> [u16; 2] {
         let (high, low) = ((word >> 16) as u16, word as u16);
         match self {
@@ -36,7 +36,7 @@ impl WordOrder {
         }
     }
 
-    /// The word of two registers.
+    /// Returns the word of two registers.
     pub const fn word(self, [first, second]: [u16; 2]) -> u32 {
         let (high, low) = match self {
             WordOrder::HighFirst => (first, second),

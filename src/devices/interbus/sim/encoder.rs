@@ -180,7 +180,7 @@ impl Encoder {
         self.eeprom.stores()
     }
 
-    /// The mode that read-out 9 gives.
+    /// Returns the mode that read-out 9 gives.
     pub const fn startup_mode(&self) -> StartupMode {
         self.mode
     }

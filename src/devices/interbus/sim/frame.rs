@@ -42,7 +42,7 @@ pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     (received.len() >= PREFIX + length).then(|| received.drain(..PREFIX + length).collect())
 }
 
-/// The reply to a whole frame.
+/// Returns the reply to a whole frame.
 pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -> Vec<u8> {
     match carry_out(request, unit, registers) {
         Ok(reply) => reply,
@@ -50,7 +50,7 @@ pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -
     }
 }
 
-/// The reply that refuses a request.
+/// Returns the reply that refuses a request.
 pub(super) fn refuse(request: &[u8], exception: Exception) -> Vec<u8> {
     let [high, low, _, _, _, _, unit, function, ..] = *request else { return Vec::new() };
     vec![high, low, 0, 0, 0, 3, unit, function | 0x80, exception as u8]

@@ -41,17 +41,17 @@ impl Memory {
         if self.counterclockwise { 4 } else { 3 }
     }
 
-    /// The position that the preset gives.
+    /// Returns the position that the preset gives.
     pub const fn preset(&self) -> u32 {
         self.preset
     }
 
-    /// A preset was set and not fired yet.
+    /// Returns whether a preset was set and not fired yet.
     pub const fn preset_is_armed(&self) -> bool {
         self.armed
     }
 
-    /// Zero point shifting.
+    /// Returns the zero point shifting.
     pub const fn zero_shift(&self) -> u32 {
         self.zero_shift
     }
@@ -180,7 +180,7 @@ impl Eeprom {
     }
 }
 
-/// A cam of a program.
+/// Returns a cam of a program.
 pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut Cam> {
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }

@@ -81,7 +81,7 @@ impl Chart {
         Some(Chart::wanted(staged, wanted, program))
     }
 
-    /// The same of something that is only tried.
+    /// Creates the same for a trial.
     pub fn wanted(staged: &Staged, wanted: &Wanted, program: ProgramNumber) -> Self {
         let marks = wanted.marks();
         let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.is_about(program, cam));
@@ -118,7 +118,7 @@ impl Chart {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
 
-    /// The last position.
+    /// Returns the last position.
     pub const fn last(&self) -> u32 {
         self.range.saturating_sub(1)
     }
@@ -165,7 +165,7 @@ impl Lamp {
 }
 
 impl VisibleRange {
-    /// The whole measuring range.
+    /// Creates the whole measuring range.
     pub fn whole(range: u32) -> Self {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
@@ -209,7 +209,7 @@ impl VisibleRange {
         VisibleRange { first: self.first + by, ..*self }.within(range)
     }
 
-    /// The same for another range, which may be shorter by now.
+    /// Returns the same for another range, which may be shorter by now.
     #[must_use]
     pub fn within(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -227,7 +227,7 @@ pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
     within.map(|(first, end)| Stretch { first, last: end.min(last) }).collect()
 }
 
-/// One of a cam's edges.
+/// Returns one of a cam's edges.
 pub const fn of_edge(cam: Cam, edge: Edge) -> Value {
     match edge {
         Edge::Start => cam.start,

@@ -136,7 +136,7 @@ impl Encoder {
         Known { mode, read_out: None, shift: self.shift() }
     }
 
-    /// The shift of the window that the encoder has.
+    /// Returns the shift of the window that the encoder has.
     pub fn shift(&self) -> Option<WindowShift> {
         self.staged.device().and_then(|image| image.shift)
     }
@@ -175,12 +175,12 @@ impl Encoder {
         self.read_outs.get(&what.number()).copied()
     }
 
-    /// The programs that were read.
+    /// Returns the programs that were read.
     pub(super) fn known_programs(&self) -> Vec<ProgramNumber> {
         self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
     }
 
-    /// Programs that were read, of eight.
+    /// Returns the number of programs that were read, of eight.
     pub fn programs_read(&self) -> usize {
         self.staged.device().map_or(0, |image| image.known().count())
     }
@@ -249,7 +249,7 @@ impl Encoder {
     }
 }
 
-/// The name by which the log and the jobs call an encoder.
+/// Returns the name by which the log and the jobs call an encoder.
 fn title(identity: &Identity) -> String {
     format!("K3 · {}", identity.serial_number)
 }

@@ -63,7 +63,7 @@ pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     }
 }
 
-/// The step that is nearest to a position that was typed in the units of the machine.
+/// Returns the step that is nearest to a position that was typed in the units of the machine.
 ///
 /// # Errors
 /// Not a number, or beyond the measuring range.
@@ -99,7 +99,7 @@ pub fn steps_of(scale: &Scale) -> Option<f64> {
     }
 }
 
-/// A scale with other steps.
+/// Returns a scale with other steps.
 ///
 /// # Errors
 /// Not a number above 0.

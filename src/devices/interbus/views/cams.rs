@@ -28,7 +28,7 @@ pub(super) struct CamsUiState {
 }
 
 impl CamsUiState {
-    /// The program that is open.
+    /// Returns the program that is open.
     pub(super) fn shown(&self) -> ProgramNumber {
         self.program.unwrap_or(ProgramNumber::FIRST)
     }

@@ -128,7 +128,7 @@ impl TypedDeviceView for InterbusView {
     }
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

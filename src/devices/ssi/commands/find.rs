@@ -83,7 +83,7 @@ fn text(search: &Search, families: &Families) -> String {
     format!("{}{verdict}\n{next}", lines.text())
 }
 
-/// The most probable layout of a class.
+/// Returns the most probable layout of a class.
 fn spec(class: &Class, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec(families))
 }

@@ -23,7 +23,7 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
     Ok(Done::Well)
 }
 
-/// The bits of a frame, right-justified.
+/// Returns the bits of a frame, right-justified.
 fn frame(layout: &Layout, text: &str) -> Result<u64> {
     parse_frame(text, layout.clocks()).map_err(|error| match error {
         FrameTextError::Form(_) => Failure::Usage(error.to_string()),

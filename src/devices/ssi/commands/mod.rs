@@ -113,7 +113,7 @@ impl OwnCommand for SsiCommand {
     }
 }
 
-/// The adapter before a virtual encoder that sends the frames of `--layout`.
+/// Returns the adapter before a virtual encoder that sends the frames of `--layout`.
 fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
     let LayoutOption { layout } = arguments.own.read()?;

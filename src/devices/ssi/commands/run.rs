@@ -63,7 +63,7 @@ pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result
     Ok(runner)
 }
 
-/// The word that a job gave.
+/// Returns the word that a job gave.
 pub(super) fn words(came: SsiOutput) -> Result<Words> {
     Ok(result_of!(came, SsiOutput::Read(words) => words))
 }

@@ -37,7 +37,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     Ok(Session::to_adapter(wire, clock, station, store, motor))
 }
 
-/// The line, and the virtual adapter, which counts for a link to it alone.
+/// Returns the line, and the virtual adapter, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge | Scheme::Replay) {
         return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));

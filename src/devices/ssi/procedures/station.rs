@@ -153,7 +153,7 @@ impl Station {
         self.asked = 0;
     }
 
-    /// The number of the next of many words that are asked for.
+    /// Returns the number of the next of many words that are asked for.
     pub(super) fn count(&mut self) -> u64 {
         let number = self.asked;
         self.asked = number.wrapping_add(1);

@@ -69,7 +69,7 @@ impl Words {
         self.period_ns > 0
     }
 
-    /// Each word with the moment in which it was taken.
+    /// Returns each word with the moment in which it was taken.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, u64)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))

@@ -349,7 +349,7 @@ fn read_reading(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Re
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
 
-/// A text that is one of some words.
+/// Returns a text that is one of some words.
 fn word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
     let Some(word) = entries.optional::<String>(name, Expected::Text)? else { return Ok(None) };

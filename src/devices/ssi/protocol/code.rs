@@ -57,7 +57,7 @@ impl Coding {
     /// A single bit.
     pub(super) const BIT: Coding = Coding { code: Code::Binary, last: 1, bits: 1, offset: 0 };
 
-    /// The coding of the positions 0…`last`.
+    /// Creates the coding of the positions 0…`last`.
     ///
     /// # Errors
     /// [`CodeError`] if the code has no words for this number of positions.
@@ -81,12 +81,12 @@ impl Coding {
         self.code
     }
 
-    /// Bits of a code word, 1…64.
+    /// Returns the number of bits of a code word, 1…64.
     pub const fn bits(&self) -> u8 {
         self.bits
     }
 
-    /// The last position.
+    /// Returns the last position.
     pub const fn last(&self) -> u64 {
         self.last
     }
@@ -122,7 +122,7 @@ impl Coding {
     }
 }
 
-/// Bits that a number needs, at least one.
+/// Returns the number of bits that a number needs, at least one.
 pub(super) const fn bits_of(number: u64) -> u8 {
     let bits = 64 - number.leading_zeros();
     if bits == 0 { 1 } else { bits as u8 }

@@ -165,13 +165,13 @@ impl Layout {
         findings
     }
 
-    /// The position may be used.
+    /// Returns whether the position may be used.
     pub fn is_valid(&self, reading: FrameReading) -> bool {
         let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_no_position(reading);
         !reading.flags.any(self.invalid()) && !stuck
     }
 
-    /// A healthy encoder does not send this.
+    /// Returns whether a healthy encoder does not send this.
     fn is_no_position(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));

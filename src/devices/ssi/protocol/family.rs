@@ -219,7 +219,7 @@ impl Family {
         self.german.get(english).map_or(english, String::as_str)
     }
 
-    /// The code as delivered.
+    /// Returns the code as delivered.
     pub fn code(&self) -> Code {
         self.codes.first().copied().unwrap_or(Code::Binary)
     }
@@ -264,7 +264,7 @@ impl Families {
         (Families(read), errors)
     }
 
-    /// The built-in ones.
+    /// Creates the built-in ones.
     pub fn built_in() -> Self {
         // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0

@@ -52,7 +52,7 @@ pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     frame.ok().filter(|_| fits).ok_or_else(|| too_long(bits))
 }
 
-/// The bits of a frame in the order of the clocks.
+/// Returns the bits of a frame in the order of the clocks.
 pub fn frame_bits(frame: u64, clocks: u8) -> String {
     (0..clocks.min(64)).rev().map(|behind| if frame >> behind & 1 == 1 { '1' } else { '0' }).collect()
 }

@@ -96,7 +96,7 @@ impl Flags {
         self.0 & other.0 != 0
     }
 
-    /// Both.
+    /// Returns the union of both.
     #[must_use]
     pub const fn with(self, other: Flags) -> Flags {
         Flags(self.0 | other.0)
@@ -137,7 +137,7 @@ impl Layout {
         check::layout(descriptor)
     }
 
-    /// The frame as it was designed.
+    /// Returns the frame as it was designed.
     pub const fn descriptor(&self) -> &Descriptor {
         &self.descriptor
     }
@@ -147,7 +147,7 @@ impl Layout {
         &self.coding
     }
 
-    /// Bits in a burst, 1…64.
+    /// Returns the number of bits in a burst, 1…64.
     pub const fn clocks(&self) -> u8 {
         self.descriptor.clocks
     }

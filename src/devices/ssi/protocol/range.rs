@@ -99,7 +99,7 @@ pub enum Location {
 }
 
 impl Range {
-    /// The last position.
+    /// Returns the last position.
     ///
     /// # Errors
     /// [`RangeError`]: this range cannot be.
@@ -229,7 +229,7 @@ impl Range {
         }
     }
 
-    /// Bits that the positions need in binary.
+    /// Returns the number of bits that the positions need in binary.
     ///
     /// # Errors
     /// [`RangeError`]: this range cannot be.
@@ -239,7 +239,7 @@ impl Range {
 }
 
 impl fmt::Display for Fraction {
-    /// `25/2`, or a whole number.
+    /// Writes `25/2`, or a whole number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.denominator {
             1 => write!(f, "{}", self.numerator),

@@ -45,7 +45,7 @@ impl InjectedFault {
             .collect()
     }
 
-    /// The names that there are.
+    /// Returns the names that there are.
     pub(super) fn names(layout: &Layout) -> Vec<String> {
         let descriptor = layout.descriptor();
         let bits = descriptor.errors.iter().map(|bit| &bit.name);
@@ -66,7 +66,7 @@ impl InjectedFault {
         }
     }
 
-    /// The word that is sent instead of the frame.
+    /// Returns the word that is sent instead of the frame.
     pub(super) const fn word(&self) -> Option<u64> {
         match self.shows {
             Shows::Word(word) => Some(word),

@@ -120,7 +120,7 @@ impl Encoder {
         }
     }
 
-    /// A name for a file with this ending.
+    /// Returns a name for a file with this ending.
     pub(super) fn suggested(&self, ending: &str) -> PathBuf {
         match &self.session.source {
             Source::File { path, .. } if ending == "ron" => path.clone(),

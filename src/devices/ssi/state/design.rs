@@ -93,7 +93,7 @@ impl Design {
 }
 
 impl Default for Design {
-    /// The least frame.
+    /// Creates the least frame.
     fn default() -> Self {
         let layout = Layout::default();
         let profile = SsiProfile::new(layout.descriptor().clone());
@@ -129,7 +129,7 @@ impl Designer {
         read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
-    /// The frame that a virtual encoder at this link sends.
+    /// Returns the frame that a virtual encoder at this link sends.
     pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
         of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
@@ -221,7 +221,7 @@ impl Designer {
         self.problem = Some(why);
     }
 
-    /// The layout after a change.
+    /// Returns the layout after a change.
     fn edited(&self, edit: Edit) -> Result<SsiProfile, Text> {
         let mut profile = self.now.profile.clone();
         match edit {

@@ -101,7 +101,7 @@ impl Drafted for Encoder {
     }
 }
 
-/// A layout as a profile of no file.
+/// Returns a layout as a profile of no file.
 fn document_of(profile: &SsiProfile) -> Document {
     Document { saved: None, ..Document::new(String::new(), Body::new(profile.clone())) }
 }

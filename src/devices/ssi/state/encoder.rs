@@ -107,12 +107,12 @@ impl Encoder {
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
-    /// The layout is not as it was saved.
+    /// Returns whether the layout is not as it was saved.
     pub fn is_dirty(&self) -> bool {
         self.designer.is_dirty()
     }
 
-    /// The layout as it would be saved.
+    /// Returns the layout as it would be saved.
     pub(crate) fn wanted_profile(&self) -> SsiProfile {
         self.design().profile.clone()
     }

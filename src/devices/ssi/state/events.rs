@@ -123,7 +123,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// The adapter does not answer.
+    /// Returns whether the adapter does not answer.
     fn is_silence(&self, error: &JobError) -> bool {
         matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
     }

@@ -70,7 +70,7 @@ pub fn advice(advice: &Advice) -> Text {
     }
 }
 
-/// A time of a transfer that does not fit.
+/// Returns the text for a time of a transfer that does not fit.
 pub fn timing(warning: &Warning) -> Text {
     let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
     let kilohertz = |hz: f64| hz / 1000.0;

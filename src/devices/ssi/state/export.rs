@@ -83,7 +83,7 @@ impl Format {
 }
 
 impl Designer {
-    /// The layout as text.
+    /// Returns the layout as text.
     ///
     /// # Errors
     /// What the format cannot express; a timing diagram needs a family, whose times apply.

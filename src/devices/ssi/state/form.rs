@@ -244,7 +244,7 @@ impl Designer {
     }
 }
 
-/// Direction and preset.
+/// Returns the direction and preset.
 fn counting(designer: &Designer) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
@@ -371,7 +371,7 @@ pub fn whole(text: &str) -> Result<u64, Text> {
     number.ok().filter(|_| !signed).ok_or_else(|| TEXTS.text("ssi_form.whole").with("text", text.trim()))
 }
 
-/// A number that a byte holds.
+/// Returns a number that a byte holds.
 fn byte(number: u64) -> Option<u8> {
     u8::try_from(number).ok()
 }

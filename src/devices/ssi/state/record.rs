@@ -57,7 +57,7 @@ pub struct Streamed {
 }
 
 impl Streamed {
-    /// Words per second.
+    /// Returns the words per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -214,7 +214,7 @@ impl Record {
         self.forgotten = self.last.as_ref().map(|last| last.at);
     }
 
-    /// The last word.
+    /// Returns the last word.
     pub fn last(&self) -> Option<&Seen> {
         self.last.as_ref()
     }
@@ -224,7 +224,7 @@ impl Record {
         self.stream.as_ref()
     }
 
-    /// Words that are recorded.
+    /// Returns the number of recorded words.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }

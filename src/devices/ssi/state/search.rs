@@ -50,7 +50,7 @@ pub enum Hunt {
     Failed(Text),
 }
 
-/// A number of clocks as people write one.
+/// Returns a number of clocks as people write one.
 ///
 /// # Errors
 /// Not a whole number, or one that a frame cannot have.

@@ -106,7 +106,7 @@ pub struct CellState {
 }
 
 impl Strip {
-    /// A frame in cells.
+    /// Creates a frame in cells.
     pub fn of(layout: &Layout) -> Self {
         let descriptor = layout.descriptor();
         let roles = layout.roles();
@@ -151,7 +151,7 @@ impl Strip {
         Strip { layout: layout.clone(), cells, fields, handles }
     }
 
-    /// The frame.
+    /// Returns the frame.
     pub const fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -181,7 +181,7 @@ impl Strip {
         Strip::of(&moved(&self.layout, handle, to, following))
     }
 
-    /// The first and the last clock to which something can be moved.
+    /// Returns the first and the last clock to which something can be moved.
     pub fn limits(&self, handle: Handle, following: bool) -> (u8, u8) {
         let end = |to| moving::clock(&moved(&self.layout, handle, to, following), handle).unwrap_or(to);
         (end(0), end(u8::MAX))

@@ -101,7 +101,7 @@ const KEPT: f64 = 0.4;
 const NEXT: f64 = 2.5;
 
 impl Diagram {
-    /// A burst of a frame, read like this.
+    /// Creates a burst of a frame, read like this.
     pub fn of(layout: &Layout, times: &Times, reads: &Reads) -> Self {
         let reads = Reads { clocks: layout.clocks(), ..*reads };
         let timing = times.reckon(&reads);
@@ -131,7 +131,7 @@ impl Diagram {
         Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
     }
 
-    /// The frame in cells and fields.
+    /// Returns the frame in cells and fields.
     pub const fn strip(&self) -> &Strip {
         &self.strip
     }
@@ -193,7 +193,7 @@ impl Diagram {
         self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
     }
 
-    /// The end of the axis, in seconds.
+    /// Returns the end of the axis, in seconds.
     pub fn end(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
@@ -250,7 +250,7 @@ pub fn left_out(seconds: f64) -> Text {
     TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }
 
-/// A time with four figures at most, in the unit that suits it.
+/// Returns a time with four figures at most, in the unit that suits it.
 pub fn time(seconds: f64) -> Text {
     const UNITS: [(&str, f64); 4] =
         [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];

@@ -42,7 +42,7 @@ impl Decoded {
 }
 
 impl Trial {
-    /// The frame, right-justified.
+    /// Returns the frame, right-justified.
     pub fn frame(&self) -> u64 {
         self.frame
     }

@@ -43,7 +43,7 @@ impl Strip {
         Strip { origin, ..self }
     }
 
-    /// The rectangles of the blocks from `first` to before `end`, one a line.
+    /// Returns the rectangles of the blocks from `first` to before `end`, one a line.
     pub(super) fn runs(&self, first: usize, end: usize) -> Vec<Rect> {
         let mut runs = Vec::new();
         let mut at = first;
@@ -59,7 +59,7 @@ impl Strip {
         runs
     }
 
-    /// The boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
+    /// Returns the boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
     pub(super) fn boundary(&self, pos: Pos2) -> usize {
         let inside = pos - self.origin - Vec2::new(0.0, self.margin);
         // Positions above or left of the strip become zero.

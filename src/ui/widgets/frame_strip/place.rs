@@ -93,7 +93,7 @@ mod tests {
 
     const GAP: f32 = 8.0;
 
-    /// The kit encoder's frame with its acknowledge, start and control bit.
+    /// Returns the kit encoder's frame with its acknowledge, start and control bit.
     fn kit() -> Vec<Want> {
         let want = |(bits, words)| Want { bits, words };
         [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]

@@ -26,7 +26,7 @@ pub(super) struct Grid {
     len: usize,
 }
 
-/// The next multiple of four points.
+/// Returns the next multiple of four points.
 fn on_grid(length: f32) -> f32 {
     (length / 4.0).ceil() * 4.0
 }
@@ -59,7 +59,7 @@ impl Grid {
         self.row * lines as f32
     }
 
-    /// The cell of a byte in a column.
+    /// Returns the cell of a byte in a column.
     pub(super) fn cell(&self, origin: Pos2, column: Column, at: usize) -> Rect {
         let (line, place) = (at / WIDTH, at % WIDTH);
         let (left, width) = match column {
@@ -70,7 +70,7 @@ impl Grid {
         Rect::from_min_size(origin + Vec2::new(left, self.row * line as f32), Vec2::new(width, self.row))
     }
 
-    /// The byte under the pointer.
+    /// Returns the byte under the pointer.
     pub(super) fn hit(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
         let (column, at) = self.nearest(origin, pos, Column::Hex, true);
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))

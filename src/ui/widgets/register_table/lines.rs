@@ -65,7 +65,7 @@ impl Lines {
         Some(LineKind::Row(RegisterLocation { group, row: rest }))
     }
 
-    /// The group that a line belongs to.
+    /// Returns the group that a line belongs to.
     pub(super) fn group_at(&self, line: usize) -> Option<usize> {
         if line >= self.total {
             return None;

@@ -51,7 +51,7 @@ impl Host {
         packets.map(|packet| (packet.seq, Message::parse(&packet).unwrap())).collect()
     }
 
-    /// The reply to a request, of which there is no more than one within 100 ms.
+    /// Returns the reply to a request, of which there is no more than one within 100 ms.
     pub(crate) fn ask(&mut self, request: Request) -> Option<Message> {
         self.send(&request);
         let mut messages = self.receive(self.now + Duration::from_millis(100));

@@ -85,7 +85,7 @@ impl Master<'_> {
         Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
     }
 
-    /// The time that an exchange takes at most.
+    /// Returns the time that an exchange takes at most.
     pub(super) fn longest_pin_exchange(&self) -> Duration {
         self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }

@@ -98,7 +98,7 @@ impl Failure {
         *self == Failure::Device(Error::Cancelled)
     }
 
-    /// The encoder can no longer be reached.
+    /// Returns whether the encoder can no longer be reached.
     pub fn is_lost(&self) -> bool {
         matches!(self, Failure::Device(error) if error.is_lost())
     }

@@ -82,7 +82,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Guide { master, description, operator, tell, standing, op: 0, step: ProcedureStep::LeadBack, cycles: 0 }
     }
 
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     pub(in crate::devices::biss::procedures) fn master(&mut self) -> &mut Master<'m> {
         self.master
     }
@@ -97,7 +97,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         &self.standing
     }
 
-    /// Persistent writes that were spent, or may have been.
+    /// Returns the persistent writes that were spent, or may have been.
     pub(in crate::devices::biss::procedures) fn cycles(&self) -> u64 {
         self.cycles
     }

@@ -249,7 +249,7 @@ pub trait Operator {
     /// Called when a task is given for the first time: earlier answers belong to another task.
     fn begins(&mut self) {}
 
-    /// Asked again and again, a few times per second, each time with a new measurement.
+    /// Asks repeatedly, a few times per second, each time with a new measurement.
     fn attend(&mut self, demand: &Demand) -> Answer;
 }
 

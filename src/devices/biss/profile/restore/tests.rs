@@ -20,7 +20,7 @@ fn with_preset(profile: &mut BissProfile, singleturn: u32, multiturn: u32) {
     profile.preset = Some(PresetSetting { value, unknown: Default::default() });
 }
 
-/// Operations in short, with their cost.
+/// Returns the operations in short, with their cost.
 fn ops(restore: &Restore) -> Vec<String> {
     let short = |op: &Op| {
         let cost = crate::profile::Operation::write_cycles(op);

@@ -38,7 +38,7 @@ fn profile_with(from: &str, to: &str) -> BissProfile {
     profile(&SHORT.replacen(from, to, 1))
 }
 
-/// Everything that a profile can hold.
+/// Returns everything that a profile can hold.
 fn full() -> BissProfile {
     let mut profile = profile_with("listed:", "name: \"OEM data\", empty: 0x00, listed:");
     profile.identity.firmware = Some(Firmware::new(1, 6, 0));

@@ -88,7 +88,7 @@ impl Encoder {
         }
     }
 
-    /// CDM of the cycle that ends.
+    /// Returns CDM of the cycle that ends.
     pub fn cdm(&mut self, bit: bool) -> Option<Event> {
         let rested = self.zeros >= REST_CYCLES;
         self.zeros = if bit { 0 } else { self.zeros.saturating_add(1) };

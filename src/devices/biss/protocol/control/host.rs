@@ -188,7 +188,7 @@ impl Host {
     }
 }
 
-/// S, CTS, ID, ADR, CRC4, R, W, S.
+/// Returns S, CTS, ID, ADR, CRC4, R, W, S.
 fn head(request: &Request) -> u32 {
     let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
     let access = if request.reads() { 0b10 } else { 0b01 };

@@ -207,7 +207,7 @@ impl Register {
 }
 
 impl Area {
-    /// The bank belongs to it.
+    /// Returns whether the bank belongs to it.
     pub const fn contains(&self, bank: u8) -> bool {
         self.first <= bank && bank <= self.last
     }

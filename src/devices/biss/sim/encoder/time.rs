@@ -35,7 +35,7 @@ impl Encoder {
         }
     }
 
-    /// The first run of a procedure is done, and the second needs the other direction.
+    /// Returns whether the first run of a procedure is done, and the second needs the other direction.
     fn waits_for_direction(&self) -> bool {
         self.calibration.status == CalibrationStatus::CounterclockwiseDone
             || self.wiegand.status == WiegandStatus::WaitForDirection

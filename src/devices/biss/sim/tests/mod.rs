@@ -65,7 +65,7 @@ impl Host {
         self.encoder.answers(self.now)
     }
 
-    /// Multiturn and singleturn.
+    /// Returns the multiturn and singleturn.
     fn position(&mut self) -> Option<(u32, u32)> {
         self.encoder.reading(self.now).map(|reading| (reading.multiturn, reading.singleturn))
     }

@@ -15,7 +15,7 @@ impl Line {
         Line { port: Port::new(&config(query)), now: Moment::START }
     }
 
-    /// Everything that arrives until nothing more will, and when the last byte did.
+    /// Returns everything that arrives until nothing more will, and when the last byte did.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.port.poll_at() {

@@ -8,7 +8,7 @@ use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage};
 use crate::devices::biss::state::TEXTS;
 
-/// The heading of an operation.
+/// Returns the heading of an operation.
 pub fn procedure(op: &Op) -> Text {
     TEXTS.text(match op {
         Op::Calibrate => "guide.calibration",

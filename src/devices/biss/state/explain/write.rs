@@ -18,7 +18,7 @@ use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, Wie
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::filter;
 
-/// A change as text.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),
@@ -101,7 +101,7 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
-/// A write that is done.
+/// Returns the text for a write that is done.
 pub fn written(written: &Written) -> Text {
     // Only the encoder's status confirms a calibration.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
@@ -235,7 +235,7 @@ fn wiegand(status: WiegandStatus, code: u8) -> Text {
     }
 }
 
-/// A status that does not belong there.
+/// Returns the text for a status that does not belong there.
 fn unknown(status: u8) -> Text {
     TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }

@@ -48,7 +48,7 @@ impl Drives {
         Drives { connection: Connection::new(opened, now), men, places: places.into(), lost: None, ending: None }
     }
 
-    /// The drives' dead-men.
+    /// Returns the drives' dead-men.
     pub fn men(&self) -> impl Iterator<Item = &DeadMan> {
         self.men.iter().map(|man| &man.dead_man)
     }

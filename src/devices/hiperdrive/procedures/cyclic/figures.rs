@@ -82,7 +82,7 @@ impl Histogram {
         self.greatest = Some(self.greatest.map_or(off, |greatest| greatest.max(off)));
     }
 
-    /// The buckets, the shortest intervals first.
+    /// Returns the buckets, the shortest intervals first.
     pub fn buckets(&self) -> impl Iterator<Item = Bucket> {
         let from = std::iter::once(None).chain(EDGES.iter().copied().map(Some));
         let below = EDGES.iter().copied().map(Some).chain(std::iter::once(None));

@@ -15,7 +15,7 @@ fn at(ms: u64) -> Moment {
     Moment::START + Duration::from_millis(ms)
 }
 
-/// The packets of the reference (section 9): 00020001 in both directions; 10 ms.
+/// Returns the packets of the reference (section 9): 00020001 in both directions; 10 ms.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> Opened {
     let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
     let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: Path::assemblies(104, 100, 101) };
@@ -42,7 +42,7 @@ const TO_TARGET: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 0
 const TO_ORIGINATOR: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 \
                              00 00 00 00 00 00 00 00";
 
-/// A report of the first drive with its sequence number.
+/// Returns a report of the first drive with its sequence number.
 fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
     let mut bytes = hex(TO_ORIGINATOR);
     bytes[10..14].copy_from_slice(&sequence.to_le_bytes());
@@ -134,7 +134,7 @@ impl Bench {
         self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// The control word of the interval.
+    /// Returns the control word of the interval.
     fn cycle(&mut self) -> Option<u16> {
         if self.answers {
             self.sequence += 1;

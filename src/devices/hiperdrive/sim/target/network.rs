@@ -71,7 +71,7 @@ impl Network {
         (self.control, self.stored) = (dhcp(), NONE);
     }
 
-    /// An attribute of the TCP/IP object.
+    /// Returns an attribute of the TCP/IP object.
     pub(super) fn interface(&self, attribute: u16) -> Option<Vec<u8>> {
         let bytes = match attribute {
             1 => CONFIGURED.to_le_bytes().to_vec(),
@@ -122,7 +122,7 @@ impl Network {
         Ok(Vec::new())
     }
 
-    /// An attribute of the Ethernet link.
+    /// Returns an attribute of the Ethernet link.
     pub(super) fn link(&self, attribute: u16) -> Option<Vec<u8>> {
         match attribute {
             1 => Some(MEGABITS.to_le_bytes().to_vec()),

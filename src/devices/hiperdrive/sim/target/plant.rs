@@ -153,7 +153,7 @@ impl Plant {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
-    /// A datagram gets through to it.
+    /// Returns whether a datagram gets through to it.
     pub(super) fn arrives(&mut self) -> bool {
         self.faults.passage(&mut self.rng, 0).carried.is_some()
     }

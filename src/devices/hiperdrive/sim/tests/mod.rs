@@ -35,7 +35,7 @@ impl Bench {
         Bench::new(Setup::default())
     }
 
-    /// A hub of four with drives in the first two places.
+    /// Creates a hub of four with drives in the first two places.
     fn hub() -> Self {
         let drive = Some((Variant::new(13), Load::default()));
         Bench::new(Setup { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })
@@ -110,7 +110,7 @@ impl Bench {
         self.station.write(self.now, number(own), &Value::Number(value))
     }
 
-    /// The newest error.
+    /// Returns the newest error.
     fn error(&mut self) -> ErrorCode {
         match self.read(108) {
             Value::Number(code) => ErrorCode::new(code.try_into().unwrap()),

@@ -52,12 +52,12 @@ impl Chain {
         AxisStep::ALL.get(self.0.len()).copied()
     }
 
-    /// A step has a result.
+    /// Returns whether a step has a result.
     pub(super) fn holds(&self, step: AxisStep) -> bool {
         step.index() < self.0.len()
     }
 
-    /// A step was left out.
+    /// Returns whether a step was left out.
     pub(super) fn is_skipped(&self, step: AxisStep) -> bool {
         self.0.get(step.index()).is_some_and(|made| made.skipped)
     }

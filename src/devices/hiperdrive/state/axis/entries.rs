@@ -113,7 +113,7 @@ impl Entries {
         Ok(Reference { asked, becomes })
     }
 
-    /// The lower limit.
+    /// Returns the lower limit.
     ///
     /// # Errors
     /// Why the entry is invalid.
@@ -121,7 +121,7 @@ impl Entries {
         position("hd_axis.lower", &self.lower, ruler)
     }
 
-    /// The upper limit.
+    /// Returns the upper limit.
     ///
     /// # Errors
     /// Why the entries are invalid.

@@ -59,7 +59,7 @@ impl Seen {
         self.connected && !self.busy && !self.stale
     }
 
-    /// The drive has failed, and does not move until that is acknowledged.
+    /// Returns whether the drive has failed, and does not move until that is acknowledged.
     pub fn has_failed(&self) -> bool {
         self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
     }

@@ -45,7 +45,7 @@ impl TestTarget {
     /// All targets, in the order of the test.
     pub const ALL: [TestTarget; 3] = [TestTarget::Middle, TestTarget::Lower, TestTarget::Upper];
 
-    /// The steps between two limits.
+    /// Returns the number of steps between two limits.
     pub const fn between(self, low: i32, high: i32) -> i32 {
         match self {
             TestTarget::Middle => low.midpoint(high),
@@ -56,7 +56,7 @@ impl TestTarget {
 }
 
 impl Outcome {
-    /// Steps between target and position.
+    /// Returns the number of steps between target and position.
     pub fn missed(&self) -> i64 {
         i64::from(self.position) - i64::from(self.target)
     }

@@ -74,7 +74,7 @@ pub fn device(error: &Error) -> Text {
     }
 }
 
-/// A number that a parameter may not be, with those that it may.
+/// Returns the text for a number that a parameter may not be, with those that it may.
 pub fn out_of_range(error: &OutOfRange) -> Text {
     match error.range {
         Range::OneOf([]) => named("hd_said.a_text", error.number),

@@ -88,7 +88,7 @@ pub const fn weight(ended: Ended) -> Severity {
     }
 }
 
-/// A state that a drive can be led to.
+/// Returns the text for a state that a drive can be led to.
 pub fn goal(goal: Goal) -> Text {
     state(match goal {
         Goal::Off => State::NotReady,

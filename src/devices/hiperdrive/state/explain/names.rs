@@ -5,7 +5,7 @@ use crate::app::explain::plain;
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// A state of the drive.
+/// Returns the text for a state of the drive.
 pub fn state(state: State) -> Text {
     TEXTS.text(match state {
         State::NotReady => "hd_state.not_ready",

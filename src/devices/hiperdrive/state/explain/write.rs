@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, OtherType, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::refused;
 
-/// A change as text.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
@@ -43,7 +43,7 @@ pub fn service(service: Service) -> Text {
     }
 }
 
-/// An operation as text.
+/// Returns an operation as text.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Write { number, old, new } => {
@@ -79,7 +79,7 @@ pub fn item(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
-/// A profile for another type of device or drive.
+/// Returns the text for a profile for another type of device or drive.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "hd_review.other_kind", "hd_review.other_variant")
 }
@@ -157,7 +157,7 @@ pub fn warning(warning: &Warning) -> Text {
     }
 }
 
-/// A write that is done.
+/// Returns the text for a write that is done.
 pub fn written(written: &Written) -> Text {
     // An action of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };

@@ -76,7 +76,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Fields that are to be created have to follow each other.
+    /// Checks that fields to be created follow each other.
     pub(super) fn check_order(&self) -> Result<(), PlanError> {
         let mut next = self.device.memory.fields;
         for field in self.wanted.iter().filter(|field| field.number >= self.device.memory.fields) {

@@ -28,7 +28,7 @@ impl UnknownField {
     }
 }
 
-/// Data fields of another encoder's profile with bytes that differ and do not belong to the mounting.
+/// Returns the data fields of another encoder's profile with bytes that differ and do not belong to the mounting.
 pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,

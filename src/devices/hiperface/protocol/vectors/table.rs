@@ -26,13 +26,13 @@ fn ask(request: Request, bytes: &'static str) -> Vector {
 }
 
 impl Vector {
-    /// A reply without the error bit.
+    /// Returns a reply without the error bit.
     fn says(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: false, reply }));
         self
     }
 
-    /// A reply with the error bit.
+    /// Returns a reply with the error bit.
     fn warns(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: true, reply }));
         self

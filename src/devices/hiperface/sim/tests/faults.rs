@@ -105,7 +105,7 @@ fn what_arrived_before_the_link_was_opened_has_no_reader() {
     host.expect("40 50 10", "40 50 00 10");
 }
 
-/// Random bytes, and now and then a good beginning or a whole request.
+/// Returns random bytes, and sometimes a valid beginning or a whole request.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         proptest::collection::vec(any::<u8>(), 0..200),

@@ -44,7 +44,7 @@ impl Host {
         self.bus.on_bytes(self.now, &parse_hex(request).unwrap());
     }
 
-    /// Everything that arrives until nothing more will, as hex, and when the last byte arrived.
+    /// Returns everything that arrives until nothing more will, as hex, and when the last byte arrived.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.bus.poll_at() {
@@ -96,7 +96,7 @@ impl Host {
     }
 }
 
-/// An encoder with eight blocks of memory and no field, as in the manual's example.
+/// Returns an encoder with eight blocks of memory and no field, as in the manual's example.
 fn blank() -> Config {
     let mut config = Config::default();
     config.model.user_blocks = 8;

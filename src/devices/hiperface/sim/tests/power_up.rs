@@ -4,7 +4,7 @@ use super::*;
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
-/// An encoder with 19200 8E1 stored, power-cycled just now.
+/// Returns an encoder with 19200 8E1 stored, power-cycled just now.
 fn restarted() -> Host {
     let mut host = Host::with("settings=0xE5");
     host.bus.power_cycle(host.now);

@@ -145,7 +145,7 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Current and time, in amperes and seconds.
+    /// Returns the current and time, in amperes and seconds.
     ///
     /// # Errors
     /// What is missing.
@@ -184,7 +184,7 @@ impl Form {
         self.vector_deg().map(|_| ())
     }
 
-    /// Angle of the energised vector in electrical degrees.
+    /// Returns the angle of the energised vector in electrical degrees.
     ///
     /// # Errors
     /// Why the entry is invalid.
@@ -205,7 +205,7 @@ impl Form {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
-    /// The position inside a period that was typed.
+    /// Returns the position inside a period that was typed.
     ///
     /// # Errors
     /// Why the entry is invalid.
@@ -213,7 +213,7 @@ impl Form {
         phase(&self.phase)
     }
 
-    /// The fine position in periods that was typed for a slot.
+    /// Returns the fine position in periods that was typed for a slot.
     ///
     /// # Errors
     /// Why the entry is invalid.
@@ -268,7 +268,7 @@ fn missing(what: &'static str) -> Text {
     Text::new("entry.missing").with_text("what", TEXTS.text(what))
 }
 
-/// A typed position inside a period.
+/// Returns a typed position inside a period.
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
     let periods = within(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
     Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))

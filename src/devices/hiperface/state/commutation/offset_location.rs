@@ -77,7 +77,7 @@ fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }
 
-/// Bytes as the text that they may be.
+/// Returns the bytes as the text that they may be.
 fn ascii(bytes: &[u8]) -> String {
     let shown = |byte: &u8| if byte.is_ascii_graphic() || *byte == b' ' { char::from(*byte) } else { '·' };
     bytes.iter().map(shown).collect()

@@ -57,7 +57,7 @@ pub struct Stored {
 }
 
 impl Commutation {
-    /// The offset.
+    /// Returns the offset.
     ///
     /// # Errors
     /// What is missing, or why the readings cannot be used.
@@ -129,7 +129,7 @@ impl Commutation {
         Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", said.pole_pairs)))
     }
 
-    /// The second vector was read and fits.
+    /// Returns whether the second vector was read and fits.
     pub fn is_confirmed(&self, geometry: Option<Geometry>) -> bool {
         matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
     }
@@ -231,7 +231,7 @@ fn electrical_deg(periods: f64, inputs: &Inputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 
-/// The offset at a position at which the electrical angle is that of the vector.
+/// Returns the offset at a position at which the electrical angle is that of the vector.
 fn angle(fine_periods: f64, inputs: &Inputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;

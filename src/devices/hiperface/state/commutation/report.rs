@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
-    /// The lines of the report, for an encoder of that name.
+    /// Returns the lines of the report, for an encoder of that name.
     pub fn report(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
         let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];

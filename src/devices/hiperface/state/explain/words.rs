@@ -58,7 +58,7 @@ pub fn field_status(status: DataFieldStatus) -> Text {
         .with_text("required", field_code_required(status))
 }
 
-/// "writable" or "write protected".
+/// Returns "writable" or "write protected".
 pub fn field_access(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.is_writable() { "field.writable" } else { "field.write_protected" })
 }
@@ -83,7 +83,7 @@ pub fn geometry(geometry: Geometry) -> Text {
     }
 }
 
-/// Turn and degrees, or millimetres.
+/// Returns the turn and degrees, or millimetres.
 pub fn position(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {

@@ -29,7 +29,7 @@ fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
     record.track.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
 }
 
-/// Time in nanoseconds, value in the samples' own unit, flags.
+/// Returns the time in nanoseconds, value in the samples' own unit, flags.
 fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
     let history = record.track.recorder.history(line).unwrap();

@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{GearError, OutOfRange, WindowShift};
 
 use ItemValue::Number;
 
-/// Parameters that are sent, in their order.
+/// Returns the parameters that are sent, in their order.
 fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
     match plan_edits(device, wanted).unwrap().ops.as_slice() {
         [Op::Parameterise(changes)] => changes.iter().map(|change| (change.parameter, change.to)).collect(),

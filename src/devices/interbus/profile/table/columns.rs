@@ -74,7 +74,7 @@ pub(super) fn delimiter(text: &str) -> Delimiter {
     most.filter(|(_, count)| *count > 0).map_or(Delimiter::Comma, |(delimiter, _)| delimiter)
 }
 
-/// The unit that a header's cell names.
+/// Returns the unit that a header's cell names.
 pub(super) fn unit(cell: &str) -> Option<Unit> {
     let cell = cell.to_lowercase();
     let parts = cell.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|part| !part.is_empty()).skip(1);
@@ -86,7 +86,7 @@ pub(super) fn unit(cell: &str) -> Option<Unit> {
     })
 }
 
-/// The first word of a cell.
+/// Returns the first word of a cell.
 fn word(cell: &str) -> String {
     let cell = cell.trim().trim_start_matches('\u{FEFF}').to_lowercase();
     cell.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()

@@ -139,7 +139,7 @@ impl CamTable {
     }
 }
 
-/// The lines with something in them.
+/// Returns the lines with something in them.
 fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     let mut lines = Vec::new();
     for (line, number) in text.lines().zip(1..) {
@@ -152,7 +152,7 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     lines
 }
 
-/// The cells of a line, without quotes and blanks around them.
+/// Returns the cells of a line, without quotes and blanks around them.
 fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
     // Quotes are removed: the output is never longer than the input, nor has it more ends than characters.
     let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
@@ -249,7 +249,7 @@ fn number(text: &str, comma: bool) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
 }
 
-/// A whole number, with or without one of these words before it.
+/// Returns a whole number, with or without one of these words before it.
 fn whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
@@ -258,7 +258,7 @@ fn whole(text: &str, words: &[&str]) -> Option<u64> {
     bare.parse().ok().filter(|_| is_whole)
 }
 
-/// The beginning of a cell.
+/// Returns the beginning of a cell.
 fn excerpt(text: &str) -> String {
     let mut told: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {

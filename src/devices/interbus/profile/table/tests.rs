@@ -21,7 +21,7 @@ fn steps(text: &str) -> CamTable {
     options(Scale::default(), 1000).read(text)
 }
 
-/// Program, cam, name, start and stop of each row.
+/// Returns the program, cam, name, start and stop of each row.
 fn rows(table: &CamTable) -> Vec<(u8, u8, &str, u32, u32)> {
     let row = |row: &'_ super::TableRow| (row.program.get(), row.cam.get(), row.start.step, row.stop.step);
     table.rows.iter().map(|own| (row(own), own.name.as_str())).map(|((p, c, a, b), name)| (p, c, name, a, b)).collect()

@@ -23,7 +23,7 @@ impl Encoder {
         if self.memory.counterclockwise { -place } else { place }
     }
 
-    /// The position at `now`, in steps.
+    /// Returns the position at `now`, in steps.
     fn position(&self, now: Moment) -> Value {
         let gear = self.memory.gear;
         let place = (self.turned(now) + self.offset).rem_euclid(i64::from(gear.range()));

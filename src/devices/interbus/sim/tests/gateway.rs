@@ -13,7 +13,7 @@ impl Host {
         Host { gateway: Gateway::new(&config(&format!("stale=0&busy=0&{query}"))), now: Moment::START }
     }
 
-    /// Another client of the same gateway.
+    /// Returns another client of the same gateway.
     fn beside(&self) -> Host {
         Host { gateway: self.gateway.connection(), now: self.now }
     }

@@ -64,7 +64,7 @@ impl Master {
         self.encoder.put_shaft(self.now, place);
     }
 
-    /// The position, at a place of the disc.
+    /// Returns the position, at a place of the disc.
     fn position(&mut self, place: i32) -> u32 {
         self.put_shaft(place);
         self.read()

@@ -27,7 +27,7 @@ fn program() -> ProgramNumber {
     ProgramNumber::new(1).unwrap()
 }
 
-/// A profile of 1000 steps with these cams of program 1.
+/// Returns a profile of 1000 steps with these cams of program 1.
 fn staged(cams: &[(u8, u32, u32)]) -> Staged {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };

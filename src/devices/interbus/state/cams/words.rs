@@ -19,7 +19,7 @@ pub fn bare(cam: CamNumber) -> Text {
     TEXTS.text("cams.cam").with("cam", cam.get())
 }
 
-/// An edge of a cam.
+/// Returns the text for an edge of a cam.
 pub fn edge(lane: &Lane, edge: Edge) -> Text {
     TEXTS
         .text(match edge {

@@ -17,7 +17,7 @@ use crate::devices::interbus::protocol::{Flags, GearError};
 use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotBegun;
 
-/// A change as text.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
@@ -63,7 +63,7 @@ fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
 }
 
-/// A profile for another type of encoder.
+/// Returns the text for a profile for another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     of_types("ib_review.other_type", types)
 }
@@ -139,7 +139,7 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// A write that is done.
+/// Returns the text for a write that is done.
 pub fn written(written: &Written) -> Text {
     // The values of the default are not known, so none is read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };

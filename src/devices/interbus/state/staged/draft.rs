@@ -61,7 +61,7 @@ impl Staged {
         self.step(wanted);
     }
 
-    /// Programs for which edits of an earlier time wait.
+    /// Returns the programs for which edits of an earlier time wait.
     pub fn waiting(&self) -> Vec<ProgramNumber> {
         let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
         ProgramNumber::all().filter(waits).collect()

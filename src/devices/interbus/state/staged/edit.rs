@@ -224,7 +224,7 @@ fn within(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError>
     if value <= high { Ok(value) } else { Err(OutOfRange { parameter, value, low: 0, high }.into()) }
 }
 
-/// The last position of the measuring range.
+/// Returns the last position of the measuring range.
 const fn last(wanted: &Wanted) -> u32 {
     wanted.range().saturating_sub(1)
 }
@@ -282,7 +282,7 @@ fn fill(after: &mut Wanted, filled: &Filled, ground: Ground) -> Result<(), EditE
     Ok(())
 }
 
-/// A name without blanks around it.
+/// Returns a name without blanks around it.
 pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {

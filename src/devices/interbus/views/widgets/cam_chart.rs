@@ -63,7 +63,7 @@ pub(super) struct Drag {
     pub(super) to: Option<Cam>,
 }
 
-/// The colour of a cam.
+/// Returns the colour of a cam.
 pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
     series(theme, usize::from(cam.get()))
 }
@@ -110,7 +110,7 @@ impl CamChart<'_> {
         to.map(|to| CamEvent::Preview(cam, to))
     }
 
-    /// The program as it would be while something is dragged.
+    /// Returns the program as it would be while something is dragged.
     pub(super) fn shown(&self, drag: Option<Drag>) -> Option<Chart> {
         let drag = drag?;
         Some(self.chart.with(drag.hold.cam(), drag.to?))
@@ -250,7 +250,7 @@ impl CamChart<'_> {
     }
 }
 
-/// The drag in progress.
+/// Returns the drag in progress.
 pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
     ui.data(|data| data.get_temp(base))
 }

@@ -44,7 +44,7 @@ struct Dial {
 }
 
 impl Dial {
-    /// A place on a circle, the range's beginning at the top.
+    /// Returns a place on a circle, the range's beginning at the top.
     fn at(self, position: f64, radius: f32) -> Pos2 {
         let angle = (position / self.range * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
@@ -62,7 +62,7 @@ impl Dial {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
 
-    /// The middle of a cam's circle.
+    /// Returns the middle of a cam's circle.
     fn circle(self, cam: CamNumber) -> f32 {
         self.radius - (f32::from(cam.get()) + 0.5) * self.pitch()
     }
@@ -78,7 +78,7 @@ impl Dial {
         (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
     }
 
-    /// Steps in a point of the outermost circle.
+    /// Returns the steps in a point of the outermost circle.
     fn steps_in_point(self) -> f64 {
         self.range / (std::f64::consts::TAU * f64::from(self.radius))
     }

@@ -99,7 +99,7 @@ impl WordLayout<'_> {
         groups
     }
 
-    /// The bits of the position under the window, the highest and the lowest.
+    /// Returns the bits of the position under the window, the highest and the lowest.
     fn window(&self) -> Option<(u8, u8)> {
         let mask = self.shift.mask();
         let high = mask.checked_ilog2()?;
@@ -168,14 +168,14 @@ impl Cells {
         Cells { left: origin.x, top: origin.y, ..self }
     }
 
-    /// The cell of a bit of the word.
+    /// Returns the cell of a bit of the word.
     fn word(&self, bit: u8) -> Rect {
         let place = BITS - 1 - bit.min(BITS - 1);
         let line = f32::from(place / self.columns) * Cells::line_height() + NUMBERS;
         self.cell_at(place % self.columns, line)
     }
 
-    /// The cell of a bit of the position.
+    /// Returns the cell of a bit of the position.
     fn position(&self, bit: u8) -> Rect {
         let lines = self.position_lines() * self.columns;
         let place = lines - 1 - bit.min(lines - 1);
@@ -188,7 +188,7 @@ impl Cells {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL - 1.0))
     }
 
-    /// The cells from one bit of the word down to another, one rectangle a line.
+    /// Returns the cells from one bit of the word down to another, one rectangle a line.
     fn runs(&self, high: u8, low: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for bit in (low..=high).rev() {

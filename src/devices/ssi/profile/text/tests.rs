@@ -44,7 +44,7 @@ fn a_profile_written_by_hand_is_read() {
     assert_eq!(named, of_family("ahm36"));
 }
 
-/// Everything that a frame can have, at once.
+/// Returns everything that a frame can have, at once.
 fn full() -> SsiProfile {
     let error = |name: &str, clock, meaning, active_low| ErrorBit {
         name: name.to_owned(),

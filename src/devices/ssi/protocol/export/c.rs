@@ -76,7 +76,7 @@ impl Dialect for C {
     }
 }
 
-/// A function `ssi_decode` for this layout, with the flags that it may raise.
+/// Returns a function `ssi_decode` for this layout, with the flags that it may raise.
 pub fn c99(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     // The title must not end the comment, begin another or contain a trigraph.

@@ -53,7 +53,7 @@ pub enum FormatError {
     Layout(#[from] LayoutError),
 }
 
-/// The format string of a frame.
+/// Returns the format string of a frame.
 ///
 /// # Errors
 /// [`FormatError::Cannot`]: BCD, gray excess, Gray over more than the position, turns apart from steps, exchanged wires.
@@ -94,7 +94,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     Ok(words.collect())
 }
 
-/// A name that a pin can have and no other has yet.
+/// Returns a name that a pin can have and no other has yet.
 fn pin(name: &str, taken: &mut Vec<String>) -> String {
     let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
     let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });

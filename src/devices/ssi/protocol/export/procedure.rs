@@ -15,7 +15,7 @@ pub(super) trait Dialect {
     fn left(&self, a: &str, bits: u8) -> String;
     fn equal(&self, a: &str, b: &str) -> String;
     fn differs(&self, a: &str, b: &str) -> String;
-    /// A word as a number.
+    /// Returns a word as a number.
     fn number(&self, word: &str) -> String;
     fn divided(&self, number: &str, by: u64) -> String;
     fn rest(&self, number: &str, by: u64) -> String;

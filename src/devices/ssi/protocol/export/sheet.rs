@@ -48,7 +48,7 @@ impl Places {
     }
 }
 
-/// The settings of common modules, a paragraph each.
+/// Returns the settings of common modules, a paragraph each.
 pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> String {
     let places = Places::new(layout);
     let descriptor = layout.descriptor();

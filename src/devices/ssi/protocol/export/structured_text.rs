@@ -74,7 +74,7 @@ impl Dialect for StructuredText {
     }
 }
 
-/// A function block `SSI_DECODE` for this layout.
+/// Returns a function block `SSI_DECODE` for this layout.
 pub fn structured_text(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     let title = title.replace("*)", "* )");

@@ -101,7 +101,7 @@ mod tests {
         Some(resolved.layout.descriptor().clone())
     }
 
-    /// Every combination of these that the family can send.
+    /// Returns every combination of these that the family can send.
     fn spread(families: &Families, family: &Family) -> Vec<String> {
         let resolutions: &[&str] = match family.key.as_str() {
             "kh53" | "ttk70" => &["", ",step=500"],

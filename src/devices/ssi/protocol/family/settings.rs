@@ -142,7 +142,7 @@ pub enum SettingsError {
 }
 
 impl Settings {
-    /// The frame that a family sends with these settings.
+    /// Returns the frame that a family sends with these settings.
     ///
     /// # Errors
     /// [`SettingsError`] with the reason why it cannot.

@@ -112,7 +112,7 @@ fn jumped(motion: &Motion, whole: u64) -> Option<u64> {
     Some(whole.saturating_sub(median(&mut alike).unsigned_abs()))
 }
 
-/// Numbers of steps that encoders are ordered with.
+/// Returns the numbers of steps that encoders are ordered with.
 fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     let mut all: Vec<u64> = Vec::new();
     for step in [1, 2, 5, 25] {

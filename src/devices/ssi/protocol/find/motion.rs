@@ -60,7 +60,7 @@ impl Motion {
         }
     }
 
-    /// The step to this frame (counted from 1, the second one) is no jump.
+    /// Returns whether the step to this frame (counted from 1, the second one) is no jump.
     pub(super) fn is_even(&self, index: usize) -> bool {
         let within = self.uneven.get(index).is_some_and(|uneven| uneven.unsigned_abs() <= self.limit);
         within && self.steps.get(index).is_some_and(Option::is_some)

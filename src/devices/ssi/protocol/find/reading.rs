@@ -62,7 +62,7 @@ pub(super) struct Read {
 }
 
 impl Reading {
-    /// Bits of a number.
+    /// Returns the number of bits of a number.
     pub(super) fn width(&self) -> u8 {
         self.last + 1 - self.first - self.gap.map_or(0, |(from, to)| to + 1 - from)
     }
@@ -84,7 +84,7 @@ impl Reading {
         }
     }
 
-    /// Numbers that positions can have.
+    /// Returns the numbers that positions can have.
     pub(super) fn allowed(&self) -> RangeInclusive<u64> {
         match (self.steps, self.code) {
             (None, _) => 0..=u64::MAX,
@@ -118,7 +118,7 @@ impl Reading {
         words.iter().map(number).collect()
     }
 
-    /// The clock belongs to the position.
+    /// Returns whether the clock belongs to the position.
     pub(super) fn has(&self, clock: u8) -> bool {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }
@@ -131,7 +131,7 @@ impl Reading {
         word.is_some_and(|word| (1..=seen.clocks).filter(constant).all(|clock| usual(word, clock)))
     }
 
-    /// The last run of clocks up to the lowest bit that never moved.
+    /// Returns the last run of clocks up to the lowest bit that never moved.
     pub(super) fn unmoved(&self, seen: &Seen) -> Option<(u8, u8)> {
         let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
         let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
@@ -202,12 +202,12 @@ impl Read {
     }
 }
 
-/// Frames in which a parity is right.
+/// Returns the number of frames in which a parity is right.
 fn right(seen: &Seen, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
 }
 
-/// The ways in which the shaft turned most evenly, the best first.
+/// Returns the ways in which the shaft turned most evenly, the best first.
 pub(super) fn readings(seen: &Seen) -> Vec<Read> {
     let frames = seen.words().len();
     let sample = sample(seen.words());
@@ -284,7 +284,7 @@ fn ways(seen: &Seen) -> Vec<Reading> {
     ways
 }
 
-/// The longest run of clocks within the position that did not move.
+/// Returns the longest run of clocks within the position that did not move.
 fn gap(seen: &Seen, first: u8, last: u8) -> Option<(u8, u8)> {
     let mut longest: Option<(u8, u8)> = None;
     let mut from = None;

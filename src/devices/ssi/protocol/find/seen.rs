@@ -42,7 +42,7 @@ impl Seen {
         Seen { words, clocks, bits }
     }
 
-    /// The first words of frames that carry each word twice.
+    /// Creates the first words of frames that carry each word twice.
     pub(super) fn first_words(&self, repeat: Repeat) -> Self {
         let words: Vec<u64> = self.words.iter().map(|word| word >> (self.clocks - repeat.word)).collect();
         Seen::new(&words, repeat.word)
@@ -98,14 +98,14 @@ impl Seen {
         })
     }
 
-    /// The second word of a frame is as the first.
+    /// Returns whether the second word of a frame is as the first.
     pub(super) fn is_repeated(&self, frame: u64, repeat: Repeat) -> bool {
         let first = frame >> (self.clocks - repeat.word);
         let second = frame >> (self.clocks - 2 * repeat.word - repeat.gap);
         (first ^ second) & ones(repeat.word) == 0
     }
 
-    /// The parity of a word is right.
+    /// Returns whether the parity of a word is right.
     pub(super) fn is_right(&self, word: u64, parity: Parity) -> bool {
         (word >> (self.clocks - parity.clock)).count_ones().is_multiple_of(2) == parity.even
     }

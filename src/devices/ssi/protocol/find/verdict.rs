@@ -122,7 +122,7 @@ pub(super) fn is_varied(read: &Read) -> bool {
     other * 50 >= all
 }
 
-/// The groups as they are shown.
+/// Returns the groups as they are shown.
 pub(super) fn classes(words: &Seen, groups: Vec<Group>) -> Vec<Class> {
     let mut last = 1.0_f64;
     let mut classes = Vec::new();

@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
-/// A frame that cannot work.
+/// Returns the text for a frame that cannot work.
 pub fn layout(error: &LayoutError) -> Text {
     refused(layout_reason(error))
 }

@@ -10,7 +10,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// Words of a stream, a millisecond apart.
+/// Returns the words of a stream, a millisecond apart.
 fn run(first: u64, words: &[u64]) -> Words {
     Words {
         first,

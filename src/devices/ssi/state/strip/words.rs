@@ -51,7 +51,7 @@ pub fn name(strip: &Strip, own: &Field) -> Text {
     if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
 
-/// The same for narrow places: the short name with its number of bits.
+/// Returns the same for narrow places: the short name with its number of bits.
 pub fn short(strip: &Strip, field: &Field) -> Text {
     let id = match field.is_zeros() {
         true => "ssi.strip_short_zeros",
@@ -61,7 +61,7 @@ pub fn short(strip: &Strip, field: &Field) -> Text {
     TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
 }
 
-/// The short name of a field, which exports give it too.
+/// Returns the short name of a field, which exports give it too.
 pub fn bare(strip: &Strip, field: &Field) -> String {
     match field.kind {
         _ if field.is_zeros() => "0".to_owned(),

@@ -113,7 +113,7 @@ struct StripContext<'a> {
 }
 
 impl StripContext<'_> {
-    /// The keyboard on the cells.
+    /// Handles the keyboard on the cells.
     fn choose(&self) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let clocks = model.strip.layout().clocks();
@@ -164,7 +164,7 @@ impl StripContext<'_> {
         self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
     }
 
-    /// The number of a clock's bit, 0 the lowest.
+    /// Returns the number of a clock's bit, 0 the lowest.
     fn number(&self, clock: u8) -> Option<u8> {
         let cell = self.shown.cells().get(usize::from(clock.checked_sub(1)?))?;
         match cell.role {
@@ -173,7 +173,7 @@ impl StripContext<'_> {
         }
     }
 
-    /// The pointer on the cells.
+    /// Handles the pointer on the cells.
     fn press(&self, tags: &[Tag]) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let mut event = None;

@@ -41,7 +41,7 @@ fn the_published_connection() {
     assert_eq!(host.datagrams(), []);
 }
 
-/// The published request with other bytes in it.
+/// Returns the published request with other bytes in it.
 fn open_with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(OPEN.to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from}");

@@ -156,7 +156,7 @@ impl Host {
         came.into_iter().map(|(to, packet)| (to, hex(&packet))).collect()
     }
 
-    /// The status word of the newest packet.
+    /// Returns the status word of the newest packet.
     fn status(&mut self) -> Option<u16> {
         let (_, packet) = self.datagrams().pop()?;
         let packet = bytes(&packet);

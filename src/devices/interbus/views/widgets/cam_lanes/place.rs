@@ -63,7 +63,7 @@ impl PlotArea {
         self.plot.left() + part as f32 * self.plot.width()
     }
 
-    /// The position there, also beyond the lanes.
+    /// Returns the position there, also beyond the lanes.
     pub(super) fn position(&self, x: f32) -> f64 {
         self.view.position(f64::from((x - self.plot.left()) / self.plot.width().max(1.0)))
     }
@@ -98,7 +98,7 @@ impl PlotArea {
         Rect::from_x_y_ranges(left..=right, self.lane(cam).shrink2(Vec2::new(0.0, 2.0)).y_range())
     }
 
-    /// An edge there is to be seen.
+    /// Returns whether an edge there is to be seen.
     pub(super) fn shows(&self, x: f32) -> bool {
         x >= self.plot.left() - 1.0 && x <= self.plot.right() + 1.0
     }

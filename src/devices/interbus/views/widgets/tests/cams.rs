@@ -101,7 +101,7 @@ fn value(harness: &Harness<'_, Page>, label: &str) -> String {
     harness.get_by_label(label).value().unwrap()
 }
 
-/// Points between two positions, from the edges of a cam of 200 steps.
+/// Returns the points between two positions, from the edges of a cam of 200 steps.
 fn steps(harness: &Harness<'_, Page>, count: f32) -> Vec2 {
     let x = |label| harness.get_by_label(label).rect().center().x;
     // The two handles are inside their cam, four and a half points from the middle of their grab areas.

@@ -95,7 +95,7 @@ impl Rows {
         pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
     }
 
-    /// The cells from one clock to another, one rectangle a line.
+    /// Returns the cells from one clock to another, one rectangle a line.
     pub(super) fn runs(&self, first: u8, last: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for clock in first..=last {
@@ -108,7 +108,7 @@ impl Rows {
         runs
     }
 
-    /// The lane below a run of cells.
+    /// Returns the lane below a run of cells.
     pub(super) fn lane(run: Rect) -> Rect {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
     }

@@ -57,7 +57,7 @@ impl Axis {
         None
     }
 
-    /// The gaps, from the first to the last.
+    /// Returns the gaps, from the first to the last.
     pub(super) fn breaks(&self) -> Vec<Rangef> {
         let ends = self.pieces.iter().map(|piece| self.x(piece.to));
         let ends: Vec<f32> = ends.collect();
