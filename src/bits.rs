@@ -88,7 +88,7 @@ impl MaskedBytes {
         (MaskedBytes(head.to_vec()), MaskedBytes(tail.to_vec()))
     }
 
-    /// These bytes followed by `more`.
+    /// Appends `more` to these bytes.
     pub fn extend(&mut self, more: MaskedBytes) {
         self.0.extend(more.0);
     }

@@ -49,7 +49,7 @@ const MARGIN: f64 = 0.05;
 const LEAST_HALF_V: f64 = 1e-3;
 
 impl Square {
-    /// Around zero, as the vector's length is counted from there.
+    /// Creates a range around zero, from which the vector's length is counted.
     pub const fn centred(half_v: f64) -> Self {
         Square { cosine_v: 0.0, sine_v: 0.0, half_v }
     }

@@ -116,7 +116,7 @@ mod tests {
     const ELLIPSE: Ellipse =
         Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.005, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 };
 
-    /// 1.1 revolutions of 128 periods with an eccentricity of 0.02°.
+    /// Returns 1.1 revolutions of 128 periods with an eccentricity of 0.02°.
     fn made(sign: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let (mut sine, mut cosine, mut reference) = (vec![], vec![], vec![]);
         for at in 0..20_000 {

@@ -31,7 +31,7 @@ impl Unwrap {
         Unwrap { range: None, last: None, gap: false }
     }
 
-    /// Samples are missing before the next one.
+    /// Notes that samples are missing before the next one.
     pub fn gap(&mut self) {
         self.gap = true;
     }

@@ -47,7 +47,7 @@ impl Brakes {
     /// Time that drives have to stop and connections to close before the program ends regardless.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
-    /// Drives of a session that begins.
+    /// Adds the drives of a session that begins.
     pub(crate) fn add(&self, brake: Box<dyn Brake>, stopper: Stopper) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
@@ -68,7 +68,7 @@ impl Brakes {
         sessions.iter().for_each(|(_, stopper)| stopper.stop());
     }
 
-    /// [`begin`](Self::begin) was called.
+    /// Returns whether [`begin`](Self::begin) was called.
     pub fn has_begun(&self) -> bool {
         self.0.released.load(Ordering::SeqCst)
     }
@@ -83,7 +83,7 @@ impl Brakes {
         wait_for(patience, || self.is_done())
     }
 
-    /// The window has begun to close.
+    /// Notes that the window has begun to close.
     pub(super) fn note_closing(&self) {
         self.0.closing.store(true, Ordering::SeqCst);
     }

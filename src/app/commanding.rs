@@ -50,7 +50,7 @@ impl Studio {
         }
     }
 
-    /// A task of a device has ended with a result.
+    /// Handles the result of a task of a device.
     pub(super) fn device_done(&mut self, id: SessionId, done: Payload) {
         let mut taken = Ok(());
         self.with_device(id, |device, services| taken = device.done(done, services));

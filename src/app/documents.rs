@@ -14,7 +14,7 @@ use crate::profile::{Body, Document, Formats, ProfileError};
 use crate::store::{Store, read_file};
 
 impl Studio {
-    /// A profile was read, or not.
+    /// Handles the end of reading a profile.
     pub(super) fn read(
         &mut self,
         file: ProfileFile,
@@ -56,7 +56,7 @@ impl Studio {
         }
     }
 
-    /// A profile is of a kind of device that the window does not show.
+    /// Reports that a profile is of a kind of device that the window does not show.
     fn cannot_show(&mut self, path: &Path, found: &str) {
         let error = ProfileError::Device {
             found: found.to_owned(),

@@ -48,7 +48,7 @@ impl Studio {
         });
     }
 
-    /// A file was chosen.
+    /// Handles the choice of a file.
     pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
@@ -107,7 +107,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Table { desk, visible, suggested });
     }
 
-    /// A picture was requested of something that is not visible as a whole.
+    /// Reports that a picture was requested of something that is not visible as a whole.
     pub(super) fn tell_picture_cut(&mut self) {
         self.services.tell(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }

@@ -188,7 +188,7 @@ impl HoldState {
         self.holder.is_some()
     }
 
-    /// The pointer holds it.
+    /// Returns whether the pointer holds it.
     pub fn is_held_by_pointer(&self) -> bool {
         self.holder == Some(Holder::Pointer)
     }

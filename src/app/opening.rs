@@ -152,7 +152,7 @@ impl Studio {
         *device.opening_mut() = Some(Opening { attempt: Some(attempt), over });
     }
 
-    /// A link was opened, or not.
+    /// Handles the end of opening a link.
     pub(super) fn opened(&mut self, done: Attempt) {
         let Attempt { session, attempt, result } = done;
         let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);

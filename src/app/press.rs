@@ -53,7 +53,7 @@ impl FreshKeys {
         std::mem::replace(self.of(key), Seen::Down) == Seen::Up
     }
 
-    /// A key goes up, while the window has the keyboard.
+    /// Handles the release of a key, while the window has the keyboard.
     pub fn release(&mut self, key: PressKey, now: f64) {
         *self.of(key) = Seen::Released(now);
     }

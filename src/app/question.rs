@@ -36,7 +36,7 @@ pub(crate) enum Then {
 }
 
 impl Question {
-    /// A question before something is lost or interrupted.
+    /// Creates a question before something is lost or interrupted.
     pub(super) fn before(text: Text, confirm: Text, then: Then) -> Self {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }

@@ -41,7 +41,7 @@ impl Studio {
         }
     }
 
-    /// The settings were read.
+    /// Handles the settings that were read.
     pub(super) fn saw_settings(&mut self, found: Option<Settings>) {
         if let Some(found) = self.keeper.saw(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {

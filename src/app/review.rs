@@ -266,7 +266,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
     /// Returns the text of an operation of it.
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
-    /// Values of the mounting differ and are left alone.
+    /// Returns whether values of the mounting differ and are left alone.
     fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
         false
     }

@@ -131,7 +131,7 @@ impl Studio {
         }
     }
 
-    /// A task of a tool has ended with a result.
+    /// Handles the result of a task of a tool.
     pub(super) fn tool_done(&mut self, tab: Tab, done: Payload) {
         let tool = self.tools.iter_mut().find(|(own, _)| *own == tab);
         if tool.is_none_or(|(_, tool)| tool.done(done, &mut self.services).is_err()) {

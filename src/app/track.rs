@@ -381,7 +381,7 @@ impl<W: Watchable> Track<W> {
         (Text::new("recorder.until").with_text("name", name).with("time", &until), format!("{heading} until {until}"))
     }
 
-    /// Samples are missing before those that come next.
+    /// Notes that samples are missing before the next ones.
     pub fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();

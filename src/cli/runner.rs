@@ -214,7 +214,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Ctrl-C was pressed.
+    /// Returns whether Ctrl-C was pressed.
     pub(crate) fn is_interrupted(&self) -> bool {
         self.interrupted.load(Ordering::SeqCst)
     }

@@ -34,7 +34,7 @@ impl Slip {
 }
 
 impl Reading {
-    /// The file is of this newer schema.
+    /// Notes that the file is of this newer schema.
     pub(super) fn set_newer(&self, schema: u32) {
         self.newer.set(Some(schema));
     }

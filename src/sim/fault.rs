@@ -106,7 +106,7 @@ impl Faults {
         self.silent_after
     }
 
-    /// Power is lost in the middle of this store, counted from 1.
+    /// Returns the store, counted from 1, in the middle of which power is lost.
     pub fn die_in_store(&self) -> Option<u32> {
         self.die_in_store
     }

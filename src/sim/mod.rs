@@ -44,7 +44,7 @@ pub trait ByteDevice: Send {
 
 /// A virtual device that also receives datagrams. Moments as for a [`ByteDevice`].
 pub trait DatagramDevice: Send {
-    /// A packet has come at `now`, from there.
+    /// Takes a packet that has come at `now`, with its sender.
     fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]);
 
     /// Returns the packets sent by `now` and not fetched yet, with their targets.

@@ -43,7 +43,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
     name
 }
 
-/// Names that are devices on Windows, with any extension.
+/// Returns whether it is the name of a device on Windows, with any extension.
 fn is_reserved(text: &str) -> bool {
     let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
     match stem.as_str() {

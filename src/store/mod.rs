@@ -69,7 +69,7 @@ impl Store {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
-    /// The backups taken before devices were written.
+    /// Returns the backups taken before devices were written.
     pub fn backups(&self) -> Backups {
         Backups::in_folder(self.data.join("backups"))
     }

@@ -48,7 +48,7 @@ pub(crate) fn card_with<R>(
         .inner
 }
 
-/// A label and a value that can be selected, on one line.
+/// Draws a label and a value that can be selected, on one line.
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
         // Values are only read: they are closer together than controls.
@@ -78,7 +78,7 @@ fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
     });
 }
 
-/// Words over several lines, beginning at the left.
+/// Draws words over several lines, beginning at the left.
 pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
@@ -208,7 +208,7 @@ pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnc
     name(response, true, word).on_hover_text(word);
 }
 
-/// A choice from a list, with a name for screen readers.
+/// Draws a choice from a list, with a name for screen readers.
 pub(crate) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,

@@ -9,7 +9,7 @@ use super::views::shown_in;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio};
 
-/// The tabs, with the pages of the open one.
+/// Draws the tabs, with the pages of the open one.
 pub(super) fn navigation_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -196,7 +196,7 @@ const FONTS: [(&str, &[u8]); 4] = [
     ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
 ];
 
-/// The built-in fonts: one for text in two weights, one for bytes and numbers, one of icons.
+/// Installs the built-in fonts: one for text in two weights, one for bytes and numbers, one of icons.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::empty();
     for (name, bytes) in FONTS {

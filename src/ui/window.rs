@@ -191,7 +191,7 @@ impl Window {
         }
     }
 
-    /// The keyboard, and files that are dropped on the window.
+    /// Handles the keyboard, and files that are dropped on the window.
     fn take_input(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
             self.hear_close(ctx);

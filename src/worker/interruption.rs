@@ -7,7 +7,7 @@ use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
 
 /// The reason why a job ended early, for any kind of device.
 pub trait EndedEarly {
-    /// The user cancelled it.
+    /// Returns whether the user cancelled it.
     fn is_cancelled(&self) -> bool;
 
     /// Returns the number of operations carried out before; `None` if no write was begun.

@@ -54,7 +54,7 @@ impl<D: Device> Session<D> {
         self.desk.trace.watch(watcher);
     }
 
-    /// The device lives in this process.
+    /// Returns whether the device lives in this process.
     pub fn is_virtual(&self) -> bool {
         self.desk.is_virtual
     }

@@ -370,7 +370,7 @@ fn every_text_that_is_asked_for_is_in_the_table() {
     }
 }
 
-/// Three letters or more in a row that are not all capitals, outside the places of a format string.
+/// Returns whether it has three letters or more in a row that are not all capitals, outside the places of a format string.
 fn has_word(text: &str) -> bool {
     let mut bare = String::new();
     let mut rest = text;

@@ -216,7 +216,8 @@ impl Ran {
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// Ended with this status, without output and with one to four lines on stderr that hold all these words.
+    /// Checks that it ended with this status, without output and with one to four lines on stderr that hold all these
+    /// words.
     #[track_caller]
     pub(crate) fn fails(&self, status: i32, words: &[&str]) {
         assert_eq!(self.status, Some(status), "{self:?}");
@@ -224,7 +225,7 @@ impl Ran {
         self.says(words);
     }
 
-    /// One to four lines on stderr, besides warnings in the log, that hold all these words.
+    /// Checks that one to four lines on stderr, besides warnings in the log, hold all these words.
     #[track_caller]
     pub(crate) fn says(&self, words: &[&str]) {
         let lines: Vec<&str> = self.err.lines().filter(|line| !line.trim_start().starts_with("WARN")).collect();

@@ -30,7 +30,7 @@ impl Desk {
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }
 
-    /// The virtual encoder is connected and read.
+    /// Creates a connected virtual encoder, which is read.
     pub(crate) fn connected(query: &str) -> Self {
         let mut desk = Desk::new();
         desk.open(query);

@@ -29,7 +29,7 @@ impl Desk {
         self.assist(Assistant::Edit(Box::new(form)));
     }
 
-    /// Everything ticked and written down, for a motor of four pole pairs.
+    /// Ticks and enters everything, for a motor of four pole pairs.
     fn prepare(&mut self) {
         self.edit(|form| {
             (form.disabled, form.uncoupled, form.released) = (true, true, true);

@@ -48,7 +48,7 @@ fn moves(desk: &Desk) -> bool {
     unit(desk).state(ONE) == Some(State::Moving)
 }
 
-/// A jog that is held, and turns the drive.
+/// Holds a jog that turns the drive.
 #[track_caller]
 fn jog(desk: &mut Desk) {
     let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };

@@ -140,7 +140,7 @@ impl Screen {
         self.buttons(id).next().is_some()
     }
 
-    /// Nothing that is shown is in the other language, is the name of a text, or has a place left open.
+    /// Checks that no shown text is in the other language, is the name of a text, or has a place left open.
     #[track_caller]
     pub(crate) fn check_language(&self) {
         let foreign = texts::foreign_to(self.language());

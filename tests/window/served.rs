@@ -47,7 +47,7 @@ impl Served {
         format!("bridge:tcp:127.0.0.1:{}", self.port)
     }
 
-    /// The connection is closed.
+    /// Closes the connection.
     pub(crate) fn cut(&self) {
         *self.cut.lock().unwrap() = true;
     }

@@ -11,7 +11,8 @@ use encoder_studio::sim::sine_cosine::Quantity;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// 1.25 revolutions of 64 periods with an eccentricity of 0.01°, an offset of 1 %, an absolute position 3 steps ahead.
+/// Returns 1.25 revolutions of 64 periods with an eccentricity of 0.01°, an offset of 1 %, an absolute position 3 steps
+/// ahead.
 fn table() -> String {
     let mut text = "time,sin,cos,angle,absolute\n".to_owned();
     let tau = std::f64::consts::TAU;

@@ -73,7 +73,7 @@ fn check_notice(notice: &Notice) {
     notice.texts.iter().for_each(check);
 }
 
-/// Every text that the window could show now.
+/// Checks every text that the window could show now.
 #[track_caller]
 pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.notices().for_each(check_notice);

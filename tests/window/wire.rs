@@ -152,7 +152,7 @@ impl Wire {
         }
     }
 
-    /// Other encoders from now on.
+    /// Replaces the encoders.
     pub(crate) fn exchange(&self, query: &str) {
         match &self.end {
             End::Hiperface(own) => *own.lock().unwrap() = bus(query),

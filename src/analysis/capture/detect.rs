@@ -224,7 +224,7 @@ fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
-/// A row of a time and of fields without a value.
+/// Returns whether it is a row of a time and of fields without a value.
 fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
     line.fields.len() >= width

@@ -123,7 +123,7 @@ impl VoltUnit {
     }
 }
 
-/// A unit of angles, as a header writes it.
+/// Returns whether it is a unit of angles, as a header writes it.
 fn is_degrees(text: &str) -> bool {
     ["deg", "degree", "degrees", "\u{b0}", "grad"].contains(&text)
 }
@@ -132,7 +132,7 @@ fn is_in_volts(name: &str) -> bool {
     unit_of(&name.trim().to_lowercase()).is_some_and(|unit| VoltUnit::parse(unit).is_some())
 }
 
-/// A unit of times, voltages or angles, in small letters.
+/// Returns whether it is a unit of times, voltages or angles, in small letters.
 pub(super) fn is_unit(text: &str) -> bool {
     TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some() || is_degrees(text)
 }

@@ -58,7 +58,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     changes
 }
 
-/// Noise and the lines of the spectrum, which are compared by their size.
+/// Compares noise and the lines of the spectrum by their size.
 fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
         changes.untold.push(Untold::NoSpectrum);

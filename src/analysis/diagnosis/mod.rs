@@ -148,7 +148,7 @@ fn severity(share: f64) -> Severity {
     if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
 }
 
-/// Mean levels of REFSIN and REFCOS in volts.
+/// Reports mean levels of REFSIN and REFCOS outside their limits, in volts.
 fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, What)) {
     let Some((refsin, refcos)) = levels_v else { return };
     let ok_v = limits.level_v;

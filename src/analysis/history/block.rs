@@ -138,7 +138,7 @@ impl<T: Number> Block<T> {
         self.complete(start);
     }
 
-    /// The line is broken before the sample `at`.
+    /// Breaks the line before the sample `at`.
     pub(super) fn break_before(&mut self, at: usize) {
         self.flags.mark(at, Flags::BREAK);
     }

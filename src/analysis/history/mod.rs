@@ -154,7 +154,7 @@ impl History {
         History { longest_pause: Some(nanoseconds), ..self }
     }
 
-    /// Samples are missing before those that come next, in every column.
+    /// Notes that samples are missing before the next ones, in every column.
     pub fn break_before_next(&mut self) {
         self.broken = true;
     }

@@ -21,7 +21,7 @@ impl Value {
 
 /// The type of the values of a series.
 pub(super) trait Number: Copy + PartialOrd {
-    /// Neither infinite nor NaN.
+    /// Returns whether it is neither infinite nor NaN.
     fn is_number(self) -> bool;
 
     /// Returns the number's distance from `base` such that [`at_most`](Number::at_most) gives a number that is not above

@@ -223,7 +223,7 @@ impl<T: Number> Painter<'_, T> {
         self.picture.pixels.push(pixel);
     }
 
-    /// A line leads from the last sample with a value to the sample `index`.
+    /// Returns whether a line leads from the last sample with a value to the sample `index`.
     fn is_joined(&self, index: u64) -> bool {
         self.last.is_some_and(|last| !self.series.flags(last + 1..index + 1).contains(Flags::BREAK))
     }

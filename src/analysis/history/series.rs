@@ -33,7 +33,7 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// The line is broken before the sample `index`.
+    /// Breaks the line before the sample `index`.
     pub(super) fn break_before(&mut self, index: u64) {
         let (block, at) = self.place(index);
         if let Some(block) = self.blocks.get_mut(block) {

@@ -104,7 +104,7 @@ impl Studio {
         }
     }
 
-    /// A task of a search has ended with a result.
+    /// Handles the result of a task of a search.
     pub(in crate::app) fn finder_done(&mut self, tab: Tab, done: Payload) {
         let Some(kind) = self.services.world.kinds.of_tab(tab) else { return self.refuse_kind(None) };
         let forms = self.connect.as_mut().map(|connect| &mut connect.forms);

@@ -118,7 +118,7 @@ impl AnyDevice {
         }
     }
 
-    /// A backup was read, or not.
+    /// Handles the end of reading a backup.
     pub(in crate::app) fn take_backup(
         &mut self,
         of: &DeviceKey,

@@ -31,7 +31,7 @@ pub trait OpenDevice: Any {
     fn state_mut(&mut self) -> &mut SessionState;
     /// Returns the tab that shows it.
     fn tab(&self) -> Tab;
-    /// The device lives in this process.
+    /// Returns whether the device lives in this process.
     fn is_virtual(&self) -> bool;
     /// Returns whether its connection is open.
     fn is_connected(&self) -> bool;

@@ -47,7 +47,7 @@ impl Recorder {
         group.into_iter().for_each(|group| self.break_before_next(group));
     }
 
-    /// The samples of a line are seen in other units from now on.
+    /// Changes the units in which the samples of a line are seen.
     pub(in crate::app) fn rescale(&mut self, id: LineId, scales: Vec<Scale>) {
         if self.line(id).is_none_or(|line| line.scales == scales) {
             return;

@@ -201,12 +201,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// Samples are missing before the next ones of every group.
+    /// Notes that samples are missing before the next ones of every group.
     pub(in crate::app) fn break_all(&mut self) {
         self.groups.values_mut().for_each(Group::break_before_next);
     }
 
-    /// Samples are missing before the next ones of a group.
+    /// Notes that samples are missing before the next ones of a group.
     pub(crate) fn break_before_next(&mut self, group: GroupId) {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }

@@ -28,7 +28,7 @@ fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f6
     recorder.append(group, &[at(time)], &parts).unwrap();
 }
 
-/// A sample a millisecond, counts as the time.
+/// Adds one sample per millisecond, which counts as the time.
 fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
     (from..to).for_each(|time| add(recorder, group, time, time, time as f64 / 1000.0, Flags::NONE));
 }

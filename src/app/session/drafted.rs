@@ -47,7 +47,7 @@ pub trait Drafted: HasSession {
         self.pending_mut().revert();
     }
 
-    /// A profile of a connected device was written.
+    /// Handles the write of a profile of a connected device.
     fn written_beside(&mut self, _document: Document) {}
 
     /// Returns the key of the draft; `None` for a device that does not identify itself.

@@ -46,7 +46,7 @@ pub trait Kind: Device + Sized {
     /// Returns a job as text.
     fn job_text(job: &Self::Job) -> Text;
 
-    /// A job changes the device's memory.
+    /// Returns whether a job changes the device's memory.
     fn writes(_job: &Self::Job) -> bool {
         false
     }

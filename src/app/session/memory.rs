@@ -68,7 +68,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Forgets all known data of the device: another one replies.
     fn forget_device(&mut self);
 
-    /// Called before a review is displayed.
+    /// Prepares for the display of a review.
     fn before_review(&mut self) {}
 
     /// Returns why a change is not possible, as far as known without querying the device.
@@ -84,7 +84,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Marks the values that the running plan changes to be read again, however it ends.
     fn reads_again(&mut self) {}
 
-    /// The plan that is being carried out is done.
+    /// Handles the end of the plan that was carried out.
     fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
     /// Logs that a write has begun, with its changes.

@@ -87,7 +87,7 @@ pub trait Saved: WithMemory {
         }
     }
 
-    /// A backup was read, or not.
+    /// Handles the end of reading a backup.
     fn take_backup(&mut self, path: &Path, result: Result<Box<Document>, ReadError>, services: &mut Services) {
         let restored = result.and_then(|own| {
             let known = own.known().map_err(ReadError::Profile)?;

@@ -30,7 +30,7 @@ pub enum EarlyEnd<'e, E> {
 
 /// A device at the end of a line.
 pub trait SessionEvents: HasSession {
-    /// Samples, and how many were dropped before them.
+    /// Takes samples, and the number of those dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
     /// Returns the meaning of a frame in the trace; empty if it has none besides its bytes. Called once per frame, in
@@ -42,7 +42,7 @@ pub trait SessionEvents: HasSession {
     /// Handles a message that the device sent meanwhile.
     fn message_received(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
-    /// A job is done.
+    /// Handles the end of a job.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
     /// Returns whether the error means that the link is open but the device is silent.
@@ -51,7 +51,7 @@ pub trait SessionEvents: HasSession {
     /// Forgets pending requests: their replies will not arrive.
     fn forget_requests(&mut self);
 
-    /// The line is about to be let go.
+    /// Handles the release of the line, before it.
     fn line_ends(&mut self) {}
 
     /// Handles a step of the running job.
@@ -85,7 +85,7 @@ pub trait SessionEvents: HasSession {
         self.poll_line(services);
     }
 
-    /// The same, for a kind that does more at such a time.
+    /// Polls the line, for a kind that does more at such a time.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples from before a job come before its result; later ones come the next time.
         self.take_samples_and_frames();
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.may_have_changed();
     }
 
-    /// A sample failed, and polling is off.
+    /// Handles a failed sample, after which polling is off.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.polling_ends();
         match Self::Device::loss(error) {
@@ -158,7 +158,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// A job failed.
+    /// Handles a failed job.
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
         services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));

@@ -87,7 +87,7 @@ impl SessionState {
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 
-    /// The device has answered, if only with a refusal.
+    /// Notes that the device has answered, if only with a refusal.
     pub(crate) fn answers(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;

@@ -67,7 +67,7 @@ impl Meaning {
         Meaning { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
-    /// Positions of the one are positions of the other, only seen in other units.
+    /// Returns whether positions of the one are positions of the other, only seen in other units.
     pub(super) fn is_same_place(&self, other: &Meaning) -> bool {
         let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)

@@ -48,7 +48,7 @@ impl LineState {
         }
     }
 
-    /// The last exchange failed.
+    /// Returns whether the last exchange failed.
     pub fn is_troubled(&self) -> bool {
         self.troubled_since.is_some()
     }
@@ -59,14 +59,14 @@ impl LineState {
         self.outstanding_since = None;
     }
 
-    /// A request leaves now.
+    /// Notes that a request is sent now.
     pub(crate) fn sent(&mut self, at: Moment) {
         self.outstanding_since.get_or_insert(at);
         self.last_sent = at;
         self.quality.requests += 1;
     }
 
-    /// A reply that can be understood has come.
+    /// Notes that a valid reply has come.
     pub(crate) fn answered(&mut self) {
         self.outstanding_since = None;
         self.quality.replies += 1;

@@ -253,7 +253,7 @@ impl Signals {
         }
     }
 
-    /// A task has ended with a result.
+    /// Handles the result of a task.
     pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Read { number, read } => {
@@ -273,7 +273,7 @@ impl Signals {
         }
     }
 
-    /// A task has ended without a result.
+    /// Handles a task without a result.
     fn failed(&mut self, failed: Failed, services: &mut Services) {
         let what = match failed {
             Failed::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {

@@ -172,7 +172,7 @@ impl Feed {
         }
     }
 
-    /// The adapter lives in this process.
+    /// Returns whether the adapter lives in this process.
     pub(super) fn is_virtual(&self) -> bool {
         match self {
             Feed::Virtual(_) => true,
@@ -180,7 +180,7 @@ impl Feed {
         }
     }
 
-    /// Other settings of the virtual encoder.
+    /// Changes the settings of the virtual encoder.
     pub(super) fn change(&self, checked: Checked) {
         if let Feed::Virtual(stream) = self {
             stream.change(checked);

@@ -245,7 +245,7 @@ impl Source {
         self.link.parse().ok()
     }
 
-    /// The adapter cannot be asked now.
+    /// Reports that no request to the adapter is possible now.
     pub(crate) fn refuse(&mut self, why: Text) {
         self.adapter_problem = Some(why);
     }
@@ -409,7 +409,7 @@ impl Signals {
         services.tell(Severity::Error, vec![why], None);
     }
 
-    /// The newest samples were measured.
+    /// Takes the measurement of the newest samples.
     pub(super) fn measured(&mut self, number: u32, measurement: Measurement, services: &mut Services) {
         let current = self.source.runs == number;
         let Some(live) = self.source.live.as_mut().filter(|_| current) else { return };

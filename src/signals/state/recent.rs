@@ -57,7 +57,7 @@ impl Recent {
         self.newest
     }
 
-    /// Enough is new since the last measurement.
+    /// Returns whether enough is new since the last measurement.
     pub(super) fn is_due(&self, measured: Option<Time>) -> bool {
         match (self.newest, measured) {
             (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,

@@ -149,8 +149,8 @@ mod tests {
 
     use super::*;
 
-    /// 1.25 revolutions of 64 periods, 1 % offset of the sine, an eccentricity of 0.01°, an absolute position that is
-    /// 3 steps ahead.
+    /// Returns 1.25 revolutions of 64 periods, 1 % offset of the sine, an eccentricity of 0.01°, an absolute position that
+    /// is 3 steps ahead.
     fn capture() -> Capture {
         let count = 20_000;
         let turn = |at: i32| 1.25 * f64::from(at) / f64::from(count);

@@ -236,7 +236,7 @@ fn values(
     });
 }
 
-/// Signal periods in a revolution, typed or chosen.
+/// Draws the signal periods in a revolution, typed or chosen.
 pub(super) fn periods_ui(
     ui: &mut Ui,
     theme: &Theme,

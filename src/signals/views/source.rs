@@ -223,7 +223,7 @@ fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sour
     toggle(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
 }
 
-/// A button that shows something, or hides it.
+/// Draws a button that shows something, or hides it.
 fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     let button = egui::Button::selectable(*open, format!("{icon}  {word}")).frame_when_inactive(true);
     if name(ui.add(button), true, word).clicked() {

@@ -135,7 +135,7 @@ fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<A
     }
 }
 
-/// The offset over a capture with an absolute position.
+/// Draws the offset over a capture with an absolute position.
 fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();

@@ -76,7 +76,7 @@ pub(in crate::ui) fn connect_ui(
     });
 }
 
-/// The kinds of devices.
+/// Draws the kinds of devices.
 fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.of_devices() {
         let word = tabs.title(theme, own);

@@ -151,7 +151,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
     }
 }
 
-/// The raw sample nearest to a time, as a dot.
+/// Draws the raw sample nearest to a time, as a dot.
 fn dot(
     painter: &Painter,
     context: &Context<'_>,

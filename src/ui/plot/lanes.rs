@@ -187,7 +187,7 @@ mod tests {
     use crate::app::Text;
     use crate::app::recorder::{RecorderAction, Scale};
 
-    /// 1000 samples, a microsecond apart, of one value.
+    /// Returns 1000 samples, a microsecond apart, of one value.
     fn recorder(value: f64) -> Recorder {
         let mut recorder = Recorder::new(1_000_000);
         let group = recorder.add_group(&[Kind::Real], 10_000, None);

@@ -50,7 +50,7 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
 /// Width in points from which the numbers of all lines are below each other.
 const WIDE: f32 = 640.0;
 
-/// A row a line, a column a number.
+/// Draws a row per line, a column per number.
 fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {

@@ -83,7 +83,7 @@ pub(super) struct Pen {
     pub(super) warning: Color32,
 }
 
-/// The shapes of a line in a lane.
+/// Draws the shapes of a line in a lane.
 pub(super) fn shapes(
     picture: &Picture,
     lane: Rect,
@@ -182,7 +182,7 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
     }
 }
 
-/// A straight piece as two triangles.
+/// Draws a straight piece as two triangles.
 fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     let along = (to - from).normalized() * (WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);

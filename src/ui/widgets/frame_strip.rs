@@ -140,7 +140,7 @@ impl Words {
     }
 }
 
-/// The bits of a piece, and the bar below them that holds them together.
+/// Draws the bits of a piece, and the bar below them that holds them together.
 fn cells(
     painter: &Painter,
     theme: &Theme,

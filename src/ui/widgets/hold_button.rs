@@ -74,7 +74,7 @@ pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
     drawn.keyboard.is_some_and(|(id, pass)| focused == Some(id) && pass + 1 >= ctx.cumulative_pass_nr())
 }
 
-/// The pointer held a hold button in the picture before.
+/// Returns whether the pointer held a hold button in the previous frame.
 pub(in crate::ui) fn is_hold_button_held(ctx: &Context) -> bool {
     drawn(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }

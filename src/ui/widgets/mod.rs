@@ -41,7 +41,7 @@ pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: 
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);
 }
 
-/// Diagonal lines.
+/// Draws diagonal lines.
 pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color32) {
     let painter = painter.with_clip_rect(rect.shrink(1.0).intersect(painter.clip_rect()));
     let mut x = rect.left() - rect.height();

@@ -91,7 +91,7 @@ fn segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     }
 }
 
-/// The numbers of every eighth step.
+/// Draws the numbers of every eighth step.
 fn quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in

@@ -157,7 +157,7 @@ fn cut_at_every_exchange(scene: &Scene, way: Way) {
     }
 }
 
-/// The cuts have hit every step in which anything is sent.
+/// Checks that the cuts have hit every step in which anything is sent.
 fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
     let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(steps_of).collect();
     if missed.contains(&ProcedureStep::Restart) && name != "lost" {

@@ -51,7 +51,7 @@ pub(super) fn read(desk: &Desk, number: u16) -> i64 {
     }
 }
 
-/// A pad is pressed, as soon as the drive may move, and held until something is so.
+/// Presses a pad as soon as the drive may move, and holds it until a condition holds.
 #[track_caller]
 pub(super) fn held_until(desk: &mut Desk, press: Motor, what: &str, condition: impl Fn(&Unit) -> bool) {
     let drive = unit(desk).drive();

@@ -181,7 +181,7 @@ impl AdapterState {
         self.power.found
     }
 
-    /// The encoder had power before the session, or had none.
+    /// Sets whether the encoder had power before the session.
     pub(crate) const fn find_supplied(&mut self, is_supplied: bool) {
         self.power.found = Some(is_supplied);
     }

@@ -72,7 +72,7 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// 0 or 1.
+    /// Reads 0 or 1.
     pub(super) fn switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),

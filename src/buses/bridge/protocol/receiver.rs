@@ -16,7 +16,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Bytes that have come.
+    /// Takes the received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }

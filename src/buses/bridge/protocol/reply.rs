@@ -157,7 +157,7 @@ impl Capabilities {
     /// A state, not a capability: the encoder's supply is on. An adapter that does not report it has this bit clear.
     pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
-    /// Any word is a set of capabilities.
+    /// Creates it: any word is a set of capabilities.
     pub const fn new(word: u32) -> Self {
         Capabilities(word)
     }
@@ -189,7 +189,7 @@ impl BissStatus {
     /// The data line stays at 1.
     pub const STUCK_HIGH: BissStatus = BissStatus(3);
 
-    /// Any byte is a status.
+    /// Creates it: any byte is a status.
     pub const fn new(byte: u8) -> Self {
         BissStatus(byte)
     }
@@ -214,7 +214,7 @@ impl ErrorCode {
     /// The adapter was too slow.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 
-    /// Any byte is a code.
+    /// Creates it: any byte is a code.
     pub const fn new(byte: u8) -> Self {
         ErrorCode(byte)
     }

@@ -139,7 +139,7 @@ impl SsiFlags {
     /// Bit 0: at the clock's falling edge, as usual.
     pub const FALLING_EDGE: SsiFlags = SsiFlags(0x01);
 
-    /// Any byte is a set of flags.
+    /// Creates it: any byte is a set of flags.
     pub const fn new(byte: u8) -> Self {
         SsiFlags(byte)
     }

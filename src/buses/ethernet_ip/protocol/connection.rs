@@ -128,7 +128,7 @@ impl NetworkParameters {
         self.0 & VARIABLE != 0
     }
 
-    /// Several masters may own the outputs.
+    /// Returns whether several masters may own the outputs.
     pub const fn redundant_owner(self) -> bool {
         self.0 & OWNER != 0
     }
@@ -148,7 +148,7 @@ impl Transport {
         self.0
     }
 
-    /// 1: data with a count and without a reply; 3: messages.
+    /// Returns 1: data with a count and without a reply; 3: messages.
     pub const fn class(self) -> u8 {
         self.0 & 0x0F
     }
@@ -183,7 +183,7 @@ impl ConnectionTimeout {
         self.0
     }
 
-    /// 4 to 512.
+    /// Returns 4 to 512.
     pub const fn intervals(self) -> u32 {
         4 << self.0
     }

@@ -82,7 +82,7 @@ impl Command {
     /// A message of an explicit connection.
     pub const SEND_UNIT_DATA: Command = Command(0x70);
 
-    /// Any number is a command.
+    /// Creates it: any number is a command.
     pub const fn new(number: u16) -> Self {
         Command(number)
     }
@@ -116,7 +116,7 @@ impl Frame {
         Frame::request(Command::LIST_IDENTITY, context, &Body::Empty)
     }
 
-    /// A session begins.
+    /// Creates the request that begins a session.
     pub fn register(context: [u8; 8]) -> Self {
         let body = Body::Register { version: Frame::VERSION, options: 0 };
         Frame::request(Command::REGISTER_SESSION, context, &body)

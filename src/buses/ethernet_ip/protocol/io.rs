@@ -47,7 +47,7 @@ impl RunIdle {
         self.0
     }
 
-    /// The data count.
+    /// Returns whether the data count.
     pub const fn runs(self) -> bool {
         self.0 & 1 == 1
     }

@@ -104,12 +104,12 @@ impl Request {
     /// The class of the connection manager.
     pub const CONNECTION_MANAGER: u16 = 0x06;
 
-    /// An attribute is read.
+    /// Creates the request to read an attribute.
     pub fn get(class: u16, instance: u16, attribute: u16) -> Self {
         Request { service: Service::GET, path: Path::attribute(class, instance, attribute), data: Vec::new() }
     }
 
-    /// An attribute is set.
+    /// Creates the request to set an attribute.
     pub fn set(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
         Request { service: Service::SET, path: Path::attribute(class, instance, attribute), data }
     }

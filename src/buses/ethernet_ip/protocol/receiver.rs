@@ -13,7 +13,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Bytes that have come.
+    /// Takes the received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.broken.is_none() {
             self.bytes.extend(bytes);

@@ -143,7 +143,7 @@ impl EncapsulationStatus {
     /// 69h: another version of the protocol.
     pub const VERSION: EncapsulationStatus = EncapsulationStatus(0x69);
 
-    /// Any number is a status.
+    /// Creates it: any number is a status.
     pub const fn new(code: u32) -> Self {
         EncapsulationStatus(code)
     }
@@ -181,7 +181,7 @@ impl GeneralStatus {
     /// 15h: the value is too long.
     pub const TOO_LONG: GeneralStatus = GeneralStatus(0x15);
 
-    /// Any number is a status.
+    /// Creates it: any number is a status.
     pub const fn new(code: u8) -> Self {
         GeneralStatus(code)
     }

@@ -28,7 +28,7 @@ impl Receiver {
         Receiver { node, bytes: Vec::new(), skipped: 0 }
     }
 
-    /// Bytes that have come.
+    /// Takes the received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }

@@ -79,7 +79,7 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Regi
     Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
-/// Device mode, password, and the registers of procedures, but for the plain data itself.
+/// Returns whether it is the device mode, the password, or a register of procedures, but not the plain data itself.
 fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
     let leads = |procedure: &Procedure| {

@@ -52,7 +52,7 @@ impl RegisterRange {
         (0..self.count).filter_map(move |at| self.start.plus(at))
     }
 
-    /// The shortest list of runs with these registers, which are in ascending order.
+    /// Returns the shortest list of runs with these registers, which are in ascending order.
     pub fn runs(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
         let mut runs: Vec<RegisterRange> = Vec::new();
         for address in addresses {

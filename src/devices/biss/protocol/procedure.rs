@@ -282,7 +282,7 @@ impl PulseVoltage {
     /// The limit for the average less four standard deviations: 5.3 V.
     pub const LIMIT: PulseVoltage = PulseVoltage(53);
 
-    /// Any byte is a voltage.
+    /// Creates it: any byte is a voltage.
     pub const fn new(tenths: u8) -> Self {
         PulseVoltage(tenths)
     }

@@ -81,7 +81,7 @@ pub struct Temperature(u8);
 impl Temperature {
     const OFFSET: i16 = 50;
 
-    /// Any byte is a temperature.
+    /// Creates it: any byte is a temperature.
     pub const fn new(byte: u8) -> Self {
         Temperature(byte)
     }
@@ -128,7 +128,7 @@ impl DeviceMode {
     /// Opens the mode register, written to 6Bh.
     pub const PASSWORD: u8 = 0x2A;
 
-    /// Any byte is a mode.
+    /// Creates it: any byte is a mode.
     pub const fn new(byte: u8) -> Self {
         DeviceMode(byte)
     }
@@ -138,7 +138,7 @@ impl DeviceMode {
         self.0
     }
 
-    /// The manual knows this mode.
+    /// Returns whether the manual knows this mode.
     pub const fn is_known(self) -> bool {
         matches!(self.0, 0x00 | 0x01 | 0x02 | 0x04 | 0x05 | 0x07)
     }
@@ -219,7 +219,7 @@ impl fmt::Display for Firmware {
 pub struct ProfileId(u16);
 
 impl ProfileId {
-    /// Any two bytes are a profile.
+    /// Creates it: any two bytes are a profile.
     pub const fn new(word: u16) -> Self {
         ProfileId(word)
     }

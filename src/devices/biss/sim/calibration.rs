@@ -109,7 +109,7 @@ impl Calibration {
         }
     }
 
-    /// The mode is left, or power is lost.
+    /// Handles leaving the mode, or a loss of power.
     pub(super) fn abandon(&mut self) -> Ended {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
         self.command = 0;

@@ -25,7 +25,7 @@ impl Drive {
         &self.motor
     }
 
-    /// A procedure waits for the other direction.
+    /// Notes that a procedure waits for the other direction.
     pub(super) fn other_direction(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());

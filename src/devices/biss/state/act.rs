@@ -127,7 +127,7 @@ impl Encoder {
         }
     }
 
-    /// A profile was read for a file.
+    /// Handles a profile that was read for a file.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::saved_unsaved(&profile).into_iter().collect();

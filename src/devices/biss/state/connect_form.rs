@@ -207,7 +207,7 @@ impl BissForm {
         self.way == BissWay::Bus || (self.may_say_what_is_between() && self.behind_adapter)
     }
 
-    /// A link of this kind leads to the configuration pin or to the bus.
+    /// Returns whether a link of this kind leads to the configuration pin or to the bus.
     pub fn may_say_what_is_between(&self) -> bool {
         matches!(self.way, BissWay::Virtual | BissWay::Replay)
     }

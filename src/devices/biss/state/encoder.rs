@@ -77,7 +77,7 @@ impl Encoder {
         self.description = description;
     }
 
-    /// The registers that a profile holds.
+    /// Takes the registers of a profile.
     pub(super) fn take_profile(&mut self, profile: &BissProfile) {
         let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
         for bank in profile.banks().chain(sheets) {

@@ -140,7 +140,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// Neither the encoder nor the adapter answers.
+    /// Returns whether neither the encoder nor the adapter answers.
     fn is_silence(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),

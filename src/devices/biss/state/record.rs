@@ -191,7 +191,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Frames with a wrong CRC since the link was opened.
+    /// Returns the number of frames with a wrong CRC since the link was opened.
     pub fn crc_errors(&self) -> u64 {
         self.crc_errors
     }

@@ -84,7 +84,7 @@ fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     ui.add_space(theme.space.inside);
 }
 
-/// The button that leads back to operation.
+/// Draws the button that returns to operation.
 fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {

@@ -194,7 +194,7 @@ impl Device for Hiperdrive {
         self.remark.take()
     }
 
-    /// Drives that are in control are stopped and let go.
+    /// Stops the drives that are in control and releases them.
     fn leave(&mut self, desk: &mut SessionContext) {
         self.end(desk);
     }

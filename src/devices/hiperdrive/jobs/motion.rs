@@ -171,7 +171,7 @@ impl Motion {
         self.lock().intent.drive
     }
 
-    /// The limits of a drive are to be confirmed before it moves.
+    /// Requires that the limits of a drive are confirmed before it moves.
     pub fn unconfirm_limits(&self, drive: DriveNumber) {
         self.with_limits(drive, DriveLimits::unconfirm);
     }
@@ -255,7 +255,7 @@ impl Motion {
         self.lock().punctual = punctual;
     }
 
-    /// The connection's thread has failed, or never began.
+    /// Notes that the connection's thread has failed, or never began.
     pub(super) fn fail(&self) {
         let mut cell = self.lock();
         (cell.view.open, cell.view.lost) = (false, Some(CyclicLost::Failed));
@@ -281,7 +281,7 @@ impl Motion {
         self.lock().connected
     }
 
-    /// The cyclic connection was opened, or closed at both ends.
+    /// Notes that the cyclic connection was opened, or closed at both ends.
     pub(super) fn set_connected(&self, connected: bool) {
         self.lock().connected = connected;
     }

@@ -43,7 +43,7 @@ pub(super) struct SessionWatch {
 }
 
 impl SessionWatch {
-    /// A request goes out.
+    /// Notes that a request is sent.
     pub(super) const fn ask(&mut self, now: Moment) {
         if self.asked.is_none() {
             self.asked = Some(now);

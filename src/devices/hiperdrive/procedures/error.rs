@@ -305,7 +305,7 @@ impl Error {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
 
-    /// The user cancelled it.
+    /// Returns whether the user cancelled it.
     pub const fn is_cancelled(&self) -> bool {
         matches!(self, Error::Cancelled)
     }
@@ -315,7 +315,7 @@ impl Error {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }
 
-    /// The device has answered, and does not do it.
+    /// Returns the refusal if the device has answered and does not do it.
     pub const fn refusal(&self) -> Option<&Refusal> {
         match self {
             Error::Refused { refusal, .. } => Some(refusal),

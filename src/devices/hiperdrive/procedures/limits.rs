@@ -87,7 +87,7 @@ impl DriveLimits {
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
     }
 
-    /// The limits have to be confirmed before the drive moves.
+    /// Requires that the limits are confirmed before the drive moves.
     pub const fn unconfirm(&mut self) {
         self.unconfirmed = true;
     }

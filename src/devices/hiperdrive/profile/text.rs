@@ -81,7 +81,7 @@ impl Profile for HiperdriveProfile {
 }
 
 impl HiperdriveProfile {
-    /// Parameters of the device, or of a drive.
+    /// Writes parameters of the device, or of a drive.
     fn write_parameters(&self, writer: &mut Writer, drive: Option<DriveNumber>) {
         let unknown = self.unknown.0.get(&drive).map(Vec::as_slice).unwrap_or_default();
         let own: Vec<(ParameterNumber, i64)> = self

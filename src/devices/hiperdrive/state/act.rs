@@ -120,7 +120,7 @@ impl Unit {
         self.session.submit(job, services)
     }
 
-    /// A profile was read for a file.
+    /// Handles a profile that was read for a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);

@@ -244,7 +244,7 @@ impl Moves {
         }
     }
 
-    /// The limits of a drive are to be confirmed before it moves.
+    /// Requires that the limits of a drive are confirmed before it moves.
     pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().unconfirm();
         if let Some(motion) = &self.motion {
@@ -333,7 +333,7 @@ impl Moves {
         self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
     }
 
-    /// The limits of a drive are to be read before it moves.
+    /// Requires that the limits of a drive are read before it moves.
     pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().doubt(self.looked);
         if let Some(motion) = &self.motion {

@@ -53,7 +53,7 @@ impl AxisPicture<'_> {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
-    /// A button of the run, with why it cannot be pressed.
+    /// Draws a button of the run, with why it cannot be pressed.
     fn button(&self, ui: &mut Ui, theme: &Theme, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
         if allowed_button(ui, theme, &allowed, icon, word).clicked() {
@@ -167,7 +167,7 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
-/// The step that counts.
+/// Draws the step that counts.
 fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();

@@ -73,7 +73,7 @@ fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// The two buttons that are held.
+/// Draws the two buttons that are held.
 pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     ui.horizontal(|ui| {

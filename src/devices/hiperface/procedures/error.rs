@@ -198,7 +198,7 @@ impl Error {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
     }
 
-    /// The encoder refused with this code.
+    /// Returns whether the encoder refused with this code.
     pub fn is_rejection(&self, code: StatusCode) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.contains(&code))
     }

@@ -46,7 +46,7 @@ impl AccessCode {
     /// 55h, the factory value of all four codes.
     pub const FACTORY: AccessCode = AccessCode(0x55);
 
-    /// Any byte is an access code.
+    /// Creates it: any byte is an access code.
     pub const fn new(byte: u8) -> Self {
         AccessCode(byte)
     }
@@ -113,7 +113,7 @@ impl DataFieldStatus {
     const WRITE_ENABLE: u8 = 0x40;
     const CODE_REQUIRED: u8 = 0x08;
 
-    /// Every byte is a status byte.
+    /// Creates it: every byte is a status byte.
     pub const fn from_byte(byte: u8) -> Self {
         DataFieldStatus(byte)
     }
@@ -149,7 +149,7 @@ impl DataFieldStatus {
         self.0 & Self::CODE_REQUIRED != 0
     }
 
-    /// (SIZE + 1) · 16 bytes.
+    /// Returns (SIZE + 1) · 16 bytes.
     pub const fn size(self) -> FieldSize {
         FieldSize((self.0 & 7) + 1)
     }

@@ -30,7 +30,7 @@ impl LineSettings {
     const STANDARD: u8 = 0x80;
     const LONG_TIMEOUT: u8 = 0x40;
 
-    /// Every byte is kept, also one with reserved values.
+    /// Creates it: every byte is kept, also one with reserved values.
     pub const fn from_byte(byte: u8) -> Self {
         LineSettings(byte)
     }

@@ -87,7 +87,7 @@ impl StatusCode {
     /// 1Fh: the shaft turns too fast.
     pub const TOO_FAST: StatusCode = StatusCode(0x1F);
 
-    /// Any byte is a status code.
+    /// Creates it: any byte is a status code.
     pub const fn new(byte: u8) -> Self {
         StatusCode(byte)
     }

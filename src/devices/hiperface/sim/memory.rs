@@ -50,7 +50,7 @@ impl Memory {
         self
     }
 
-    /// 4Eh.
+    /// Handles 4Eh.
     pub fn free(&self) -> FreeMemory {
         let blocks = (self.bytes.len() - self.used()) / FieldSize::BLOCK;
         // Both fit: a memory has at most 255 blocks, and a field at least one.
@@ -58,7 +58,7 @@ impl Memory {
         FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
     }
 
-    /// 4Ch.
+    /// Handles 4Ch.
     ///
     /// # Errors
     /// 12h for a field that does not exist.
@@ -83,7 +83,7 @@ impl Memory {
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
-    /// 4Ah.
+    /// Handles 4Ah.
     ///
     /// # Errors
     /// 12h, 11h, and 0Fh if the field requires its code.
@@ -109,7 +109,7 @@ impl Memory {
         if status.is_writable() { Ok(()) } else { Err(StatusCode::WRITE_PROTECTED) }
     }
 
-    /// 4Bh.
+    /// Handles 4Bh.
     ///
     /// # Errors
     /// Those of [`check_store`](Self::check_store); then nothing is written.
@@ -121,7 +121,7 @@ impl Memory {
         Ok(())
     }
 
-    /// 4Dh: creates the next field, changes or deletes an existing one.
+    /// Handles 4Dh: creates the next field, changes or deletes an existing one.
     ///
     /// # Errors
     /// 12h for a number beyond the next one, 0Fh for a wrong code, 0Eh for FFh, 10h if there is no space, or if a field
@@ -135,7 +135,7 @@ impl Memory {
         }
     }
 
-    /// 4Fh.
+    /// Handles 4Fh.
     ///
     /// # Errors
     /// 0Fh if `old` is not the present value.

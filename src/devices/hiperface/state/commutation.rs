@@ -104,7 +104,7 @@ impl Commutation {
         self.asked.as_ref().map(|asked| asked.slot)
     }
 
-    /// The encoder is asked for a position at rest.
+    /// Requests a position at rest for a slot.
     fn ask(&mut self, slot: Slot) {
         self.asked = Some(Asked { slot, source: self.form.source, phase: self.form.phase.clone() });
     }

@@ -25,7 +25,7 @@ impl Encoder {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
     }
 
-    /// The shaft was read at rest.
+    /// Takes a reading of the shaft at rest.
     pub(super) fn take_rest(&mut self, rest: Rest) {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.told = Some(Ok(rest));

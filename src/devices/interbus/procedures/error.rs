@@ -66,7 +66,7 @@ impl fmt::Display for RequestedItem {
 pub struct Exception(u8);
 
 impl Exception {
-    /// Any code.
+    /// Creates it from any code.
     pub const fn new(code: u8) -> Self {
         Exception(code)
     }
@@ -107,7 +107,7 @@ impl Exception {
         }
     }
 
-    /// Asking again may help.
+    /// Returns whether asking again may help.
     pub(super) const fn passes(self) -> bool {
         !matches!(self.0, 1..=3)
     }
@@ -355,7 +355,7 @@ impl Error {
         }
     }
 
-    /// The user cancelled it.
+    /// Returns whether the user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         match self {
             Error::Cancelled => true,

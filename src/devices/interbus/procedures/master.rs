@@ -113,7 +113,7 @@ impl<'a> Master<'a> {
         if self.unsure { None } else { self.is }
     }
 
-    /// The gear that is in force from now on, as far as this session knows.
+    /// Sets the gear in force from now on, as far as this session knows.
     pub(super) fn learn_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }

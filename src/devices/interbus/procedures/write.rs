@@ -226,7 +226,7 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
     Ok(())
 }
 
-/// The shaft's place becomes the preset, which was programmed before.
+/// Sets the shaft's position to the preset, which was programmed before.
 fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();

@@ -103,7 +103,7 @@ impl Parameters {
         }
     }
 
-    /// Steps and turns as the gear that they are together.
+    /// Returns steps and turns as the gear that they are together.
     ///
     /// # Errors
     /// One of them is out of range.

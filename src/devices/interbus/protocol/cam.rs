@@ -52,7 +52,7 @@ impl CamNumber {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
     }
 
-    /// 0 to 7.
+    /// Returns 0 to 7.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -74,7 +74,7 @@ impl ProgramNumber {
         if number >= 1 && number as usize <= ProgramNumber::COUNT { Some(ProgramNumber(number)) } else { None }
     }
 
-    /// 1 to 8.
+    /// Returns 1 to 8.
     pub const fn get(self) -> u8 {
         self.0
     }

@@ -49,7 +49,7 @@ impl WindowShift {
         if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
     }
 
-    /// 0 to 25.
+    /// Returns 0 to 25.
     pub const fn get(self) -> u8 {
         self.0
     }

@@ -88,7 +88,7 @@ impl ReadOut {
     /// Ch, in tenths of a degree Celsius.
     pub const TEMPERATURE: ReadOut = ReadOut(0xC);
 
-    /// Any number is a read-out.
+    /// Creates it: any number is a read-out.
     pub const fn new(number: u16) -> Self {
         ReadOut(number)
     }

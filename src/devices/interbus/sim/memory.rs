@@ -31,12 +31,12 @@ impl Memory {
         }
     }
 
-    /// Steps and turns.
+    /// Returns steps and turns.
     pub const fn gear(&self) -> Gear {
         self.gear
     }
 
-    /// 3 clockwise, 4 counterclockwise.
+    /// Returns 3 for clockwise, 4 for counterclockwise.
     pub const fn direction(&self) -> u32 {
         if self.counterclockwise { 4 } else { 3 }
     }

@@ -241,7 +241,7 @@ impl Encoder {
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 
-    /// A word of a handshake passed.
+    /// Handles a word of a handshake.
     pub(super) fn shake(&mut self, step: Handshake) {
         self.handshake.push_back(step);
         let surplus = self.handshake.len().saturating_sub(STEPS);

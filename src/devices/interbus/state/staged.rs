@@ -117,7 +117,7 @@ impl Staged {
         self.rebase(Wanted { image, names });
     }
 
-    /// The parameters were read.
+    /// Takes the parameters that were read.
     pub fn refresh_parameters(&mut self, parameters: Parameters) {
         self.refresh(Image::of(parameters));
     }

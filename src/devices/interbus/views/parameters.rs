@@ -196,7 +196,7 @@ fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-/// The words of the last handshakes.
+/// Draws the words of the last handshakes.
 fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {

@@ -148,7 +148,7 @@ impl Station {
         }
     }
 
-    /// The next word that is asked for is the first of many.
+    /// Makes the next requested word the first of many.
     pub(crate) fn count_anew(&mut self) {
         self.asked = 0;
     }

@@ -81,7 +81,7 @@ impl Flags {
         if index < 8 { Flags(1 << index) } else { Flags::NONE }
     }
 
-    /// The frame is pattern `index` of the descriptor.
+    /// Returns the flag of pattern `index` of the descriptor.
     pub const fn pattern(index: usize) -> Flags {
         if index < 4 { Flags(1 << (8 + index)) } else { Flags::NONE }
     }
@@ -91,7 +91,7 @@ impl Flags {
         other.0 != 0 && self.0 & other.0 == other.0
     }
 
-    /// Any of `other` is set.
+    /// Returns whether any of `other` is set.
     pub const fn any(self, other: Flags) -> bool {
         self.0 & other.0 != 0
     }

@@ -166,7 +166,7 @@ impl Encoder {
         });
     }
 
-    /// A layout that was found, as the layout on the drawing board.
+    /// Takes a layout that was found as the layout that is being designed.
     fn take_found(&mut self, class: usize, member: usize) {
         let Hunt::Found { search, .. } = &self.hunt else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };

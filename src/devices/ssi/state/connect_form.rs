@@ -139,7 +139,7 @@ impl SsiForm {
     }
 }
 
-/// A setting of the virtual encoder or of the virtual adapter before it.
+/// Returns whether it is a setting of the virtual encoder or of the virtual adapter before it.
 fn is_of_the_virtual(name: &str) -> bool {
     bridge::keys(at_adapter()).contains(&name)
 }

@@ -117,7 +117,7 @@ impl Encoder {
         self.design().profile.clone()
     }
 
-    /// The user's own families were read.
+    /// Takes the user's own families that were read.
     pub(crate) fn take_families(&mut self, families: Arc<Families>) {
         self.designer.take_families(families);
     }

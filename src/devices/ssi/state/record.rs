@@ -84,7 +84,7 @@ impl Record {
         }
     }
 
-    /// A session has begun.
+    /// Begins a session.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.track.begin(began);
         self.kept.clear();

@@ -69,7 +69,7 @@ impl Trial {
         }
     }
 
-    /// The frame of a turn and the steps within it.
+    /// Sets the frame of a turn and the steps within it.
     pub(super) fn set_place(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),
@@ -77,7 +77,7 @@ impl Trial {
         }
     }
 
-    /// A frame as it was written down.
+    /// Sets a frame from its text.
     pub(super) fn set_text(&mut self, layout: &Layout, text: &str) {
         match parse_frame(text, layout.clocks()) {
             Ok(frame) => self.set(frame),
@@ -92,7 +92,7 @@ impl Trial {
         }
     }
 
-    /// A frame that was read.
+    /// Sets a frame that was read.
     pub(super) fn set(&mut self, frame: u64) {
         *self = Trial { frame, problem: None };
     }

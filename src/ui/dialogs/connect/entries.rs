@@ -138,7 +138,7 @@ pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));
 }
 
-/// One of a few, side by side.
+/// Draws one of a few choices, side by side.
 pub(crate) fn segments<T: PartialEq + Copy, const N: usize>(
     ui: &mut Ui,
     theme: &Theme,

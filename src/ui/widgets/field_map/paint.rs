@@ -139,7 +139,7 @@ pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: 
     }
 }
 
-/// Two short lines at the end of the last field.
+/// Draws two short lines at the end of the last field.
 pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     let colour = if active { theme.palette.accent } else { theme.palette.text };
     let (x, y) = (run.right() - theme.space.between, run.center().y);

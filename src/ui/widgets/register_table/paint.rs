@@ -55,7 +55,7 @@ const fn title(kind: RegisterKind, column: Column) -> &'static str {
     }
 }
 
-/// The names of the columns.
+/// Draws the names of the columns.
 pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &Columns) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
     let middle = rect.top() + HEADER / 2.0 - 2.0;

@@ -93,7 +93,7 @@ impl OperationError for Failure {
 }
 
 impl Failure {
-    /// The user cancelled it.
+    /// Returns whether the user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         *self == Failure::Device(Error::Cancelled)
     }

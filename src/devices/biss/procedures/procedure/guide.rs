@@ -106,7 +106,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.step
     }
 
-    /// The operation of that number begins.
+    /// Begins the operation of that number.
     pub(in crate::devices::biss::procedures) fn begin(&mut self, op: usize) {
         self.op = op;
     }

@@ -246,7 +246,7 @@ pub enum Answer {
 
 /// Operator at the motor.
 pub trait Operator {
-    /// Called when a task is given for the first time: earlier answers belong to another task.
+    /// Prepares for a new task: earlier answers belong to another task.
     fn begins(&mut self) {}
 
     /// Asks repeatedly, a few times per second, each time with a new measurement.

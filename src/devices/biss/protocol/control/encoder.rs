@@ -65,7 +65,7 @@ impl Encoder {
         Encoder { slave: slave & 7, zeros: 0, state: State::Rest }
     }
 
-    /// CDS of the cycle that begins.
+    /// Returns CDS of the cycle that begins.
     pub fn cds(&mut self) -> bool {
         match self.state {
             State::Rest | State::Ignoring | State::Start { access: Access::Read(None), .. } => false,

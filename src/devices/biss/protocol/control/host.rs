@@ -55,7 +55,7 @@ impl Transfer {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Bit number `at` of DATA and CRC4 that the host sends.
+    /// Returns bit number `at` of DATA and CRC4 that the host sends.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }

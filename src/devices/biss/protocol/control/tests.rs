@@ -74,7 +74,7 @@ impl Line {
         }
     }
 
-    /// Another encoder, which has been on the line for long.
+    /// Adds another encoder, which has been on the line for long.
     fn attach(&mut self, slave: u8) {
         self.encoder = Encoder::new(slave);
         (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.cdm(false), None));

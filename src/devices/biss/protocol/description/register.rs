@@ -200,7 +200,7 @@ impl Register {
         })
     }
 
-    /// Writing this value spends a write cycle of the flash.
+    /// Returns whether writing this value spends a write cycle of the flash.
     pub fn is_save(&self, value: u8) -> bool {
         self.saves.contains(&value)
     }

@@ -45,7 +45,7 @@ impl Host {
         assert_eq!(self.read(register), value, "{register}");
     }
 
-    /// The prologue of every procedure.
+    /// Runs the prologue of every procedure.
     #[track_caller]
     fn enter(&mut self, mode: u8) {
         self.put("0x6B", 0x2A);

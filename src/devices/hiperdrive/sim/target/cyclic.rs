@@ -80,7 +80,7 @@ impl Plant {
         }
     }
 
-    /// A datagram has come.
+    /// Handles a received datagram.
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance(now);
         if !self.hears() || !self.arrives() {

@@ -173,7 +173,7 @@ impl Plant {
         Some(bytes)
     }
 
-    /// A datagram leaves at that moment, if it gets through.
+    /// Sends a datagram at that moment, if it gets through.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.carry(bytes) {
             self.datagrams.insert(at + self.faults.delay(), (to, bytes));

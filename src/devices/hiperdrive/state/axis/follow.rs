@@ -106,7 +106,7 @@ impl Axis {
         }
     }
 
-    /// A test move was begun by this act.
+    /// Notes that a test move was begun by this act.
     pub(crate) fn went(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
@@ -175,7 +175,7 @@ impl Axis {
         }
     }
 
-    /// The device has stopped answering.
+    /// Notes that the device has stopped answering.
     pub(crate) fn lose(&mut self) {
         self.not_written(true);
         self.going = None;

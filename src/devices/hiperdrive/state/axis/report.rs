@@ -90,7 +90,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// A text, in as many lines as it takes.
+    /// Writes a text, in as many lines as it takes.
     fn line(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
         for word in text.words(self.language).split_whitespace() {

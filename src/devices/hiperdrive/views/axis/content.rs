@@ -131,7 +131,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     }
 }
 
-/// The two buttons that are held, slow and weak.
+/// Draws the two buttons that are held, slow and weak.
 fn pads(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
@@ -214,7 +214,7 @@ fn reference(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entr
     }
 }
 
-/// Three places, and whether they were reached.
+/// Draws three places, and whether they were reached.
 fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {

@@ -67,7 +67,7 @@ pub fn field_code_required(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }
 
-/// Periods and turns, or the length of a period.
+/// Returns the text of periods and turns, or the length of a period.
 pub fn geometry(geometry: Geometry) -> Text {
     match geometry {
         Geometry::Rotary { periods, turns: 1 } => TEXTS.text("geometry.singleturn").with("periods", periods),

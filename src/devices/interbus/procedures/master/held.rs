@@ -48,12 +48,12 @@ impl Held {
         self.lasted = now.since(*self.since.get_or_insert(now));
     }
 
-    /// Long enough for an answer that cannot be an old one.
+    /// Returns whether it lasts long enough for an answer that cannot be an old one.
     pub(super) fn stands(self) -> bool {
         self.cycles >= STANDS && self.lasts(STANDS_FOR)
     }
 
-    /// Long enough for one that could be.
+    /// Returns whether it lasts long enough for one that could be.
     pub(super) fn stays(self) -> bool {
         self.stays_for(STAYS_FOR)
     }

@@ -30,7 +30,7 @@ impl Setting<'_> {
     }
 }
 
-/// An edge has to be a position that there is.
+/// Checks that an edge is an existing position.
 fn within(value: Value, gear: Gear) -> Result<Value, Fault> {
     if value.get() < gear.steps() { Ok(value) } else { Err(Fault::BeyondRange) }
 }

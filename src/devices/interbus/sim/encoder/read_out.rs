@@ -12,13 +12,13 @@ const MULTITURN: u32 = 2;
 const CHIP: u32 = 0x40;
 
 impl Encoder {
-    /// 2021xxxxh.
+    /// Handles 2021xxxxh.
     pub(super) fn read_out(&mut self, now: Moment, read_out: ReadOut) {
         let value = self.value(now, read_out);
         self.show(value);
     }
 
-    /// 2020xxxxh, of the program that runs.
+    /// Handles 2020xxxxh, of the program that runs.
     pub(super) fn read_cams(&mut self, command: Command) {
         let StartupMode::Cams(number) = self.mode else { return };
         let program = self.memory.program(number);

@@ -62,7 +62,7 @@ impl Seen {
         (1..=self.clocks).map(|clock| (clock, self.bit(clock)))
     }
 
-    /// The line stays high or low.
+    /// Returns the level of the line if it stays high or low.
     pub(super) fn stuck(&self) -> Option<bool> {
         let same = |word: u64| self.words.iter().all(|own| *own == word);
         if same(0) { Some(false) } else { same(ones(self.clocks)).then_some(true) }
@@ -86,7 +86,7 @@ impl Seen {
         counts
     }
 
-    /// The first words are followed by the same bits once more.
+    /// Returns the repetition if the first words are followed by the same bits once more.
     pub(super) fn repeat(&self) -> Option<Repeat> {
         let moving = |from: u8, to: u8| (from..=to).filter(|clock| self.bit(*clock).moves).count();
         (LEAST_WORD..self.clocks).find_map(|behind| {

@@ -14,7 +14,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
+/// Returns 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
 fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     let mut rng = Rng::with_seed(7);
     let last = layout.coding().last();

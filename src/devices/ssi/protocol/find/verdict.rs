@@ -111,7 +111,7 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 
-/// Steps are of different lengths, so that a lower bit would have been seen.
+/// Returns whether steps have different lengths, so that a lower bit would have been seen.
 pub(super) fn is_varied(read: &Read) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);

@@ -24,7 +24,7 @@ fn kinds(strip: &Strip) -> Vec<(Kind, u8, u8)> {
     strip.fields().iter().map(|field| (field.kind, field.first, field.last)).collect()
 }
 
-/// Any valid layout, with error and parity bits anywhere.
+/// Returns any valid layout, with error and parity bits anywhere.
 fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),

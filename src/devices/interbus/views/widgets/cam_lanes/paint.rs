@@ -167,7 +167,7 @@ impl Lanes<'_> {
         self.model.ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
     }
 
-    /// An edge that is pointed at or has the keyboard.
+    /// Draws an edge that is pointed at or has the keyboard.
     pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: Grip) {
         let lit = state.active || state.focused;
         let is_selected = self.model.selected == Some(cam) && self.model.movable;

@@ -34,7 +34,7 @@ fn edges(start: u32, stop: u32) -> Cam {
     Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
 }
 
-/// 1000 steps: cam 0 from 100 to 299, cam 3 from 900 over the end to 49, cam 4 off.
+/// Returns a page with 1000 steps: cam 0 from 100 to 299, cam 3 from 900 over the end to 49, cam 4 off.
 fn page() -> Page {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
