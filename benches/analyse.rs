@@ -1,6 +1,6 @@
-//! How fast a capture of ten million samples is fitted and analysed (goal: 0.5 s), and how fast a table of 100 MB is read
-//! (goal: 100 MB/s), each beside a naive way: a matrix of all samples solved by QR and an arc tangent for every sample; the
-//! lines of a text, split and parsed by the standard library.
+//! Time to fit and analyse a capture of ten million samples (goal: 0.5 s), and to read a table of 100 MB (goal: 100 MB/s),
+//! each compared with a naive solution: a matrix of all samples solved by QR and an arc tangent for every sample; the lines
+//! of a text, split and parsed by the standard library.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 use std::f64::consts::TAU;
@@ -38,7 +38,7 @@ fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     times[ROUNDS / 2]
 }
 
-/// A thousand samples a period, with some noise.
+/// Returns a thousand samples per period, with some noise.
 fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let mut random = fastrand::Rng::with_seed(1);
     let time: Vec<f64> = (0..count).map(|at| at as f64 * 1e-6).collect();
@@ -50,7 +50,7 @@ fn capture(count: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     (time, sine, cosine)
 }
 
-/// All rows of the equations at once, and the angle of each sample.
+/// Solves all rows of the equations at once, and computes the angle of each sample.
 fn naive_fit(sine: &[f64], cosine: &[f64]) -> f64 {
     let rows = sine.len();
     let design = DMatrix::from_fn(rows, 5, |row, column| {

@@ -1,5 +1,5 @@
-//! How fast BiSS frames are decoded with their checksum (goal: 20 million a second on one core), beside a checksum that is
-//! reckoned bit by bit; and how many times faster than 20 000 frames a second the stream of an adapter is taken apart and
+//! Speed of decoding BiSS frames with their checksum (goal: 20 million per second on one core), compared with a checksum
+//! calculated bit by bit; and how many times faster than 20 000 frames per second the stream of an adapter is parsed and
 //! recorded.
 //!
 //! `cargo bench --bench biss`
@@ -13,15 +13,15 @@ use encoder_studio::analysis::{Time, Unwrap};
 use encoder_studio::buses::bridge::protocol::{BissData, BissStatus, Continuity, Data, Gap, Message, Receiver};
 use encoder_studio::devices::biss::protocol::{Crc, FrameError, Layout, PositionData};
 
-/// Frames in a batch, and how often it is decoded in one measurement.
+/// Frames in a batch, and the number of its decodings in one measurement.
 const FRAMES: usize = 1 << 16;
 const PASSES: usize = 16;
 const ROUNDS: usize = 9;
-/// Of the stream.
+/// Period of the stream.
 const PERIOD_US: u32 = 50;
 const SECONDS: u32 = 10;
 
-/// Median of some rounds, in seconds.
+/// Returns the median of some rounds, in seconds.
 fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..ROUNDS)
         .map(|_| {
@@ -34,7 +34,7 @@ fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     times[ROUNDS / 2]
 }
 
-/// Frames of any positions, one in a thousand with a flipped bit.
+/// Returns the frames of any positions, one in a thousand with a flipped bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     (0..FRAMES)
@@ -51,7 +51,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
         .collect()
 }
 
-/// The batch through a decoder, some times; millions of frames a second.
+/// Decodes the batch a number of times; returns millions of frames per second.
 fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
     let mut readings = Vec::with_capacity(FRAMES);
     let seconds = median(|| {
@@ -64,7 +64,7 @@ fn rate<T>(frames: &[u64], decode: impl Fn(u64) -> T) -> f64 {
     (FRAMES * PASSES) as f64 / seconds / 1e6
 }
 
-/// The kit encoder's frame the way that the manual tells it: a bit of the checksum at a time.
+/// Decodes the kit encoder's frame as in the manual: a bit of the checksum at a time.
 fn bit_by_bit(raw: u64) -> Option<PositionData> {
     let data = raw >> 6;
     let mut sum = 0u8;
@@ -94,7 +94,7 @@ fn decoding() {
     println!("{:<32} {:>7.1}", "20 + 26 bits, CRC16", rate(&frames, |raw| wide.parse(raw)));
 }
 
-/// What an adapter sends in ten seconds: a shaft at 3000 revolutions a minute, 56 frames a packet.
+/// Returns the data that an adapter sends in ten seconds: a shaft at 3000 revolutions per minute, 56 frames per packet.
 fn sent(layout: &Layout) -> Vec<u8> {
     let frame = |index: u32| {
         let steps = u64::from(index) * 131_072 * u64::from(PERIOD_US) / 20_000;
@@ -111,7 +111,7 @@ fn sent(layout: &Layout) -> Vec<u8> {
     (0..count).step_by(56).flat_map(packet).collect()
 }
 
-/// All of it into a history; how many frames there are.
+/// Records all of it in a history; returns the number of frames.
 fn receive(bytes: &[u8], layout: &Layout) -> u64 {
     let mut receiver = Receiver::default();
     let mut continuity = Continuity::at_start();

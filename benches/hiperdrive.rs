@@ -1,8 +1,9 @@
-//! From the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and how even a cyclic
-//! connection is, beside a window that draws; each beside the naive way, a thread that sleeps an interval and then looks.
+//! Time from the release of a jog to the stop word at the drive's socket (at most an interval and 5 ms), and the jitter of
+//! a cyclic connection while a window is drawn; each compared with a naive solution, a thread that sleeps an interval and
+//! then checks.
 //!
-//! `cargo bench --bench hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) say how many and how long; of the
-//! naive way a minute says enough.
+//! `cargo bench --bench hiperdrive`; `HIPERDRIVE_RELEASES` (200) and `HIPERDRIVE_SECONDS` (20) set number and duration; for
+//! the naive solution a minute is enough.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 use std::net::UdpSocket;
@@ -46,7 +47,7 @@ fn opened(port: u16) -> Opened {
     }
 }
 
-/// A virtual drive at a socket of its own, with a clock of its own: when which word came.
+/// A virtual drive with a separate socket and clock, which records the arrival of each word.
 struct Target {
     port: u16,
     words: Receiver<(Instant, ControlWord)>,
@@ -103,12 +104,12 @@ fn permit() -> Permit {
     Permit::within(-33_000_000, 33_000_000)
 }
 
-/// A way to keep a cyclic connection.
+/// An implementation of a cyclic connection.
 trait DeviceConnection {
     fn name(&self) -> &'static str;
     fn intend(&self, wish: MotionRequest);
     fn refresh(&self);
-    /// Packets as they came, by how far their intervals were off.
+    /// Returns the received packets, by the errors of their intervals.
     fn arrivals(&self) -> Histogram;
 }
 
@@ -139,7 +140,7 @@ impl DeviceConnection for Ours {
     }
 }
 
-/// Sleeps, looks, sends.
+/// A loop that sleeps, checks and sends.
 struct Naive {
     shared: Arc<Mutex<(Intent, Histogram)>>,
     clock: Arc<RealClock>,
@@ -191,7 +192,7 @@ fn ours() -> (Box<dyn DeviceConnection>, Target) {
         timeout: Some(20),
         reference: Some(0),
     };
-    // Nothing reads them again here: as if they had been read at the end.
+    // They are not read again here: the time is that of a reading at the end.
     let read = clock.now() + Duration::from_secs(3600);
     motion.publish_limits(DriveNumber::FIRST, DriveLimits::of(rules, (Topology::Adapter, Variant::new(7)), read));
     let cyclic = Cyclic::start(packets, &opened(target.port), &[DriveNumber::FIRST], clock, &motion).unwrap();
@@ -222,7 +223,7 @@ fn naive() -> (Box<dyn DeviceConnection>, Target) {
     (Box::new(Naive { shared, clock, end, thread: Some(thread) }), target)
 }
 
-/// From a release to the stop word at the socket, in milliseconds, sorted.
+/// Returns the times from a release to the stop word at the socket, in milliseconds, sorted.
 fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f64> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut took = Vec::with_capacity(count);
@@ -247,7 +248,7 @@ fn releases(way: &dyn DeviceConnection, target: &Target, count: usize) -> Vec<f6
     took
 }
 
-/// Intervals between our packets at the socket, and between what came back.
+/// Measures the intervals between sent packets at the socket, and between received ones.
 fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [Histogram; 2] {
     sleep(INTERVAL * 5);
     target.words.try_iter().for_each(drop);
@@ -263,7 +264,7 @@ fn evenness(way: &dyn DeviceConnection, target: &Target, time: Duration) -> [His
     [sent, way.arrivals()]
 }
 
-/// A window that draws 60 times a second, half of the time.
+/// Starts a window that draws 60 times per second, half of the time.
 fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     let end = Arc::new(AtomicBool::new(false));
     let ends = end.clone();
@@ -279,7 +280,7 @@ fn window() -> (Arc<AtomicBool>, JoinHandle<()>) {
     (end, thread)
 }
 
-/// Seconds that this process has used a processor, where the system tells.
+/// Returns the processor seconds of this process, if the system reports them.
 fn processor_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<f64> =

@@ -1,5 +1,5 @@
-//! What it costs to keep samples for hours and to make pictures of them: appending beside a pyramid of plain vectors,
-//! pictures beside a full scan, memory, and a soak in virtual time. Prints figures, judges none.
+//! Cost of keeping samples for hours and of drawing them: appending compared with a pyramid of plain vectors, frames
+//! compared with a full scan, memory, and a soak test in virtual time. Prints figures without a verdict.
 //!
 //! `cargo bench --bench history`
 
@@ -90,9 +90,9 @@ impl Naive {
     }
 }
 
-/// Both in turns, and after them the same bytes copied into memory that the system has to give first, which is what keeping
-/// them costs at least. The worst stall is the longest batch that is long in every round: what the machine does beside is
-/// not.
+/// Measures both in turns, and then copies the same bytes into memory that the system has to provide first, which is the
+/// least cost of keeping them. The worst stall is the longest batch that is long in every round, which excludes other
+/// activity of the computer.
 fn append(batch: usize) {
     let samples = 4_000_000;
     let batches = samples / batch;
@@ -131,7 +131,7 @@ fn append(batch: usize) {
     println!("  a bare copy   {:6.2} ns, worst stall {:8.1} µs", each(copy), micros(copy_worst));
 }
 
-/// All batches, median, and the worst one.
+/// Returns the time of all batches, the median, and the worst one.
 fn copies(times: &[Time], columns: &[Vec<f64>], batches: usize) -> (Duration, Duration) {
     let mut least = vec![Duration::MAX; batches];
     let mut totals: Vec<Duration> = (0..ROUNDS)
@@ -182,7 +182,7 @@ fn pictures(history: &History) {
     println!("  {:>14}: {:8.1} µs", "all, full scan", micros(median(&mut took)));
 }
 
-/// First, min, max, last from the raw samples, which a plot without a pyramid has to look at.
+/// Computes first, min, max, last from the raw samples, as a plot without a pyramid has to.
 fn scan(history: &History) -> Vec<Duration> {
     let columns: Vec<Vec<f64>> = (0..SIGNALS)
         .map(|column| history.all().map(|index| history.sample(column, index).unwrap().value.to_f64()).collect())
@@ -224,7 +224,7 @@ fn memory(history: &History, columns: usize) {
 fn soak_of(label: &str, samples: usize, period: i64, columns: usize, kind: Kind) {
     const BATCH: usize = 10_000;
     const RANGE: i64 = 4096 * 32_768;
-    /// A pause of a second comes before every so many batches.
+    /// Number of batches between two pauses of a second.
     const PAUSE: usize = 500;
     let began = Instant::now();
     let mut history = History::new(&vec![kind; columns], SAMPLES).with_longest_pause(period * 10);
@@ -303,7 +303,7 @@ fn filled(kind: Kind, columns: usize, flagged: bool) -> History {
 }
 
 fn times(start: usize, count: usize) -> Vec<Time> {
-    // A little uneven, as a real line is.
+    // A little uneven, as on a real line.
     (start..start + count).map(|at| Time::from_nanoseconds(at as i64 * PERIOD + (at * 7919 % 50_000) as i64)).collect()
 }
 

@@ -1,4 +1,4 @@
-//! How fast 64 cams are evaluated (goal: 10 million positions a second), beside a loop over all of them.
+//! Speed of evaluating 64 cams (goal: 10 million positions per second), compared with a loop over all of them.
 //!
 //! `cargo bench --bench interbus`
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
@@ -11,7 +11,7 @@ use encoder_studio::devices::interbus::protocol::{Cam, Compiled, Program, Value}
 const POSITIONS: usize = 1 << 20;
 const ROUNDS: usize = 9;
 
-/// Median of some rounds, in seconds.
+/// Returns the median of some rounds, in seconds.
 fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..ROUNDS)
         .map(|_| {

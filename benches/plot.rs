@@ -1,6 +1,5 @@
-//! What a picture of the plot panel costs: layout, reduction and tessellation of four lines of ten million samples, all
-//! visible, zoomed out and in, standing still and following; beside it egui_plot on the same samples. Prints figures,
-//! judges none.
+//! Cost of a frame of the plot panel: layout, reduction and tessellation of four lines of ten million samples, all visible,
+//! zoomed out and in, still and following; compared with egui_plot on the same samples. Prints figures without a verdict.
 //!
 //! `cargo bench --bench plot`
 
@@ -22,7 +21,7 @@ const SIGNALS: usize = 4;
 /// Nanoseconds between samples.
 const PERIOD: i64 = 10_000;
 const ROUNDS: usize = 101;
-/// A plot of a thousand pixels: the gutter of the labels beside it.
+/// A plot of a thousand pixels, plus the gutter of the labels.
 const SIZE: Vec2 = Vec2::new(1060.0, 600.0);
 
 fn main() {
@@ -37,7 +36,7 @@ fn main() {
     let mut bench = Bench::new();
     let all = (Time::ORIGIN, Time::from_nanoseconds(SAMPLES as i64 * PERIOD));
     let span = all.1.nanoseconds_since(all.0);
-    // Each picture another stretch: nothing of the one before can be used again.
+    // Each frame shows another stretch, so that nothing of the previous one can be reused.
     let stretch = |share: f64, round: usize| {
         let length = (span as f64 * share) as i64;
         let from = (span - length).max(0) / 3 + round as i64 * length / 997;
@@ -61,7 +60,7 @@ fn main() {
     recorder.act(recorder::RecorderAction::Follow);
     let mut next = SAMPLES;
     let took = bench.rounds(&mut recorder, |recorder, _| {
-        // Two thousand samples between two pictures, as they come at 100 kHz.
+        // Two thousand samples between two frames, as at 100 kHz.
         append(recorder, group, next, 2_000, false);
         next += 2_000;
     });
@@ -109,7 +108,7 @@ fn append(recorder: &mut Recorder, group: GroupId, first: usize, count: usize, f
     recorder.append(group, &times, &parts).unwrap();
 }
 
-/// A sine with a slower one and something like noise on it.
+/// Returns a sine with a slower one and something like noise on it.
 fn value(signal: usize, at: usize) -> f64 {
     let noise = (at.wrapping_mul(2_654_435_761) >> 16) % 1000;
     let time = at as f64 * 1e-5;
@@ -132,7 +131,7 @@ impl Bench {
     }
 
     fn rounds(&mut self, recorder: &mut Recorder, mut before: impl FnMut(&mut Recorder, usize)) -> String {
-        // What is laid out once, as the letters, is there.
+        // Parts that are laid out once, as the letters, are ready.
         self.frame(recorder);
         let mut took: Vec<(Duration, usize)> = (0..ROUNDS)
             .map(|round| {
@@ -150,7 +149,7 @@ impl Bench {
         )
     }
 
-    /// One picture, up to what would be handed to the graphics card.
+    /// Draws one frame, without the graphics card.
     fn frame(&mut self, recorder: &Recorder) -> (Duration, usize) {
         frame(&self.ctx, |ui| {
             let (theme, mut actions) = (self.theme, Vec::new());
@@ -174,7 +173,7 @@ fn frame(ctx: &Context, mut content: impl FnMut(&mut egui::Ui)) -> (Duration, us
     (took, vertices)
 }
 
-/// The same samples as lines of egui_plot, which looks at each of them for every picture.
+/// Draws the same samples as lines of egui_plot, which reads each of them for every frame.
 fn egui_plot_frame() -> String {
     let columns: Vec<Vec<egui_plot::PlotPoint>> = (0..SIGNALS)
         .map(|signal| {

@@ -1,5 +1,5 @@
-//! How fast the position is polled, against the least time that the protocol allows, and beside two naive ways: waiting
-//! for the longest time that the manual gives, and a fixed 250 ms after each request.
+//! Rate of polling the position, compared with the least time that the protocol allows, and with two naive solutions:
+//! waiting for the longest time in the manual, and a fixed 250 ms after each request.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 use std::sync::{Arc, Mutex};
@@ -20,7 +20,8 @@ const LONGEST: f64 = 10.0;
 /// Settings bytes to poll with: 9600 and 38400, even, 44 bits.
 const SETTINGS: [u8; 2] = [0xE4, 0xE6];
 
-/// 42h: three characters there, silence, processing, seven characters back, silence; a character has 11 bits.
+/// Returns the least time of 42h: a request of three characters, silence, processing, a reply of seven characters, silence;
+/// a character has 11 bits.
 fn least_ms(baud: f64) -> f64 {
     (3.0 * 11.0 + 44.0 + 7.0 * 11.0 + 44.0) * 1000.0 / baud + PROCESSING
 }
@@ -34,7 +35,7 @@ fn median(mut cycles: Vec<f64>) -> f64 {
     cycles[cycles.len() / 2]
 }
 
-/// Median time from one position to the next, in milliseconds, as the program polls.
+/// Returns the median time from one position to the next, in milliseconds, as the program polls.
 fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     let folder = tempfile::tempdir().unwrap();
     let mut station = Station::new(Duration::from_millis(20));
@@ -52,7 +53,7 @@ fn studio(settings: u8, clock: Arc<dyn Clock>, count: usize) -> f64 {
     median((0..count).map(cycle).collect())
 }
 
-/// The same, sending, waiting for a fixed time, and reading what has come.
+/// Polls by sending, waiting for a fixed time, and reading the received bytes.
 fn naive(settings: u8, clock: &dyn Clock, owned: Arc<dyn Clock>, wait_ms: f64, count: usize) -> f64 {
     let mut link = SimLink::connect(bus(settings), owned);
     link.set_format(LineSettings::from_byte(settings).format().unwrap()).unwrap();

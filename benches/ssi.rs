@@ -1,6 +1,6 @@
-//! How fast SSI frames are decoded (goal: 100 million a second on one core for 25 bits in Gray), beside a decoder that
-//! goes through them bit by bit; how long it takes to find the layout of 2000 frames; and how often that is right for a
-//! thousand recordings of encoders of every habit.
+//! Speed of decoding SSI frames (goal: 100 million per second on one core for 25 bits in Gray), compared with a decoder
+//! that reads them bit by bit; time to find the layout of 2000 frames; and how often the result is right for a thousand
+//! recordings of many kinds of encoders.
 //!
 //! `cargo bench --bench ssi`
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
@@ -17,7 +17,7 @@ const FRAMES: usize = 1 << 14;
 const PASSES: usize = 64;
 const ROUNDS: usize = 9;
 
-/// Median of some rounds, in seconds.
+/// Returns the median of some rounds, in seconds.
 fn median<T>(mut work: impl FnMut() -> T) -> f64 {
     let mut times: Vec<f64> = (0..ROUNDS)
         .map(|_| {
@@ -35,7 +35,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// Frames of any positions, some with an error bit.
+/// Returns the frames of any positions, some with an error bit.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut random = fastrand::Rng::with_seed(1);
     let frame = |_| {
@@ -45,7 +45,7 @@ fn frames(layout: &Layout) -> Vec<u64> {
     (0..FRAMES).map(frame).collect()
 }
 
-/// 25 bits in Gray, 12 of them turns, the way that the manual tells it: bit by bit, from the first clock on.
+/// Decodes 25 bits in Gray, 12 of them turns, as in the manual: bit by bit, from the first clock on.
 fn bit_by_bit(frame: u64) -> (u32, u32) {
     let (mut turns, mut steps, mut before) = (0_u32, 0_u32, 0_u64);
     for clock in 1..=25 {
@@ -95,7 +95,7 @@ fn main() {
     thousand_recordings(&families);
 }
 
-/// How often the first layout is right, and the tick wrong, for recordings made by other means.
+/// Measures how often the first layout is right, and the tick wrong, for recordings made by other means.
 fn thousand_recordings(families: &Families) {
     let begun = Instant::now();
     let (mut first, mut ticks, mut wrong) = (0, 0, 0);

@@ -1,6 +1,6 @@
-//! How soon the window is there, and what it costs to keep it open: the program beside a window with nothing in it, both
-//! drawn in software; what a picture takes with forty million samples in the plot, and whether an adapter's stream of 20 000
-//! frames a second is shown without loss. Needs a display, or Xvfb; says so where there is neither.
+//! Start-up time of the window, and its cost while open: the program compared with an empty window, both drawn in software;
+//! the time of a frame with forty million samples in the plot, and whether an adapter's stream of 20 000 frames per second
+//! is shown without loss. Needs a display, or Xvfb; prints a message if there is neither.
 //!
 //! `cargo bench --bench window`
 
@@ -77,8 +77,8 @@ fn main() {
 
 const STREAMED: Duration = Duration::from_secs(15);
 
-/// The whole window with the position of a virtual BiSS encoder behind the virtual adapter in its plot, as it is drawn
-/// when the adapter streams 20 000 frames a second.
+/// Runs the complete window with the position of a virtual BiSS encoder at the virtual adapter in its plot, as drawn when
+/// the adapter streams 20 000 frames per second.
 fn stream() {
     use encoder_studio::app::{Action, Environment, Studio, Tab, ThemeData};
     use encoder_studio::kinds::program;
@@ -145,7 +145,7 @@ fn stream() {
                 std::sync::Arc::new(move || ctx.request_repaint()),
             );
             studio.act(Action::ShowTab(Tab::named("Biss")));
-            // 2 MHz: a frame of 43 clocks takes 21.5 µs beside 27 µs of waiting.
+            // 2 MHz: a frame of 43 clocks takes 21.5 µs plus 27 µs of waiting.
             studio.begin(Some("sim:?bridge=on&clock=2000000&rpm=300".parse()?), None);
             let window = Window::new(studio, ThemeData::built_in()?, program().tabs);
             Ok(Box::new(Streaming { window, began: None, took: Vec::new() }))
@@ -168,7 +168,7 @@ fn write_capture(path: &std::path::Path) {
     }
 }
 
-/// The whole window with the capture in its scope: every picture another stretch, as fast as they come.
+/// Runs the complete window with the capture in its scope: every frame another stretch, as fast as possible.
 fn plot() {
     use encoder_studio::analysis::Time;
     use encoder_studio::app::{Action, Environment, Studio, ThemeData, recorder};
@@ -251,7 +251,7 @@ fn plot() {
     .unwrap();
 }
 
-/// The window that does nothing: what eframe, the driver and the X server need in any case.
+/// Runs the empty window: the least cost of eframe, the driver and the X server.
 fn minimal() {
     struct Nothing(Option<Instant>);
     impl eframe::App for Nothing {
@@ -290,7 +290,7 @@ fn wait_for_up_to(patience: Duration, mut look: impl FnMut() -> Option<u64>) -> 
     }
 }
 
-/// Share of one processor over some seconds, in percent.
+/// Returns the share of one processor over some seconds, in percent.
 fn busy(child: &Child) -> f64 {
     let ticks = || -> f64 {
         let stat = fs::read_to_string(format!("/proc/{}/stat", child.id())).unwrap();

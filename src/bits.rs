@@ -1,16 +1,16 @@
-//! Bytes as hexadecimal text: upper case, grouped by bytes, the way every manual prints frames; with what is secret
-//! masked; and what a run of bytes is when read as a number or as text.
+//! Bytes as hexadecimal text: upper case, grouped by bytes, as in the manuals; with secrets masked; and bytes interpreted
+//! as numbers or text.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Upper-case hex with a blank between bytes: `40 42 02`.
+/// Returns upper-case hex with a blank between bytes: `40 42 02`.
 pub fn hex(bytes: &[u8]) -> String {
     let words: Vec<String> = bytes.iter().map(|byte| format!("{byte:02X}")).collect();
     words.join(" ")
 }
 
-/// Upper-case hex without separators, as JSON carries bytes: `404202`.
+/// Returns upper-case hex without separators, as in JSON: `404202`.
 pub fn hex_compact(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02X}")).collect()
 }
@@ -26,7 +26,7 @@ pub enum ByteOrder {
     LowFirst,
 }
 
-/// A number as it came, in so many bits. Its text has as many upper-case hexadecimal digits as they need.
+/// A number with its width in bits. Its text has as many upper-case hexadecimal digits as the width needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word {
     /// The bits, right-justified.
@@ -41,28 +41,28 @@ impl fmt::Display for Word {
     }
 }
 
-/// Bytes that may be shown: what is secret is not in them. Its text has `**` for a masked byte.
+/// Bytes that may be shown: secrets are not included. Its text has `**` for a masked byte.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct MaskedBytes(Vec<Option<u8>>);
 
 impl MaskedBytes {
-    /// Bytes without a secret.
+    /// Creates bytes without a secret.
     pub fn clear(bytes: &[u8]) -> Self {
         MaskedBytes(bytes.iter().copied().map(Some).collect())
     }
 
-    /// Bytes of which nothing but the number may be shown.
+    /// Creates bytes of which nothing but the number may be shown.
     pub fn hidden(count: usize) -> Self {
         MaskedBytes(vec![None; count])
     }
 
-    /// The bytes, without those at the positions in `secret`.
+    /// Creates the bytes, without those at the positions in `secret`.
     pub fn masked(bytes: &[u8], secret: &[usize]) -> Self {
         let show = |(at, byte): (usize, &u8)| (!secret.contains(&at)).then_some(*byte);
         MaskedBytes(bytes.iter().enumerate().map(show).collect())
     }
 
-    /// Number of bytes, masked ones included.
+    /// Returns the number of bytes, masked ones included.
     pub fn len(&self) -> usize {
         self.0.len()
     }
@@ -72,23 +72,23 @@ impl MaskedBytes {
         self.0.is_empty()
     }
 
-    /// The bytes; `None` where a masked one leaves a hole.
+    /// Returns the bytes; `None` if one is masked.
     pub fn to_bytes(&self) -> Option<Vec<u8>> {
         self.0.iter().copied().collect()
     }
 
-    /// The bytes, with `stand_in` for each masked one.
+    /// Returns the bytes, with `stand_in` for each masked one.
     pub fn filled(&self, stand_in: u8) -> Vec<u8> {
         self.0.iter().map(|byte| byte.unwrap_or(stand_in)).collect()
     }
 
-    /// The first `count` bytes and the rest.
+    /// Returns the first `count` bytes and the rest.
     pub fn split_at(&self, count: usize) -> (MaskedBytes, MaskedBytes) {
         let (head, tail) = self.0.split_at(count.min(self.0.len()));
         (MaskedBytes(head.to_vec()), MaskedBytes(tail.to_vec()))
     }
 
-    /// These bytes followed by `more`.
+    /// Appends `more` to these bytes.
     pub fn extend(&mut self, more: MaskedBytes) {
         self.0.extend(more.0);
     }
@@ -127,7 +127,7 @@ impl FromStr for MaskedBytes {
     }
 }
 
-/// Why a text is not hexadecimal bytes.
+/// The reason why a text is not hexadecimal bytes.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HexError {
     /// A character that is neither a hex digit nor a separator.
@@ -138,7 +138,7 @@ pub enum HexError {
     Odd(String),
 }
 
-/// Reads hex bytes: groups of two digits each, separated by blanks, commas, colons or dashes or by nothing, with or
+/// Parses hex bytes: groups of two digits each, separated by blanks, commas, colons or dashes or by nothing, with or
 /// without `0x` or a final `h`. An empty text is no bytes.
 pub fn parse_hex(text: &str) -> Result<Vec<u8>, HexError> {
     let mut bytes = Vec::new();
@@ -157,7 +157,7 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
         .collect::<Result<_, _>>()?;
     let (pairs, rest) = digits.as_chunks::<2>();
     if !rest.is_empty() || digits.is_empty() {
-        // One digit on its own is a byte only where it stands alone: "0x5" is 05.
+        // A single digit is a byte only if it is the whole text: "0x5" is 05.
         return match (pairs, rest) {
             ([], [digit]) => {
                 bytes.push(*digit);
@@ -170,7 +170,7 @@ fn parse_group(group: &str, bytes: &mut Vec<u8>) -> Result<(), HexError> {
     Ok(())
 }
 
-/// A way to read bytes as a value.
+/// A way to interpret bytes as a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TypedKind {
     /// One byte, unsigned.
@@ -194,7 +194,7 @@ pub enum TypedKind {
 }
 
 impl TypedKind {
-    /// Every way, in the order of a table.
+    /// Every kind, in the order of a table.
     pub const ALL: [TypedKind; 9] = [
         TypedKind::U8,
         TypedKind::I8,
@@ -207,23 +207,23 @@ impl TypedKind {
         TypedKind::Text,
     ];
 
-    /// The order of the bytes makes a difference.
+    /// Returns whether the order of the bytes makes a difference.
     pub const fn has_byte_order(self) -> bool {
         !matches!(self, TypedKind::U8 | TypedKind::I8 | TypedKind::Binary | TypedKind::Text)
     }
 }
 
-/// The first bytes of a run in one reading. Where the order of bytes makes no difference, both are the same.
+/// The first bytes of a run in one interpretation. If the byte order makes no difference, both are the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TypedRow {
     pub kind: TypedKind,
-    /// Lowest byte first; `None` where there are too few bytes.
+    /// Lowest byte first; `None` if there are too few bytes.
     pub little: Option<String>,
-    /// Highest byte first; `None` where there are too few bytes.
+    /// Highest byte first; `None` if there are too few bytes.
     pub big: Option<String>,
 }
 
-/// Reads the beginning of `bytes` in every way, [`TypedKind::ALL`] in its order.
+/// Interprets the beginning of `bytes` in every way, in the order of [`TypedKind::ALL`].
 pub fn typed(bytes: &[u8]) -> Vec<TypedRow> {
     let row = |kind| TypedRow { kind, little: read_typed(kind, bytes, false), big: read_typed(kind, bytes, true) };
     TypedKind::ALL.into_iter().map(row).collect()
@@ -246,20 +246,20 @@ fn read_typed(kind: TypedKind, bytes: &[u8], big: bool) -> Option<String> {
     }
 }
 
-/// Stands for a byte that is no printable character.
+/// The replacement of a byte that is not a printable character.
 pub const NOT_PRINTABLE: char = '·';
 
-/// The printable ASCII character of a byte.
+/// Returns the printable ASCII character of a byte.
 pub fn ascii(byte: u8) -> Option<char> {
     (0x20..0x7F).contains(&byte).then_some(char::from(byte))
 }
 
-/// The bits of a byte in two groups: `0011 1111`.
+/// Returns the bits of a byte in two groups: `0011 1111`.
 pub fn binary(byte: u8) -> String {
     format!("{:04b} {:04b}", byte >> 4, byte & 0xF)
 }
 
-/// The shortest text that is read as the same number, with an exponent where it would be long.
+/// Returns the shortest text that parses as the same number, with an exponent if it would be long.
 fn float(value: f32) -> String {
     let plain = value == 0.0 || !value.is_finite() || (1e-4..1e7).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }
@@ -300,7 +300,7 @@ mod tests {
     #[test]
     fn bytes_are_read_as_python_reads_them() {
         type Rows = [(&'static str, &'static str); 9];
-        // struct.unpack with "<" and ">" and b, B, h, H, i, I, f.
+        // Expected values from struct.unpack with "<" and ">" and b, B, h, H, i, I, f.
         let table: [(&[u8], Rows); 4] = [
             (
                 &[0xDB, 0x0F, 0x49, 0x40],

@@ -1,5 +1,5 @@
-//! The allowed values of a parameter, a setting or an entry: a fact with its limits, in English here, with its own text
-//! in the window (`app::explain::expected`).
+//! The allowed values of a parameter, a setting or an entry: a fact with its limits, in English here, with its own text in
+//! the window (`app::explain::expected`).
 
 use std::borrow::Cow;
 use std::fmt;
@@ -15,7 +15,7 @@ pub enum Expected {
     /// One of many names or numbers.
     #[error("one of {}", .0.join(", "))]
     OneOf(Vec<String>),
-    /// A number with what it counts, and its limits.
+    /// A number with its quantity and limits.
     #[error("{quantity} from {low} to {high}")]
     Range {
         /// The counted quantity.
@@ -25,7 +25,7 @@ pub enum Expected {
         /// The greatest.
         high: Limit,
     },
-    /// A whole number of whatever size fits.
+    /// A whole number of any size that fits.
     #[error("a whole number")]
     Whole,
     /// A number of 32 bits.
@@ -119,7 +119,7 @@ pub enum Expected {
         /// The greatest number.
         most: u32,
     },
-    /// A position that has no limits yet.
+    /// A position without limits yet.
     #[error("a position in steps")]
     Steps,
     #[error("NUMBER:HEX for the access codes 0 to 3, separated by commas, such as 0:55,2:66")]
@@ -296,29 +296,29 @@ pub struct Limit {
 }
 
 impl Expected {
-    /// One of these words.
+    /// Creates one of these words.
     pub const fn words(words: &'static [&'static str]) -> Self {
         Expected::Words(Cow::Borrowed(words))
     }
 
-    /// A number of a range.
+    /// Creates a number of a range.
     pub fn range(quantity: Quantity, low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::Range { quantity, low: low.into(), high: high.into() }
     }
 
-    /// A whole number of a range.
+    /// Creates a whole number of a range.
     pub const fn between(low: i128, high: i128) -> Self {
         Expected::Range { quantity: Quantity::Number, low: Limit::whole(low), high: Limit::whole(high) }
     }
 
-    /// A number without a unit.
+    /// Creates a number without a unit.
     pub fn number(low: impl Into<Limit>, high: impl Into<Limit>) -> Self {
         Expected::range(Quantity::Number, low, high)
     }
 }
 
 impl Limit {
-    /// A number with decimals, in thousandths.
+    /// Creates a number with decimals, in thousandths.
     pub const fn thousandths(thousandths: i128) -> Self {
         Limit { thousandths }
     }

@@ -27,7 +27,7 @@ pub fn program() -> Program {
     })
 }
 
-/// Returns the virtual devices that hang on the virtual adapter. What turns their shafts is told last.
+/// Returns the virtual devices at the virtual adapter, those that take a speed (`rpm`) last.
 pub fn at_adapter() -> &'static [&'static dyn Attachable] {
     static DEVICES: OnceLock<Vec<&'static dyn Attachable>> = OnceLock::new();
     DEVICES.get_or_init(|| {

@@ -1,9 +1,8 @@
 //! encoder-studio: configure position encoders and small drives at a desk.
 //!
-//! ARCHITECTURE.md describes the layers: a module uses only what stands in its own layer or below, and the core knows no
-//! device.
+//! ARCHITECTURE.md describes the layers: a module uses only its own layer and the ones below, and the core knows no device.
 
-// which devices there are, and all that is known of each
+// all device kinds, and all that the program knows about each
 pub mod kinds;
 
 pub mod buses;

@@ -1,6 +1,6 @@
-//! Parameters of a link and settings of a virtual device: a key with its value each. A struct made by `parameters!` declares
-//! each of them in one line; that is parsed, checked, printed and offered in a form from there. What values there are is a
-//! type of [`Values`].
+//! Parameters of a link and settings of a virtual device: keys with their values. A struct made by `parameters!` declares
+//! each of them in one line, from which it is parsed, checked, printed and offered in a form. The allowed values are a type
+//! of [`Values`].
 
 mod values;
 
@@ -20,48 +20,48 @@ pub struct Refused {
 }
 
 impl Refused {
-    /// `allowed` says what would do instead of `value`.
+    /// Creates the error for `value`; `allowed` are the possible values.
     pub fn new(key: &str, value: impl ToString, allowed: Expected) -> Self {
         Refused { key: key.to_owned(), value: value.to_string(), allowed }
     }
 }
 
-/// A parameter that a person can type into a form.
+/// A parameter that a user can type into a form.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
     /// The parameter's key.
     pub key: &'static str,
     /// The text that names it.
     pub label: &'static str,
-    /// The sign of its unit; empty where it has none.
+    /// The symbol of the unit; empty if there is none.
     pub unit: &'static str,
     /// The default while the entry is empty, or an example.
     pub hint: String,
-    /// It is a number that may have a decimal point.
+    /// Whether it is a number that may have a decimal point.
     pub is_decimal: bool,
 }
 
-/// Parameters that stand together, made by `parameters!`. The default is what counts where they say nothing.
+/// A group of parameters, made by `parameters!`. The default applies to those that are not given.
 pub trait Parameters: Default {
-    /// Why a value is refused.
+    /// The reason why a value is refused.
     type Error;
 
     /// Their keys, in the order in which they are declared.
     const KEYS: &'static [&'static str];
 
-    /// Takes a value; false where there is no such key.
+    /// Sets a value; returns false if the key does not exist.
     ///
     /// # Errors
-    /// A value that its key does not take.
+    /// Returns an error if the key does not take the value.
     fn set(&mut self, key: &str, value: &str) -> Result<bool, Self::Error>;
 
     /// Returns the entries that a user can type, in the order of declaration.
     fn entries() -> Vec<Entry>;
 
-    /// Reads those that there are; the others are left alone. Of a key given twice the last counts.
+    /// Parses the existing keys; others are ignored. Of a key given twice the last one counts.
     ///
     /// # Errors
-    /// The first value that its key does not take.
+    /// Returns the first value that its key does not take.
     fn read(pairs: &[(String, String)]) -> Result<Self, Self::Error> {
         let mut own = Self::default();
         for (key, value) in pairs {
@@ -85,7 +85,7 @@ pub trait Parameters: Default {
 /// ```
 ///
 /// A line has field, type, default, key and [`Values`]; then, for a form, the text that names the entry, with an example
-/// after `like` where the default says little. A line without a key is a field and no parameter.
+/// after `like` if the default is no good example. A line without a key is a field and no parameter.
 #[macro_export]
 macro_rules! parameters {
     (@hint $values:expr, $default:expr) => {

@@ -1,5 +1,5 @@
-//! Quantities: newtypes wherever two integers could be swapped, a range is limited or arithmetic has a meaning. No
-//! clock is read here: a [`Moment`] is passed in by its owner.
+//! Quantities: newtypes wherever two integers could be swapped, a range is limited or arithmetic has a meaning. No clock is
+//! read here: a [`Moment`] is passed in by its owner.
 
 use std::fmt;
 use std::ops::{Add, Sub};
@@ -15,17 +15,17 @@ impl Moment {
     /// The start of the clock.
     pub const START: Moment = Moment(Duration::ZERO);
 
-    /// The moment `elapsed` after the start of the clock.
+    /// Creates the moment `elapsed` after the start of the clock.
     pub const fn after_start(elapsed: Duration) -> Self {
         Moment(elapsed)
     }
 
-    /// Time since the start of the clock.
+    /// Returns the time since the start of the clock.
     pub const fn since_start(self) -> Duration {
         self.0
     }
 
-    /// Time since `earlier`; zero when `earlier` lies ahead.
+    /// Returns the time since `earlier`; zero if `earlier` is later.
     pub fn since(self, earlier: Moment) -> Duration {
         self.0.saturating_sub(earlier.0)
     }
@@ -50,7 +50,7 @@ impl Sub<Duration> for Moment {
 pub struct Baud(u32);
 
 impl Baud {
-    /// A speed in bit/s; `None` for zero.
+    /// Creates a speed in bit/s; `None` for zero.
     pub const fn new(bits_per_second: u32) -> Option<Self> {
         if bits_per_second == 0 { None } else { Some(Baud(bits_per_second)) }
     }
@@ -94,7 +94,7 @@ impl Parity {
     /// The words used in link URLs and JSON.
     pub const WORDS: Words<Parity> = Words(&[("none", Parity::None), ("even", Parity::Even), ("odd", Parity::Odd)]);
 
-    /// The word used in link URLs and JSON.
+    /// Returns the word used in link URLs and JSON.
     pub const fn word(self) -> &'static str {
         match self {
             Parity::None => "none",
@@ -103,7 +103,7 @@ impl Parity {
         }
     }
 
-    /// The letter between data bits and stop bits in `8E1`.
+    /// Returns the letter between data bits and stop bits in `8E1`.
     pub const fn letter(self) -> char {
         match self {
             Parity::None => 'N',
@@ -119,8 +119,7 @@ impl fmt::Display for Parity {
     }
 }
 
-/// The format of a character on a serial line, on which both ends must agree. One start bit, eight data bits, one stop
-/// bit.
+/// The format of a character on a serial line, on which both ends must agree. One start bit, eight data bits, one stop bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CharacterFormat {
     /// Speed.
@@ -133,7 +132,7 @@ impl CharacterFormat {
     /// 9600 bit/s, even parity: the factory setting of HIPERFACE encoders.
     pub const FACTORY: CharacterFormat = CharacterFormat { baud: Baud::B9600, parity: Parity::Even };
 
-    /// One character on the line, reckoned with 11 bits whatever the parity, as the manuals do.
+    /// Returns the duration of one character on the line, counted as 11 bits for any parity, as in the manuals.
     pub fn character_time(self) -> Duration {
         self.baud.time_of_bits(11)
     }
@@ -152,7 +151,7 @@ pub struct SupplyVoltage {
     pub least: u16,
     /// The supplied voltage.
     pub given: u16,
-    /// The greatest that it stands.
+    /// The highest allowed voltage.
     pub greatest: u16,
 }
 

@@ -12,26 +12,26 @@ pub const DEGREES: f64 = 360.0;
 pub struct Phase(f64);
 
 impl Phase {
-    /// The phase of a position in periods: what is behind the decimal point, whatever the sign. `None` where the number
-    /// is not finite.
+    /// Returns the phase of a position in periods: its fractional part, for either sign. `None` if the number is not
+    /// finite.
     pub fn of_periods(periods: f64) -> Option<Self> {
         // -1e-20 has a remainder that rounds to 1.
         let phase = periods.rem_euclid(1.0);
         if !periods.is_finite() { None } else { Some(Phase(if phase >= 1.0 { 0.0 } else { phase })) }
     }
 
-    /// Periods, 0 ≤ φ < 1.
+    /// Returns the periods, 0 ≤ φ < 1.
     pub fn periods(self) -> f64 {
         self.0
     }
 
-    /// Electrical degrees, 0 ≤ φ < 360.
+    /// Returns the electrical degrees, 0 ≤ φ < 360.
     pub fn degrees(self) -> f64 {
         self.0 * DEGREES
     }
 
-    /// The step of 2^`bits` in one period in which the phase lies, as an interpolating counter gives it: the upper bits
-    /// are the step of fewer bits. At most 32 bits.
+    /// Returns the step of 2^`bits` in one period that contains the phase, as an interpolating counter gives it: the upper
+    /// bits are the step of fewer bits. At most 32 bits.
     pub fn step(self, bits: u32) -> u32 {
         let bits = bits.min(32);
         let steps = 1_u64 << bits;
@@ -39,14 +39,15 @@ impl Phase {
         ((self.0 * steps as f64) as u64).min(steps - 1) as u32
     }
 
-    /// The step of 2^`bits` in one period that is nearest, with step 0 after the last. At most 32 bits.
+    /// Returns the nearest step of 2^`bits` in one period, with step 0 after the last. At most 32 bits.
     pub fn nearest_step(self, bits: u32) -> u32 {
         let steps = 1_u64 << bits.min(32);
         ((self.0 * steps as f64).round() as u64 % steps) as u32
     }
 }
 
-/// The exact phase of a pair of voltages free of offset; `None` where both are zero or one is not a number: no signal.
+/// Returns the exact phase of a pair of voltages free of offset; `None` without a signal: both are zero or one is not a
+/// number.
 pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
     if sine == 0.0 && cosine == 0.0 { None } else { Phase::of_periods(sine.atan2(cosine) / TAU) }
 }
@@ -56,16 +57,16 @@ pub fn exact(sine: f64, cosine: f64) -> Option<Phase> {
 pub struct OctantTable(Vec<f64>);
 
 impl OctantTable {
-    /// Intervals that the manual deems enough: its largest error is 1/79 255 of a period.
+    /// Number of intervals sufficient by the manual: its largest error is 1/79 255 of a period.
     pub const INTERVALS: usize = 32;
 
-    /// A table of so many intervals, at least one.
+    /// Creates a table of this number of intervals, at least one.
     pub fn new(intervals: usize) -> Self {
         let intervals = intervals.max(1);
         OctantTable((0..=intervals).map(|node| (node as f64 / intervals as f64).atan()).collect())
     }
 
-    /// The phase by way of the table; `None` where both voltages are zero or one is not finite: no signal.
+    /// Returns the phase by the table; `None` without a signal: both voltages are zero or one is not finite.
     pub fn phase(&self, sine: f64, cosine: f64) -> Option<Phase> {
         let (a, b) = (sine.abs(), cosine.abs());
         if (a == 0.0 && b == 0.0) || !a.is_finite() || !b.is_finite() {
@@ -84,7 +85,7 @@ impl OctantTable {
         Phase::of_periods(angle / TAU)
     }
 
-    /// The largest error that a straight line between two nodes can make, in radians: h²/8 · 3√3/8.
+    /// Returns the largest error of a straight line between two nodes, in radians: h²/8 · 3√3/8.
     pub fn largest_error_rad(&self) -> f64 {
         let spacing = 1.0 / (self.0.len() - 1) as f64;
         spacing * spacing / 8.0 * (3.0 * 3.0_f64.sqrt() / 8.0)

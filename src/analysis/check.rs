@@ -1,12 +1,12 @@
-//! A device check, for every kind of device: steps with a verdict each. Which steps there are and what they find is the
-//! device's.
+//! A device check, for every kind of device: steps with a verdict each. The steps and their findings are defined by the
+//! device.
 
 /// How a step ended. The worse verdict is the greater one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Verdict {
     /// It was not checked.
     Skipped,
-    /// As it should be.
+    /// As required.
     Good,
     /// Works, but needs attention.
     Attention,
@@ -24,7 +24,7 @@ pub struct StepResult<S, F> {
 }
 
 impl<S, F> StepResult<S, F> {
-    /// A step with what it found: it ended as the worst of that, and well where it found nothing.
+    /// Creates a step with its findings: its verdict is the worst of them, or good without any.
     pub(crate) fn of(step: S, findings: Vec<(Verdict, F)>) -> Self {
         let verdict = findings.iter().map(|(verdict, _)| *verdict).max().unwrap_or(Verdict::Good);
         StepResult { step, verdict, findings: findings.into_iter().map(|(_, finding)| finding).collect() }
@@ -36,7 +36,7 @@ impl<S, F> StepResult<S, F> {
 pub struct Wear {
     /// Write cycles counted; `None` if not known.
     pub seen: Option<u64>,
-    /// From here on a person should know.
+    /// From here on the user is warned.
     pub warning: u64,
     /// Write cycles that the memory endures.
     pub limit: u64,

@@ -7,7 +7,7 @@ use super::arctan::Phase;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ElectricalAngle(u32);
 
-/// A motor with an encoder on its shaft.
+/// Motor with an encoder on its shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motor {
     periods: u32,
@@ -17,49 +17,49 @@ pub struct Motor {
 /// The result of energising a second vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SecondVector {
-    /// Pole pairs that the movement speaks for, rounded; 0 where the shaft has moved by more than an electrical turn.
+    /// Pole pairs by the movement, rounded; 0 if the shaft has moved by more than an electrical turn.
     pub pole_pairs: u32,
-    /// The movement divided by the one expected: 1 where all is well, negative where two phases are exchanged.
+    /// The movement divided by the expected one: 1 if all is well, negative if two phases are exchanged.
     pub ratio: f64,
 }
 
 impl ElectricalAngle {
-    /// Electrical turns; whole turns are left out. `None` where it is not finite.
+    /// Creates an angle from electrical turns; whole turns are dropped. `None` if it is not finite.
     pub fn from_turns(turns: f64) -> Option<Self> {
         const STEPS: f64 = 4_294_967_296.0;
         // 0.999… may round to a whole turn, which is 0.
         Phase::of_periods(turns).map(|phase| ElectricalAngle((phase.periods() * STEPS).round() as u64 as u32))
     }
 
-    /// The number as it is kept in the encoder's memory.
+    /// Creates an angle from the number in the encoder's memory.
     pub const fn from_bits(bits: u32) -> Self {
         ElectricalAngle(bits)
     }
 
-    /// The fraction of an electrical turn in units of 2⁻³².
+    /// Returns the fraction of an electrical turn in units of 2⁻³².
     pub const fn bits(self) -> u32 {
         self.0
     }
 
-    /// Electrical degrees, 0 to below 360.
+    /// Returns the electrical degrees, 0 to below 360.
     pub fn degrees(self) -> f64 {
         f64::from(self.0) * (360.0 / 4_294_967_296.0)
     }
 }
 
 impl Motor {
-    /// Periods of the signal in a revolution and pole pairs of the motor; `None` where one of them is zero.
+    /// Creates a motor with signal periods per revolution and pole pairs; `None` if one of them is zero.
     pub const fn new(periods: u32, pole_pairs: u32) -> Option<Self> {
         if periods == 0 || pole_pairs == 0 { None } else { Some(Motor { periods, pole_pairs }) }
     }
 
-    /// Method 1: the offset to store, from the fine position in periods at which the shaft rests in a static vector.
-    /// `None` where the position is not finite.
+    /// Method 1: returns the offset to store, from the fine position in periods at which the shaft rests in a static
+    /// vector. `None` if the position is not finite.
     pub fn offset(&self, fine_periods: f64) -> Option<ElectricalAngle> {
         ElectricalAngle::from_turns(f64::from(self.pole_pairs) * self.revolutions(fine_periods))
     }
 
-    /// The electrical angle at a fine position in periods, with the stored offset.
+    /// Returns the electrical angle at a fine position in periods, with the stored offset.
     pub fn electrical_angle(&self, fine_periods: f64, offset: ElectricalAngle) -> Option<ElectricalAngle> {
         self.offset(fine_periods).map(|angle| ElectricalAngle(angle.0.wrapping_sub(offset.0)))
     }
@@ -69,13 +69,13 @@ impl Motor {
         360.0 / f64::from(self.periods)
     }
 
-    /// The same in electrical degrees: as fine as method 2 can be. 30° and more make a motor weak or unusable (U).
+    /// Returns the same in electrical degrees: the resolution of method 2. 30° and more make a motor weak or unusable (U).
     pub fn electrical_step_deg(&self) -> f64 {
         self.mechanical_step_deg() * f64::from(self.pole_pairs)
     }
 
-    /// Judges how far the shaft moved, in periods, from one static vector to one that is so many electrical turns ahead
-    /// (below ½, or the shaft may go the other way round). `None` where it has not moved or the turns are zero.
+    /// Judges how far the shaft moved, in periods, from one static vector to one that is this many electrical turns ahead
+    /// (below ½, or the shaft may take the other way round). `None` if it has not moved or the turns are zero.
     pub fn second_vector(&self, moved_periods: f64, electrical_turns: f64) -> Option<SecondVector> {
         let moved = moved_periods / f64::from(self.periods);
         let ratio = moved * f64::from(self.pole_pairs) / electrical_turns;
@@ -91,8 +91,8 @@ impl Motor {
     }
 }
 
-/// Method 2: the value for command 43h that makes the present position that of period `period`; its five lower bits are
-/// the upper ones of the phase, as the encoder wants it. `None` beyond 2²⁷ periods.
+/// Method 2: returns the value for command 43h that makes the present position that of period `period`; its five lower bits
+/// are the upper ones of the phase, as the encoder requires. `None` beyond 2²⁷ periods.
 pub fn position_to_set(period: u32, phase: Phase) -> Option<u32> {
     if period >> 27 == 0 { Some(period << 5 | phase.step(5)) } else { None }
 }

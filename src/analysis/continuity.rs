@@ -4,23 +4,23 @@
 //! A step of more than one and a half usual steps is a gap (U). Times of a table have few digits, so that even samples can
 //! have steps of two lengths: one digit more or less is no gap.
 
-/// A step is a gap beyond so many usual ones.
+/// A step is a gap beyond this multiple of the usual one.
 const GAP: f64 = 1.5;
 /// Steps of which the usual one is the median.
 const SAMPLED: usize = 1 << 14;
 /// Steps within this share of the usual one are the same.
 const SAME: f64 = 0.01;
-/// With fewer of the same than this share, the digits of the times are what makes the difference.
+/// Share of equal steps below which the digits of the times cause the differences.
 const MOSTLY: f64 = 0.9;
 
 /// The result of examining the times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Continuity {
-    /// Samples that are missing; `None` where none are, or there are no times.
+    /// Missing samples; `None` if there are none, or no times.
     pub missing: Option<Missing>,
-    /// The first sample whose time is before that of the sample before it, counted from 0.
+    /// The first sample whose time is before that of the previous one, counted from 0.
     pub back: Option<usize>,
-    /// Time within continuous stretches in seconds; `None` without times.
+    /// Time within continuous sections in seconds; `None` without times.
     pub stretches_s: Option<f64>,
     /// Samples with which a stretch begins, the first of all not among them.
     pub(super) breaks: Vec<usize>,
@@ -29,14 +29,14 @@ pub struct Continuity {
 /// Samples that are missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Missing {
-    /// In how many places.
+    /// Number of gaps.
     pub gaps: usize,
     /// The longest time from one sample to the next, in seconds.
     pub longest_s: f64,
 }
 
 impl Continuity {
-    /// Looks at times in seconds.
+    /// Examines times in seconds.
     pub fn of(times_s: &[f64]) -> Self {
         let Some(longest_even) = longest_even(times_s) else { return Continuity::default() };
         let mut continuity = Continuity::default();
@@ -63,19 +63,19 @@ impl Continuity {
     }
 }
 
-/// The longest step that is no gap, in seconds; `None` where no time passes.
+/// Returns the longest step that is no gap, in seconds; `None` if no time passes.
 fn longest_even(times_s: &[f64]) -> Option<f64> {
-    // An odd stride does not keep step with a pattern of 2ⁿ.
+    // An odd stride is not synchronous with a pattern of 2ⁿ.
     let stride = (times_s.len() / SAMPLED) | 1;
     let mut steps: Vec<f64> = times_s.windows(2).step_by(stride).filter_map(step).collect();
     let middle = steps.len() / 2;
     let median = (middle < steps.len()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)?;
     let forward = || steps.iter().filter(|step| **step >= 0.0);
-    // With more samples than the digits tell apart, most steps are none.
+    // With more samples than the digits distinguish, most steps are zero.
     let usual = if median > 0.0 { median } else { forward().sum::<f64>() / forward().count().max(1) as f64 };
     let same = steps.iter().filter(|step| (**step / usual - 1.0).abs() <= SAME).count();
     let digit = if same as f64 >= MOSTLY * steps.len() as f64 { 0.0 } else { last_digit(times_s, stride) };
-    // Rounding must not make a gap of a step that is just at the limit.
+    // Rounding must not make a gap of a step that is exactly at the limit.
     let longest = (GAP * usual + digit) * (1.0 + 1e-6);
     (longest.is_finite() && longest > 0.0).then_some(longest)
 }
@@ -87,7 +87,7 @@ fn step(pair: &[f64]) -> Option<f64> {
     }
 }
 
-/// The place of the last decimal digit that the times have, in seconds; 0 below a nanosecond.
+/// Returns the place of the last decimal digit of the times, in seconds; 0 below a nanosecond.
 fn last_digit(times_s: &[f64], stride: usize) -> f64 {
     let is_whole = |value: f64| (value - value.round()).abs() <= 1e-3;
     let fits = |places: &i32| times_s.iter().step_by(stride).all(|time| is_whole(time * 10_f64.powi(*places)));
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn missing_rows_are_a_gap() {
-        // 2.5 µs a row, 799 rows missing after the thousandth: 800 steps instead of one.
+        // 2.5 µs per row, 799 rows missing after the thousandth: 800 steps instead of one.
         let mut capture = times(4000, |at| at * 2.5e-6);
         capture.drain(1000..1799);
         let told = Continuity::of(&capture);

@@ -1,5 +1,5 @@
-//! How much of the period a capture covers: octants, periods, and the distance of the samples from the ellipse.
-//! Validity of a fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
+//! How much of the period a capture covers: octants, periods, and the distance of the samples from the ellipse. Validity of
+//! a fit follows section 7 of the project's sine/cosine reference (points in at least 6 of 8 octants).
 
 use std::ops::Range;
 
@@ -13,9 +13,9 @@ pub struct Coverage {
     pub octants: u32,
     /// Periods from the lowest to the highest angle, with the fraction.
     pub periods: f64,
-    /// Periods from the first to the last sample, without those in a gap; negative when the angle falls.
+    /// Periods from the first to the last sample, without gaps; negative if the angle falls.
     pub travel_periods: f64,
-    /// All the way, forward and back, likewise.
+    /// Total path, forward and back, without gaps.
     pub path_periods: f64,
     /// How often the angle reversed by more than half a period.
     pub reversals: usize,
@@ -25,7 +25,7 @@ pub struct Coverage {
     pub vector_v: (f64, f64),
 }
 
-/// An angle that grows over periods: quarters so far, and the vector inside the quarter.
+/// Angle that grows over periods: quarters so far, and the vector inside the quarter.
 #[derive(Clone, Copy)]
 pub(super) struct Angle {
     quarters: i64,
@@ -38,12 +38,12 @@ impl Angle {
         Angle { quarters: i64::from(quarter(sine, cosine)), sine, cosine }
     }
 
-    /// The same angle moved on, by less than half a period, to these voltages.
+    /// Returns the same angle moved on, by less than half a period, to these voltages.
     fn moved_to(self, sine: f64, cosine: f64) -> Self {
         let step = (quarter(sine, cosine) - quarter(self.sine, self.cosine)).rem_euclid(4);
         let step = match step {
             3 => -1,
-            // Two quarters on or back: the vectors tell by which side the new one is reached sooner.
+            // Two quarters forward or back: the vectors show on which side the new one is nearer.
             2 if self.cosine * sine < self.sine * cosine => -2,
             step => i64::from(step),
         };
@@ -57,7 +57,7 @@ impl Angle {
 
     fn periods(&self) -> f64 {
         let phase = self.sine.atan2(self.cosine) / std::f64::consts::TAU;
-        // Whole quarters are counted; of the phase only what is beyond its own quarter counts.
+        // Whole quarters are counted; only the part of the phase within its own quarter is added.
         self.quarters as f64 / 4.0 + phase.rem_euclid(1.0) - f64::from(quarter(self.sine, self.cosine)) / 4.0
     }
 }
@@ -88,7 +88,7 @@ enum Direction {
 }
 
 impl AnglePath {
-    /// Quarters of a period that an angle has to come back by to have turned back: noise does not.
+    /// Quarters of a period that an angle must come back by to count as reversed: noise does not.
     const BACK: i64 = 3;
 
     fn from(first: Angle) -> Self {
@@ -120,7 +120,7 @@ impl AnglePath {
         }
     }
 
-    /// The direction shows for the first time, or it is another one since `at`.
+    /// Notes a direction that shows for the first time, or has changed since `at`.
     fn turn_at(&mut self, at: Angle, direction: Direction) {
         self.keep_ends();
         if self.direction != Direction::Unknown {
@@ -155,7 +155,7 @@ impl AnglePath {
     }
 }
 
-/// A part of the samples, cut before each of `breaks` in it.
+/// Cuts a part of the samples before each of `breaks` in it.
 fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize>> {
     let inside = breaks.get(breaks.partition_point(|at| *at <= part.start)..).unwrap_or_default();
     let inside = inside.get(..inside.partition_point(|at| *at < part.end)).unwrap_or_default();
@@ -163,7 +163,7 @@ fn cut(part: Range<usize>, breaks: &[usize]) -> impl Iterator<Item = Range<usize
     starts.zip(inside.iter().copied().chain(std::iter::once(part.end))).map(|(start, end)| start..end)
 }
 
-/// 0 to 3, counted as the angle grows. Made for speed: comparisons without branches.
+/// Returns the quarter, 0 to 3, counted as the angle grows. Optimised for speed: comparisons without branches.
 fn quarter(sine: f64, cosine: f64) -> i32 {
     let upper = sine > 0.0 || (sine == 0.0 && cosine >= 0.0);
     let right = cosine > 0.0 || (cosine == 0.0 && sine <= 0.0);
@@ -176,13 +176,13 @@ fn quarter(sine: f64, cosine: f64) -> i32 {
 }
 
 impl Coverage {
-    /// Follows the samples in their order; from one to the next the angle must move by less than half a period.
-    /// `None` without samples.
+    /// Follows the samples in order; from one to the next the angle must move by less than half a period. `None` without
+    /// samples.
     pub fn of(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> Option<Self> {
         Coverage::without(sine, cosine, &[], &[], ellipse)
     }
 
-    /// Likewise, without the samples in `left_out`: stretches in their order that do not overlap. How the angle came to the
+    /// Does the same without the samples in `left_out`: ranges in order that do not overlap. The path of the angle to the
     /// samples in `breaks` from those before is not known.
     pub(super) fn without(
         sine: &[f64],
@@ -288,7 +288,7 @@ mod tests {
     fn there_and_back_is_covered_once() {
         let told = coverage((0..1000).map(|at| 0.2 + 1.5 * (TAU * f64::from(at) / 1000.0).sin()));
         assert!((told.periods - 3.0).abs() < 1e-4 && told.travel_periods.abs() < 0.02, "{told:?}");
-        // Up by 1.5, down by 3, up by 1.5 but for the last step.
+        // Up by 1.5, down by 3, up by 1.5 except for the last step.
         assert_eq!(told.reversals, 2);
         assert!((told.path_periods - 6.0).abs() < 0.02, "{told:?}");
         let steady = coverage((0..1000).map(|at| 0.2 - 0.013 * f64::from(at)));

@@ -1,10 +1,10 @@
-//! The ellipse that a pair of sine and cosine signals draws, found by least squares, and what makes it differ from a
-//! circle: offsets, gain ratio and phase error. P. L. M. Heydemann, Applied Optics 20, 3382 (1981); section 7 of the
-//! project's sine/cosine reference.
+//! The ellipse drawn by a pair of sine and cosine signals, found by least squares, and its differences from a circle:
+//! offsets, gain ratio and phase error. P. L. M. Heydemann, Applied Optics 20, 3382 (1981); section 7 of the project's
+//! sine/cosine reference.
 //!
 //! Model, with θ the true angle: x = R·cos θ + p (cosine channel) and y = (R·sin θ·cos α − R·cos θ·sin α)/r + q (sine
-//! channel). Fitted is A·x² + B·y² + C·xy + D·x + E·y = 1, the origin laid into the middle of the ellipse first: there the
-//! equation is best conditioned, and signals with a large mean level can be fitted as well.
+//! channel). The fit is to A·x² + B·y² + C·xy + D·x + E·y = 1, after moving the origin to the middle of the ellipse: there
+//! the equation is best conditioned, and signals with a large mean level can be fitted as well.
 
 use nalgebra::{SMatrix, SVector};
 
@@ -21,17 +21,17 @@ pub struct Ellipse {
     pub offset_sine_v: f64,
     /// r: amplitude of the cosine over that of the sine channel, above 0.
     pub gain_ratio: f64,
-    /// α: how far the sine lags behind a quarter of a period after the cosine, in radians, within ±π/2.
+    /// α: lag of the sine behind a quarter of a period after the cosine, in radians, within ±π/2.
     pub phase_error_rad: f64,
 }
 
-/// Why points give no ellipse.
+/// Why points determine no ellipse.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum FitError {
-    /// An ellipse has five parameters, and one more point is needed to know how well they fit.
+    /// An ellipse has five parameters, and one more point is needed to assess the fit.
     #[error("{points} points where {least} are needed", least = LEAST_POINTS)]
     TooFew {
-        /// Points that were given.
+        /// Points given.
         points: usize,
     },
     /// A sample is not a finite number.
@@ -40,16 +40,16 @@ pub enum FitError {
         /// Its index, from 0.
         index: usize,
     },
-    /// Both channels stand still.
+    /// Both channels are constant.
     #[error("all points are equal")]
     Constant,
-    /// One channel stands still.
+    /// One channel is constant.
     #[error("the {} channel does not change", .0.word())]
     Dead(Channel),
     /// Both channels do the same, or their opposite.
     #[error("the points lie on a line")]
     Line,
-    /// There are fewer than six different points, or they lie where more than one ellipse passes.
+    /// There are fewer than six different points, or more than one ellipse passes through them.
     #[error("the points do not tell one ellipse from another")]
     Ambiguous,
     /// The best curve is a parabola or a hyperbola, or the points keep no distance from the middle.
@@ -69,15 +69,15 @@ pub const LEAST_POINTS: usize = 6;
 
 /// A channel that moves less than this share of the other's range is dead; noise may be that large.
 const DEAD: f64 = 0.05;
-/// Spread across over spread along a line, as variances, below which it is one.
+/// Spread across over spread along a line, as variances, below which the points are on a line.
 const THIN: f64 = 1e-4;
 /// Smallest over largest eigenvalue of the normal equations below which they have no single solution.
 const CONDITION: f64 = 1e-13;
-/// How often the origin is moved to the centre of the ellipse found before.
+/// Number of times the origin is moved to the centre of the previous ellipse.
 const ROUNDS: usize = 4;
 
 impl Channel {
-    /// `sine` or `cosine`.
+    /// Returns `sine` or `cosine`.
     pub const fn word(self) -> &'static str {
         match self {
             Channel::Sine => "sine",
@@ -102,7 +102,7 @@ pub struct Conic {
 }
 
 impl Conic {
-    /// Heydemann's formulae; `None` where the curve is no ellipse around the origin.
+    /// Returns the ellipse by Heydemann's formulae; `None` if the curve is no ellipse around the origin.
     pub fn ellipse(&self) -> Option<Ellipse> {
         let Conic { a, b, c, d, e } = *self;
         if a <= 0.0 || b <= 0.0 || c * c >= 4.0 * a * b {
@@ -127,16 +127,16 @@ impl Conic {
 }
 
 impl Ellipse {
-    /// The best ellipse through points given as sine and cosine, as many of one as of the other (what is over is left
-    /// out), in volts. Takes two passes over the samples.
+    /// Fits the best ellipse through points given as sine and cosine in volts, as many of one as of the other (surplus
+    /// values are ignored). Takes two passes over the samples.
     ///
     /// # Errors
-    /// [`FitError`] where the points do not determine an ellipse. That they cover the period is for the caller to see.
+    /// [`FitError`] if the points do not determine an ellipse. The caller must check that they cover the period.
     pub fn fit(sine: &[f64], cosine: &[f64]) -> Result<Self, FitError> {
         Ellipse::of_moments(&Moments::of(sine, cosine)?)
     }
 
-    /// The best ellipse through the points whose moments were gathered.
+    /// Fits the best ellipse through the points with these moments.
     ///
     /// # Errors
     /// As [`fit`](Self::fit).
@@ -149,7 +149,7 @@ impl Ellipse {
         let mut moments = around_mean;
         let mut found = solve(&moments)?;
         for _ in 1..ROUNDS {
-            // Without a good start the middle may lie outside; then the fit around the mean is what there is.
+            // Without a good start the middle may be outside; then the fit around the mean is the result.
             let moved = moments.moved_by(found.offset_cosine_v, found.offset_sine_v);
             let Ok(better) = solve(&moved) else { break };
             (moments, found) = (moved, better);
@@ -166,7 +166,7 @@ impl Ellipse {
         )
     }
 
-    /// The circle that the signals draw once they are corrected.
+    /// Returns the circle that the signals draw once they are corrected.
     pub fn corrected(&self) -> Ellipse {
         let Ellipse { amplitude_v, .. } = *self;
         Ellipse { amplitude_v, offset_cosine_v: 0.0, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 }
@@ -181,7 +181,7 @@ impl Ellipse {
         (0..=points).map(point).collect()
     }
 
-    /// Amplitude of the sine channel, peak, in volts.
+    /// Returns the amplitude of the sine channel, peak, in volts.
     pub fn amplitude_sine_v(&self) -> f64 {
         self.amplitude_v / self.gain_ratio
     }
@@ -191,7 +191,7 @@ impl Ellipse {
         self.phase_error_rad.to_degrees()
     }
 
-    /// The correction that turns this ellipse into a circle.
+    /// Returns the correction that turns this ellipse into a circle.
     pub fn correction(&self) -> Correction {
         let (sin, cos) = self.phase_error_rad.sin_cos();
         Correction { p: self.offset_cosine_v, q: self.offset_sine_v, tan: sin / cos, scale: self.gain_ratio / cos }
@@ -208,14 +208,14 @@ pub struct Correction {
 }
 
 impl Correction {
-    /// Corrected (sine, cosine) in volts: x' = x − p, y' = ((x − p)·sin α + r·(y − q))/cos α.
+    /// Returns the corrected (sine, cosine) in volts: x' = x − p, y' = ((x − p)·sin α + r·(y − q))/cos α.
     pub fn apply(&self, sine: f64, cosine: f64) -> (f64, f64) {
         let x = cosine - self.p;
         (x * self.tan + self.scale * (sine - self.q), x)
     }
 
-    /// Returns how a change of the cosine and one of the sine change the corrected sine; the corrected cosine changes
-    /// as the cosine.
+    /// Returns how a change of the cosine and one of the sine change the corrected sine; the corrected cosine changes like
+    /// the cosine.
     pub(super) fn stretch(&self) -> (f64, f64) {
         (self.tan, self.scale)
     }
@@ -225,7 +225,7 @@ impl Correction {
 fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
     let (range_x, range_y) = around_mean.ranges();
     let most = range_x.max(range_y);
-    // Relative to the level: a constant of 2.5 V has a range of a few units in the last place at most.
+    // Relative to the level: a constant of 2.5 V has a range of at most a few units in the last place.
     if most <= around_mean.level() * 1e-9 {
         return Err(FitError::Constant);
     }
@@ -236,12 +236,12 @@ fn refuse_flat(around_mean: &Moments) -> Result<(), FitError> {
         return Err(FitError::Dead(Channel::Sine));
     }
     let (xx, xy, yy) = (around_mean.sum(2, 0), around_mean.sum(1, 1), around_mean.sum(0, 2));
-    // Each channel by its own spread, or a small gain would look like a line.
+    // Each channel relative to its own spread, or a small gain would look like a line.
     let correlation = (xy / (xx * yy).sqrt()).abs();
     if 1.0 - correlation < THIN { Err(FitError::Line) } else { Ok(()) }
 }
 
-/// The 5 × 5 normal equations, in the scale of the moments.
+/// Returns the 5 × 5 normal equations, in the scale of the moments.
 fn solve(moments: &Moments) -> Result<Ellipse, FitError> {
     /// Powers of x and y in the columns A … E.
     const POWERS: [(usize, usize); 5] = [(2, 0), (0, 2), (1, 1), (1, 0), (0, 1)];

@@ -1,6 +1,6 @@
 //! The effect of a drive's input circuit on the signals: signal frequency at a speed, phase and amplitude of the input
-//! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the
-//! input resistor in the text and the feedback resistor in the formula: the one across the capacitor counts.
+//! filter. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference. The manual names the input
+//! resistor in the text and the feedback resistor in the formula: the one across the capacitor counts.
 
 use std::f64::consts::TAU;
 
@@ -34,18 +34,18 @@ impl InputFilter {
 }
 
 impl Response {
-    /// The lag in 1/32 of a period, the steps of the absolute position.
+    /// Returns the lag in 1/32 of a period, the steps of the absolute position.
     pub fn lag_in_steps(&self) -> f64 {
         self.phase_deg / 360.0 * 32.0
     }
 }
 
-/// Frequency in hertz of a signal with so many periods in a revolution, at a speed in revolutions a minute.
+/// Returns the frequency in hertz of a signal with this many periods per revolution, at a speed in revolutions per minute.
 pub fn signal_frequency_hz(periods: u32, speed_rpm: f64) -> f64 {
     f64::from(periods) * speed_rpm / 60.0
 }
 
-/// The speed in revolutions a minute at which a signal reaches a frequency in hertz; `None` without periods.
+/// Returns the speed in revolutions per minute at which a signal reaches a frequency in hertz; `None` without periods.
 pub fn speed_rpm_at(periods: u32, frequency_hz: f64) -> Option<f64> {
     if periods == 0 { None } else { Some(frequency_hz * 60.0 / f64::from(periods)) }
 }

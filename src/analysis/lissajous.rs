@@ -1,6 +1,6 @@
-//! The Lissajous figure of sine over cosine as a density, as the phosphor of an oscilloscope shows it: how many samples
-//! fell into each cell of a square, and how short and how long the vector is in each direction. Every sample counts
-//! somewhere: in a cell, as outside, or as no number. Knows nothing of colours.
+//! The Lissajous figure of sine over cosine as a density, as displayed by the phosphor of an oscilloscope: the number of
+//! samples in each cell of a square, and the shortest and longest vector in each direction. Every sample counts somewhere:
+//! in a cell, as outside, or as not a number. Independent of colours.
 
 use std::f64::consts::TAU;
 
@@ -29,7 +29,7 @@ pub struct Density {
     bad: u64,
 }
 
-/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) where there is none.
+/// Shortest and longest amplitude vector √(sin² + cos²) in a direction, in volts; (∞, 0) if there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lengths {
     /// The shortest.
@@ -38,7 +38,7 @@ pub struct Lengths {
     pub most_v: f64,
 }
 
-/// Directions that are told apart: 5° each, from the cosine's axis towards the sine's.
+/// Number of directions: 5° each, from the cosine's axis towards the sine's.
 pub const SECTORS: usize = 72;
 /// Most cells of a side.
 pub const MOST_CELLS: usize = 2048;
@@ -49,12 +49,12 @@ const MARGIN: f64 = 0.05;
 const LEAST_HALF_V: f64 = 1e-3;
 
 impl Square {
-    /// Around zero, as the vector's length is counted from there.
+    /// Creates a range around zero, from which the vector's length is counted.
     pub const fn centred(half_v: f64) -> Self {
         Square { cosine_v: 0.0, sine_v: 0.0, half_v }
     }
 
-    /// Around all samples that are numbers, with a little room; `None` where there are none.
+    /// Returns a square around all samples that are numbers, with a margin; `None` if there are none.
     pub fn around(sine: &[f64], cosine: &[f64]) -> Option<Self> {
         let ((left, right), (bottom, top)) = (range(cosine)?, range(sine)?);
         let half = ((right - left).max(top - bottom) / 2.0).max(LEAST_HALF_V);
@@ -64,7 +64,7 @@ impl Square {
 }
 
 impl Density {
-    /// Creates an empty picture of `side` × `side` cells, at least one and at most [`MOST_CELLS`] a side. `None` for an
+    /// Creates an empty picture of `side` × `side` cells, at least one and at most [`MOST_CELLS`] per side. `None` for an
     /// empty square.
     pub fn new(square: Square, side: usize) -> Option<Self> {
         let Square { cosine_v, sine_v, half_v } = square;
@@ -89,7 +89,7 @@ impl Density {
         Some(density)
     }
 
-    /// Adds samples in volts; what one channel has over is left out.
+    /// Adds samples in volts; surplus values of one channel are ignored.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) {
         let Square { cosine_v, sine_v, half_v } = self.square;
         let (left, bottom) = (cosine_v - half_v, sine_v - half_v);
@@ -97,7 +97,7 @@ impl Density {
         let scale = side / (2.0 * half_v);
         for (y, x) in sine.iter().zip(cosine) {
             let (column, row) = ((x - left) * scale, (y - bottom) * scale);
-            // False as well for what is no number.
+            // False for NaN as well.
             let inside = column >= 0.0 && column < side && row >= 0.0 && row < side;
             let length = y * y + x * x;
             let direction = if inside {
@@ -132,33 +132,33 @@ impl Density {
         self.square
     }
 
-    /// Cells of a side.
+    /// Returns the number of cells of a side.
     pub fn side(&self) -> usize {
         self.side
     }
 
-    /// Samples in each cell: rows from the least sine upwards, in each from the least cosine on.
+    /// Returns the number of samples in each cell: rows from the least sine upwards, in each from the least cosine on.
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
 
-    /// Samples in the fullest cell.
+    /// Returns the number of samples in the fullest cell.
     pub fn most(&self) -> u32 {
         self.counts.iter().copied().max().unwrap_or(0)
     }
 
-    /// Samples beside the square.
+    /// Returns the samples outside the square.
     pub fn outside(&self) -> u64 {
         self.outside
     }
 
-    /// Samples that are no numbers.
+    /// Returns the number of samples that are no numbers.
     pub fn bad(&self) -> u64 {
         self.bad
     }
 
-    /// The shortest and the longest vector in each of [`SECTORS`] directions. The lengths are those of the samples; near a
-    /// border of two directions the cell decides to which it belongs.
+    /// Returns the shortest and the longest vector in each of [`SECTORS`] directions. The lengths are those of the samples;
+    /// near a border of two directions the cell decides.
     pub fn lengths(&self) -> [Lengths; SECTORS] {
         self.lengths.map(|squares| Lengths { least_v: squares.least_v.sqrt(), most_v: squares.most_v.sqrt() })
     }
@@ -168,7 +168,7 @@ impl Lengths {
     const NONE: Lengths = Lengths { least_v: f64::INFINITY, most_v: 0.0 };
 }
 
-/// The direction of a vector; `SECTORS` − 1 at most.
+/// Returns the direction of a vector; at most `SECTORS` − 1.
 fn sector(sine: f64, cosine: f64) -> usize {
     let share = (sine.atan2(cosine) / TAU).rem_euclid(1.0);
     ((share * SECTORS as f64) as usize).min(SECTORS - 1)

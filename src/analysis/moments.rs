@@ -1,6 +1,6 @@
-//! Sums of powers of two signals up to the fourth: all that the fit of an ellipse (Heydemann 1981) needs to know of any
-//! number of samples. They are gathered in one scale, near one, so that no digits are lost to the unit, and can be moved
-//! to another origin afterwards.
+//! Sums of powers of two signals up to the fourth: sufficient for fitting an ellipse (Heydemann 1981) to any number of
+//! samples. They are collected in a scale near one, so that no digits are lost to the unit, and can be moved to another
+//! origin afterwards.
 
 use super::ellipse::{Ellipse, FitError};
 
@@ -42,8 +42,8 @@ struct Extremes {
 }
 
 impl Scale {
-    /// A scale for samples around these mean levels with about this amplitude, in volts. Signals that come in pieces are
-    /// gathered in the scale of the first.
+    /// Creates empty moments with a scale for samples around these mean levels with about this amplitude, in volts. Signals
+    /// that arrive in pieces use the scale of the first.
     pub fn new(sine: f64, cosine: f64, amplitude: f64) -> Self {
         let unit = if amplitude.is_finite() && amplitude > 0.0 { amplitude } else { 1.0 };
         Scale { x: cosine, y: sine, unit }
@@ -57,7 +57,7 @@ impl Moments {
         Moments { scale, count: 0, sums: [0.0; ROW * ROW], least, most }
     }
 
-    /// Sums over all samples, in the scale that fits them best; what one channel has over is left out.
+    /// Returns the sums over all samples, in the best scale; surplus values of one channel are ignored.
     ///
     /// # Errors
     /// [`FitError::NotFinite`] with the first such sample.
@@ -71,10 +71,10 @@ impl Moments {
         Ok(moments)
     }
 
-    /// Adds samples in volts, as many of one channel as of the other (what is over is left out).
+    /// Adds samples in volts, as many of one channel as of the other (surplus values are ignored).
     ///
     /// # Errors
-    /// [`FitError::NotFinite`]; the moments are then as before, except for whole blocks before that sample.
+    /// [`FitError::NotFinite`]; the moments are then unchanged, except for whole blocks before that sample.
     pub fn add(&mut self, sine: &[f64], cosine: &[f64]) -> Result<(), FitError> {
         let length = sine.len().min(cosine.len());
         let (sine, cosine) = (sine.get(..length).unwrap_or_default(), cosine.get(..length).unwrap_or_default());
@@ -101,34 +101,34 @@ impl Moments {
         Ok(())
     }
 
-    /// Samples so far.
+    /// Returns the number of samples so far.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Sum of xⁱ·yʲ in the unit of the scale; 0 beyond the fourth power.
+    /// Returns the sum of xⁱ·yʲ in the unit of the scale; 0 beyond the fourth power.
     pub(super) fn sum(&self, i: usize, j: usize) -> f64 {
         if i + j > ORDER { 0.0 } else { self.sums.get(i * ROW + j).copied().unwrap_or(0.0) }
     }
 
-    /// Ranges of the cosine and of the sine channel in volts.
+    /// Returns the ranges of the cosine and of the sine channel in volts.
     pub(super) fn ranges(&self) -> (f64, f64) {
         (self.most.0 - self.least.0, self.most.1 - self.least.1)
     }
 
-    /// The largest voltage there is, without its sign.
+    /// Returns the largest voltage, without its sign.
     pub(super) fn level(&self) -> f64 {
         [self.least.0, self.least.1, self.most.0, self.most.1].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// The same samples seen from their mean.
+    /// Returns the same samples seen from their mean.
     pub(super) fn moved_to_mean(&self) -> Moments {
         let count = self.sum(0, 0).max(1.0);
         self.moved_by(self.sum(1, 0) / count, self.sum(0, 1) / count)
     }
 
-    /// The same samples seen from (x, y), which is given in the unit of the scale: (x − a)ⁱ·(y − b)ʲ by the binomial
-    /// theorem.
+    /// Returns the moments of the same samples as seen from (x, y), given in the unit of the scale: (x − a)ⁱ·(y − b)ʲ by
+    /// the binomial theorem.
     pub(super) fn moved_by(&self, x: f64, y: f64) -> Moments {
         const BINOMIAL: [[f64; ROW]; ROW] = [
             [1.0, 0.0, 0.0, 0.0, 0.0],
@@ -155,7 +155,7 @@ impl Moments {
         moved
     }
 
-    /// An ellipse found in this scale, in volts.
+    /// Returns an ellipse found in this scale, in volts.
     pub(super) fn in_volts(&self, ellipse: &Ellipse) -> Ellipse {
         Ellipse {
             amplitude_v: ellipse.amplitude_v * self.scale.unit,
@@ -196,7 +196,7 @@ impl Moments {
 }
 
 impl Extremes {
-    /// Not-a-numbers are passed over; they show in the sums.
+    /// Ignores NaN values, which show in the sums.
     fn of(sine: &[f64], cosine: &[f64]) -> Self {
         let ((least_x, most_x), (least_y, most_y)) = (extremes(cosine), extremes(sine));
         Extremes { least: (least_x, least_y), most: (most_x, most_y) }

@@ -1,11 +1,11 @@
-//! Speed and acceleration from unwrapped positions: differences over a stretch of time, not over a number of samples, so
-//! that a faster poll does not make them noisier. Never looks across a break.
+//! Speed and acceleration from unwrapped positions: differences over a range of time, not over a number of samples, so that
+//! a faster poll does not make them noisier. Breaks are never crossed.
 
 use std::collections::VecDeque;
 
 use super::Time;
 
-/// Follows unwrapped positions and tells how fast they change.
+/// Rates of change of unwrapped positions.
 #[derive(Clone, Debug)]
 pub struct Motion {
     /// Nanoseconds, at least 1.
@@ -17,17 +17,17 @@ pub struct Motion {
 /// The rates of change of a position.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Rates {
-    /// Steps/s, averaged over the last window, so it belongs to the middle of it; `None` until a window is over.
+    /// Steps/s, averaged over the last window, so it belongs to the middle of it; `None` until a window has passed.
     pub speed: Option<f64>,
-    /// Steps/s², from the last two windows; `None` until two windows are over.
+    /// Steps/s², from the last two windows; `None` until two windows have passed.
     pub acceleration: Option<f64>,
 }
 
 impl Motion {
-    /// Positions closer than this fraction of a window are not all kept: bounds memory at any rate.
+    /// Positions closer than this fraction of a window are not all kept: limits the memory at any rate.
     const RESOLUTION: i64 = 1024;
 
-    /// Averages over `window` nanoseconds (at least 1), or over one sample where they come more slowly than that.
+    /// Creates averages over `window` nanoseconds (at least 1), or over one sample if they arrive more slowly.
     pub fn over(window: i64) -> Self {
         Motion { window: window.max(1), recent: VecDeque::with_capacity(4 * Self::RESOLUTION as usize + 16) }
     }
@@ -37,7 +37,7 @@ impl Motion {
         self.recent.clear();
     }
 
-    /// The next position in steps. A position that is not later than the one before tells nothing.
+    /// Takes the next position in steps. One that is not later than the previous one gives nothing new.
     pub fn next(&mut self, time: Time, steps: i64) -> Rates {
         if self.recent.back().is_some_and(|(before, _)| time <= *before) {
             return Rates::default();
@@ -47,7 +47,7 @@ impl Motion {
         let speed = middle.map(|middle| slope(middle, (time, steps)));
         let acceleration = match (speed, middle, oldest) {
             (Some(speed), Some(middle), Some(oldest)) => {
-                // The two slopes belong to the middles of their stretches.
+                // The two slopes belong to the middles of their ranges.
                 let apart = time.seconds_since(oldest.0) / 2.0;
                 Some((speed - slope(oldest, middle)) / apart)
             }
@@ -57,14 +57,14 @@ impl Motion {
         Rates { speed, acceleration }
     }
 
-    /// The newest position at or before `time`.
+    /// Returns the newest position at or before `time`.
     fn before(&self, time: Time) -> Option<(Time, i64)> {
         let after = self.recent.partition_point(|(at, _)| *at <= time);
         self.recent.get(after.checked_sub(1)?).copied()
     }
 
     fn push(&mut self, time: Time, steps: i64) {
-        // The last but one stands for what is close to it; the last is always kept, as the next may come much later.
+        // The last but one represents those close to it; the last is always kept, as the next may come much later.
         let crowded = self
             .recent
             .len()
@@ -75,7 +75,7 @@ impl Motion {
             self.recent.pop_back();
         }
         self.recent.push_back((time, steps));
-        // One that is older than two windows has to stay: it is where a stretch begins.
+        // One that is older than two windows must stay: a range starts there.
         let start = self.before(time.plus(-self.window)).and_then(|(middle, _)| self.before(middle.plus(-self.window)));
         while let (Some(start), Some(first)) = (start, self.recent.front())
             && first.0 < start.0
@@ -85,7 +85,7 @@ impl Motion {
     }
 }
 
-/// Steps/s between two positions, the earlier first. The differences are exact before they are divided.
+/// Returns the steps/s between two positions, the earlier first. The differences are exact before they are divided.
 fn slope(from: (Time, i64), to: (Time, i64)) -> f64 {
     to.1.saturating_sub(from.1) as f64 / to.0.seconds_since(from.0)
 }

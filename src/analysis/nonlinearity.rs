@@ -1,7 +1,7 @@
 //! Differential and integral non-linearity against a reference: the deviation inside one signal period (offset, gain,
-//! phase, harmonics) and over the revolution (eccentricity, coupling, scale). SICK 8010701, definitions of errors; section 6
-//! of the project's sine/cosine reference, whose way of evaluating is taken: the mean over one period around each sample
-//! is the integral part, what remains is the differential part. Both are half of peak to peak: a ± value.
+//! phase, harmonics) and over the revolution (eccentricity, coupling, scale). SICK 8010701, definitions of errors; section
+//! 6 of the project's sine/cosine reference, whose evaluation is used: the mean over one period around each sample is the
+//! integral part, the rest is the differential part. Both are half of peak to peak: a ± value.
 
 /// Both non-linearities.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,10 +10,10 @@ pub struct Nonlinearity {
     pub differential_deg: f64,
     /// INL: ± deviation of the mean over one period, in mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and both parts of the deviation, mean removed, in mechanical degrees; where a whole period lies
+    /// Reference angle and both parts of the deviation, mean removed, in mechanical degrees; only where a whole period is
     /// around the sample.
     pub curve: Vec<Deviation>,
-    /// Revolutions that the curve covers; INL speaks for a whole one only from 1 on.
+    /// Revolutions that the curve covers; INL is valid for a whole one only from 1 on.
     pub revolutions: f64,
 }
 
@@ -45,11 +45,11 @@ pub enum NonlinearityError {
     NotFinite,
 }
 
-/// Compares measured and reference angles in mechanical degrees, both running on without wrapping; `periods` is the
-/// number of signal periods in a revolution.
+/// Compares measured and reference angles in mechanical degrees, both unwrapped; `periods` is the number of signal periods
+/// per revolution.
 ///
 /// # Errors
-/// [`NonlinearityError`] where the reference turns back, or there is too little of it.
+/// [`NonlinearityError`] if the reference reverses, or is too short.
 pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result<Nonlinearity, NonlinearityError> {
     let count = measured.len().min(reference.len());
     let (measured, reference) = (measured.get(..count).unwrap_or_default(), reference.get(..count).unwrap_or_default());
@@ -87,8 +87,8 @@ pub fn nonlinearity(measured: &[f64], reference: &[f64], periods: u32) -> Result
     })
 }
 
-/// The mean over one period around each sample that has one: the integral of the straight lines between the samples, so
-/// that where they lie in the period makes no difference.
+/// Returns the mean over one period around each sample that has one: the integral of the straight lines between the
+/// samples, so that their places in the period make no difference.
 fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> Vec<Deviation> {
     let start = reference.first().copied().unwrap_or(0.0);
     // Angles from the start, growing whatever the direction.
@@ -104,7 +104,7 @@ fn split(errors: &[f64], reference: &[f64], period_deg: f64, direction: f64) -> 
         areas.push(area);
     }
     let end = place(errors.len().saturating_sub(1)).unwrap_or(0.0);
-    // The area up to any angle; `from` walks along with it.
+    // The area up to any angle; `from` moves along with it.
     let area_to = |angle: f64, from: &mut usize| {
         while place(*from + 1).is_some_and(|next| next <= angle) {
             *from += 1;
@@ -133,7 +133,7 @@ mod tests {
     use super::*;
     use std::f64::consts::TAU;
 
-    /// A reference over `revolutions` and a measurement with an eccentricity of 0.02° and a period error of 0.003°.
+    /// Returns a reference over `revolutions` and a measurement with an eccentricity of 0.02° and a period error of 0.003°.
     fn measured(count: usize, revolutions: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
         (0..count)
             .map(|at| {
@@ -150,7 +150,7 @@ mod tests {
         let back = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
         for (values, reference) in [(values.clone(), reference.clone()), (back(&values), back(&reference))] {
             let told = nonlinearity(&values, &reference, 128).unwrap();
-            // The mean over 1/128 revolution lessens a sine of one revolution by 1e-4 of itself.
+            // The mean over 1/128 revolution reduces a sine of one revolution by 1e-4 of itself.
             assert!((told.integral_deg - 0.02).abs() < 5e-6, "{}", told.integral_deg);
             assert!((told.differential_deg - 0.003).abs() < 5e-6, "{}", told.differential_deg);
             assert!((told.revolutions - 1.1).abs() < 1e-3);
@@ -161,7 +161,7 @@ mod tests {
     fn a_period_need_not_be_a_whole_number_of_samples() {
         let (values, reference) = measured(1111, 1.0, 16.0);
         let told = nonlinearity(&values, &reference, 16).unwrap();
-        // The mean over 1/16 revolution takes (π/16)²/6 of a sine of one revolution, which the differential part gets.
+        // The mean over 1/16 revolution removes (π/16)²/6 of a sine of one revolution, which goes to the differential part.
         let leaked = 0.02 * (TAU / 32.0).powi(2) / 6.0;
         assert!((told.differential_deg - leaked - 0.003).abs() < 3e-5, "{}", told.differential_deg);
         assert!((told.integral_deg / 0.02 - 1.0).abs() < 0.02, "{}", told.integral_deg);

@@ -1,6 +1,6 @@
-//! Samples far off the ellipse, as a relay's spark or a loose contact leaves them: a few of them would bend an ellipse that
-//! is fitted by least squares. They are found by a deviation that they hardly influence (the median of the distances) and
-//! left out of a second fit; what is left out is told.
+//! Samples far off the ellipse, caused by a relay's spark or a loose contact: a few of them would distort an ellipse fitted
+//! by least squares. They are found by a robust deviation (the median of the distances) and left out of a second fit; they
+//! are reported.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use super::moments::{Moments, Scale};
 /// The samples excluded from a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outliers {
-    /// The samples, by index from 0, in their order; no two stretches touch.
+    /// The samples, by index from 0, in order; no two ranges touch.
     pub stretches: Vec<Range<usize>>,
     /// Number of samples.
     pub count: usize,
@@ -19,11 +19,11 @@ pub struct Outliers {
     pub longest: usize,
     /// Largest distance from the ellipse, in volts.
     pub farthest_v: f64,
-    /// The ellipse through all samples and what they do on it; `None` where they determine none.
+    /// The ellipse through all samples and their coverage of it; `None` if they determine none.
     pub all: Option<(Ellipse, Coverage)>,
 }
 
-/// Robust deviations beyond which a sample is left out: noise of the normal distribution comes so far in one of 10¹⁵.
+/// Number of robust deviations beyond which a sample is left out: normally distributed noise exceeds it in one of 10¹⁵.
 pub const DEVIATIONS: f64 = 8.0;
 /// Share of the amplitude within which a sample is never an outlier, however little noise there is.
 pub const LEAST_SHARE: f64 = 0.02;
@@ -36,9 +36,9 @@ pub const LEAST_SAMPLES: usize = 50;
 const SAMPLED: usize = 1 << 15;
 /// Fits without outliers, until they stay the same.
 const ROUNDS: usize = 4;
-/// A normal distribution's deviation over the median of its distances from zero.
+/// Ratio of a normal distribution's deviation to the median of its distances from zero.
 const NORMAL: f64 = 1.4826;
-/// Median distance from an upright ellipse, as a share of its amplitude, beyond which the samples lie on none: a cloud has
+/// Median distance from an upright ellipse, as a share of its amplitude, beyond which the samples are on none: a cloud has
 /// 0.3.
 const UPRIGHT: f64 = 0.15;
 /// A channel with less than this share of the other's range does not move.
@@ -46,23 +46,23 @@ const DEAD: f64 = 0.05;
 
 /// The result of a search for outliers.
 pub(super) enum OutlierSearch {
-    /// None, or so many that they are none.
+    /// None, or too many to count as outliers.
     Nothing,
     /// These, and the ellipse through the others.
     Outliers(Ellipse, Outliers),
 }
 
-/// Looks for samples far off; `all` is the ellipse through all of them, if there is one.
+/// Searches for outliers; `all` is the ellipse through all samples, if there is one.
 pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> OutlierSearch {
     let count = sine.len().min(cosine.len());
     if count < LEAST_SAMPLES {
         return OutlierSearch::Nothing;
     }
-    // An odd stride does not keep step with a period of 2ⁿ samples.
+    // An odd stride is not synchronous with a period of 2ⁿ samples.
     let stride = (count / SAMPLED) | 1;
     let sampled = |values: &[f64]| values.iter().take(count).step_by(stride).copied().collect::<Vec<f64>>();
     let (ys, xs) = (sampled(sine), sampled(cosine));
-    // An ellipse through a far sample misses the others; the upright one is taken where it misses them less.
+    // An ellipse distorted by an outlier misses the others; the upright one is used if it misses them less.
     let upright = boxed(&ys, &xs).ok().filter(|boxed| median_off(&ys, &xs, boxed) < UPRIGHT * boxed.amplitude_v);
     let start = match (all, upright) {
         (Some(all), Some(upright)) => {
@@ -106,7 +106,7 @@ pub(super) fn find(sine: &[f64], cosine: &[f64], all: Option<&Ellipse>) -> Outli
     OutlierSearch::Outliers(ellipse, outliers)
 }
 
-/// The channel that does not move, single samples aside.
+/// Returns the channel that does not move, single samples aside.
 pub(super) fn dead(sine: &[f64], cosine: &[f64]) -> Option<Channel> {
     let few = sine.len().min(cosine.len()) < LEAST_SAMPLES;
     boxed(sine, cosine).err().flatten().filter(|_| !few)
@@ -127,10 +127,10 @@ fn fit_without(sine: &[f64], cosine: &[f64], left_out: &[Range<usize>], scale: S
     Ellipse::of_moments(&moments)
 }
 
-/// An upright ellipse by quantiles, which a few samples do not move; the channel that does not move where one does not, and
-/// nothing where neither does.
+/// Returns an upright ellipse by quantiles, which a few samples do not affect; or the constant channel if there is one, and
+/// `None` if both are constant.
 fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
-    /// Of a sine, a tenth of the time is spent outside of cos(0.05·π) of its amplitude.
+    /// A sine is outside of cos(0.05·π) of its amplitude for a tenth of the time.
     const SHARE: f64 = 0.05;
     let reach = (SHARE * std::f64::consts::PI).cos();
     let channel = |values: &[f64]| {
@@ -142,7 +142,7 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
     };
     let ((offset_sine_v, sine_v), (offset_cosine_v, amplitude_v)) = (channel(sine), channel(cosine));
     let most = sine_v.max(amplitude_v);
-    // A constant of 2.5 V has a range of a few units in the last place at most.
+    // A constant of 2.5 V has a range of at most a few units in the last place.
     if most <= 1e-9 * offset_sine_v.abs().max(offset_cosine_v.abs()) {
         Err(None)
     } else if sine_v < DEAD * most {
@@ -155,7 +155,7 @@ fn boxed(sine: &[f64], cosine: &[f64]) -> Result<Ellipse, Option<Channel>> {
     }
 }
 
-/// Median of the distances from an ellipse, in volts of its corrected circle.
+/// Returns the median of the distances from an ellipse, in volts of its corrected circle.
 fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     let correction = ellipse.correction();
     let off = |(y, x): (&f64, &f64)| {
@@ -167,14 +167,14 @@ fn median_off(sine: &[f64], cosine: &[f64], ellipse: &Ellipse) -> f64 {
     rank_of(&mut offs, middle)
 }
 
-/// The value of that rank, counted from the least.
+/// Returns the value of that rank, counted from the least.
 fn rank_of(values: &mut [f64], rank: usize) -> f64 {
     if rank < values.len() { *values.select_nth_unstable_by(rank, f64::total_cmp).1 } else { f64::NAN }
 }
 
-/// The samples that are further from the ellipse than `limit` volts.
+/// Returns the samples that are further from the ellipse than `limit` volts.
 fn beyond(sine: &[f64], cosine: &[f64], ellipse: &Ellipse, limit: f64) -> Vec<Range<usize>> {
-    /// Samples that are looked at together: mostly there is none among them.
+    /// Samples that are checked together: usually there is no outlier among them.
     const BLOCK: usize = 256;
     let correction = ellipse.correction();
     let squared = |volts: f64| volts * volts;

@@ -1,11 +1,11 @@
 //! The position error over one signal period, in electrical degrees, before and after the correction, and its harmonics.
-//! SICK 8010701, definitions of errors (what offset, gain, phase and harmonics do inside a period); section 6 of the
+//! SICK 8010701, definitions of errors (the effects of offset, gain, phase and harmonics inside a period); section 6 of the
 //! project's sine/cosine reference.
 //!
 //! Without a reference encoder the motion is the reference: over a few periods a shaft turns along a straight line or a
-//! parabola in time, so that what repeats with the period is error. Both are fitted in one: a motion for each segment of
-//! the capture, and eight harmonics of the corrected angle for all. Where the motion is no such line, or there is too little
-//! of it, the distance from the ellipse stands for the error: what distorts one distorts the other by as much.
+//! parabola in time, so deviations that repeat with the period are error. Both are fitted at once: a motion for each
+//! segment of the capture, and eight harmonics of the corrected angle for all. If the motion is not such a line, or too
+//! short, the distance from the ellipse is used as the error: a disturbance changes both by the same amount.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -16,26 +16,26 @@ use super::coverage::Coverage;
 use super::ellipse::{Correction, Ellipse};
 use super::outliers::kept;
 
-/// Harmonics of the period that are told apart.
+/// Number of harmonics of the period.
 pub const HARMONICS: usize = 8;
 
 /// The error over one period.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PositionError {
-    /// As measured, in electrical degrees, at [`POINTS`] evenly spread angles; its mean is zero.
+    /// Measured error in electrical degrees, at [`POINTS`] evenly spread angles; its mean is zero.
     pub raw_deg: Vec<f64>,
     /// The remaining error after the correction, likewise.
     pub corrected_deg: Vec<f64>,
     /// Basis of the remaining error.
     pub basis: Basis,
-    /// Peak to peak of what remains, in electrical degrees.
+    /// Peak to peak of the remaining error, in electrical degrees.
     pub corrected_pp_deg: f64,
 }
 
 /// The basis against which the remaining error was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
-    /// A steady motion, from which the samples keep this far beside the harmonics (noise), rms in electrical degrees.
+    /// A steady motion; remaining deviation of the samples besides the harmonics (noise), rms in electrical degrees.
     Motion {
         /// Rms in electrical degrees.
         noise_deg: f64,
@@ -49,26 +49,27 @@ pub const POINTS: usize = 720;
 
 /// Sine and cosine of each harmonic.
 const TERMS: usize = 2 * HARMONICS;
-/// Periods in a segment with a motion of its own.
+/// Periods in a segment with its own motion.
 const SEGMENT_PERIODS: f64 = 4.0;
-/// Most segments that are looked at; they are spread over the capture.
+/// Maximum number of segments examined; they are spread over the capture.
 const SEGMENTS: usize = 32;
-/// Most samples of a segment; of more, every so many.
+/// Maximum number of samples of a segment; of more, every n-th is used.
 const SEGMENT_SAMPLES: usize = 4096;
 /// Fewest samples for a fit of the motion with all harmonics.
 const LEAST_SAMPLES: usize = 3 * TERMS;
-/// Least periods: of less, harmonics and motion are not told apart.
+/// Minimum number of periods: with fewer, harmonics and motion cannot be separated.
 const LEAST_PERIODS: f64 = 0.95;
-/// Noise beside the harmonics, over what the distance from the ellipse lets expect, beyond which no motion was steady.
+/// Ratio of the noise besides the harmonics to that expected from the distance to the ellipse, beyond which the motion was
+/// not steady.
 const STEADY: f64 = 3.0;
 
 type Normal = SMatrix<f64, TERMS, TERMS>;
 type Terms = SVector<f64, TERMS>;
 
-/// A capture on its ellipse.
+/// Capture on its ellipse.
 #[derive(Clone, Copy, Debug)]
 pub struct Samples<'a> {
-    /// Times in seconds; others than growing ones are not used, the samples then count as evenly spaced.
+    /// Times in seconds; if they do not grow, they are ignored and the samples count as evenly spaced.
     pub time_s: &'a [f64],
     /// Sine channel in volts.
     pub sine_v: &'a [f64],
@@ -77,7 +78,7 @@ pub struct Samples<'a> {
 }
 
 impl PositionError {
-    /// The error of samples on their ellipse, `left_out` not counted: stretches in their order that do not overlap.
+    /// Returns the error of samples on their ellipse, without `left_out`: ranges in order that do not overlap.
     pub(super) fn of(samples: Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, coverage: &Coverage) -> Self {
         let expected_deg = coverage.residual_rms.to_degrees();
         let found = fit(&samples, left_out, ellipse, coverage.periods)
@@ -102,13 +103,13 @@ impl PositionError {
         PositionError { raw_deg, corrected_deg, basis, corrected_pp_deg }
     }
 
-    /// Peak to peak as measured, in electrical degrees.
+    /// Returns the peak to peak as measured, in electrical degrees.
     pub fn raw_pp_deg(&self) -> f64 {
         peak_to_peak(&self.raw_deg)
     }
 }
 
-/// Peak amplitudes of the first harmonics of a curve over one period, in the unit of the curve.
+/// Returns the peak amplitudes of the first harmonics of a curve over one period, in the unit of the curve.
 pub fn harmonics(curve: &[f64]) -> [f64; HARMONICS] {
     let count = curve.len().max(1) as f64;
     let mut order = 0.0;
@@ -145,7 +146,7 @@ fn harmonics_at(angle: f64) -> Terms {
     terms
 }
 
-/// Harmonics in radians, and the rms of what is left in degrees; `None` where there is too little.
+/// Returns the harmonics in radians, and the rms of the rest in degrees; `None` if there are too few samples.
 fn fit(samples: &Samples<'_>, left_out: &[Range<usize>], ellipse: &Ellipse, periods: f64) -> Option<(Terms, f64)> {
     let count = samples.sine_v.len().min(samples.cosine_v.len());
     if count < LEAST_SAMPLES || periods < LEAST_PERIODS {
@@ -180,7 +181,7 @@ impl Segment {
     fn of(samples: &Samples<'_>, left_out: &[Range<usize>], range: Range<usize>, timed: bool) -> Self {
         let from = left_out.partition_point(|stretch| stretch.end <= range.start);
         let inside = left_out.iter().skip(from).take_while(|stretch| stretch.start < range.end);
-        // In the range's own numbers.
+        // In the range's own indices.
         let own = |index: usize| index.clamp(range.start, range.end) - range.start;
         let inside: Vec<Range<usize>> = inside.map(|stretch| own(stretch.start)..own(stretch.end)).collect();
         let parts = |values: &[f64]| {
@@ -246,7 +247,7 @@ impl Sums {
     }
 
     fn solve(self) -> Option<(Terms, f64)> {
-        /// Smallest share of the largest eigenvalue that still says something: few samples in a period cannot tell high
+        /// Smallest share of the largest eigenvalue that is significant: few samples in a period cannot separate high
         /// harmonics from low ones.
         const RANK: f64 = 1e-4;
         let parts = self.normal.symmetric_eigen();

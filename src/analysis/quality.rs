@@ -1,6 +1,6 @@
-//! Is a sine/cosine signal good enough: the length of the amplitude vector √(sin² + cos²), offsets, gain ratio and phase
-//! error against their limits. SICK 8010701 for the amplitudes; section 2 of the project's sine/cosine reference, whose
-//! other limits are assumptions (U) and can be changed here.
+//! Whether a sine/cosine signal is good enough: the length of the amplitude vector √(sin² + cos²), offsets, gain ratio and
+//! phase error against their limits. SICK 8010701 for the amplitudes; section 2 of the project's sine/cosine reference,
+//! whose other limits are assumptions (U) and can be changed here.
 
 use super::ellipse::Ellipse;
 use crate::units::SupplyVoltage;
@@ -27,7 +27,7 @@ pub struct Limits {
     pub offset: f64,
     /// Least and largest gain ratio.
     pub gain_ratio: (f64, f64),
-    /// Largest phase error in degrees, whatever its sign.
+    /// Largest absolute phase error in degrees.
     pub phase_deg: f64,
     /// Largest deviation from the ellipse, rms, as a share of the amplitude.
     pub residual: f64,
@@ -35,7 +35,7 @@ pub struct Limits {
     pub level_v: (f64, f64),
 }
 
-/// A family of encoders whose limits are known.
+/// Family of encoders with known limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Family {
     /// HIPERFACE motor feedback.
@@ -78,7 +78,7 @@ impl Family {
     }
 }
 
-/// A value out of its limits.
+/// Value out of its limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QualityFinding {
     /// An amplitude (peak) in volts, the smaller or larger of the two channels.
@@ -97,7 +97,7 @@ pub enum QualityFinding {
     GainRatio(f64),
     /// Phase error in degrees.
     PhaseError(f64),
-    /// The samples keep so far from the ellipse, rms, as a share of the amplitude: noise, interference, harmonics.
+    /// Distance of the samples from the ellipse, rms, as a share of the amplitude: noise, interference, harmonics.
     Residual(f64),
 }
 
@@ -122,8 +122,8 @@ impl Limits {
     /// TTK70: 0.9 … 1.1 V peak to peak, mean level 2.5 V ± 5 %.
     pub const TTK70: Limits = Limits { level_v: (2.375, 2.625), ..Limits::HIPERFACE };
 
-    /// Judges the length of one amplitude vector; `None` is no signal at all. One vector also holds offset and gain error,
-    /// so that the least and the largest over a period are what to judge.
+    /// Judges the length of one amplitude vector; `None` without a signal. A single vector also contains offset and gain
+    /// error, so the minimum and maximum over a period should be judged.
     pub fn vector(&self, sine: f64, cosine: f64) -> Option<Verdict> {
         let length = sine.hypot(cosine);
         if length.is_nan() || length == 0.0 { None } else { Some(self.amplitude(length)) }

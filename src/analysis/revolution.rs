@@ -1,5 +1,6 @@
-//! A capture beside a reference encoder: non-linearity over the revolution, as measured and after the correction. What is
-//! measured is the angle that a drive interpolates from sine and cosine (section 6 of the project's sine/cosine reference).
+//! A capture compared with a reference encoder: non-linearity over the revolution, as measured and after the correction.
+//! The measured angle is the one that a drive interpolates from sine and cosine (section 6 of the project's sine/cosine
+//! reference).
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -13,7 +14,7 @@ use super::outliers::kept;
 pub struct Revolution {
     /// As measured.
     pub raw: Nonlinearity,
-    /// With offsets, gain ratio and phase error taken out.
+    /// With offsets, gain ratio and phase error corrected.
     pub corrected: Nonlinearity,
 }
 
@@ -23,22 +24,22 @@ pub enum RevolutionError {
     /// The samples or the reference do not allow it.
     #[error(transparent)]
     Nonlinearity(#[from] NonlinearityError),
-    /// The signals turn another way than the reference with so many periods in a revolution.
+    /// The path of the signals does not match that of the reference with this many periods per revolution.
     #[error("the capture has {found:.1} periods in a revolution of the reference, not {given}")]
     Periods {
         /// Periods that were counted in a revolution of the reference.
         found: f64,
-        /// Periods that were given.
+        /// Given periods.
         given: u32,
     },
 }
 
-/// How far the counted periods may differ from those given, as a share.
+/// Allowed deviation of the counted periods from the given ones, as a share.
 const CLOSE: f64 = 0.02;
 
 impl Revolution {
-    /// Sine, cosine in volts and the reference's angle in mechanical degrees, wrapped or running on, in either direction.
-    /// Samples in `left_out` do not count, nor do those at which the reference stands.
+    /// Compares sine and cosine in volts with the reference's angle in mechanical degrees, wrapped or not, in either
+    /// direction. Samples in `left_out` do not count, nor do those at which the reference stands still.
     ///
     /// # Errors
     /// [`RevolutionError`].
@@ -74,11 +75,11 @@ impl Revolution {
         if !found.is_finite() {
             return Err(NonlinearityError::TooLittle.into());
         }
-        // Less than a period says nothing about how many there are.
+        // Less than a period does not tell their number.
         if turned.abs() >= 1.0 && (found.abs() / f64::from(periods) - 1.0).abs() > CLOSE.max(1.0 / turned.abs()) {
             return Err(RevolutionError::Periods { found: found.abs(), given: periods });
         }
-        // Mounted the other way round, the reference counts the other way.
+        // Mounted the other way round, the reference counts in the other direction.
         let factor = 360.0 / TAU / f64::from(periods) * found.signum();
         let mechanical = |angles: &[f64]| angles.iter().map(|angle| angle * factor).collect::<Vec<f64>>();
         Ok(Revolution {
@@ -88,7 +89,7 @@ impl Revolution {
     }
 }
 
-/// An angle that continues where the measured one wraps.
+/// Angle that continues where the measured one wraps.
 struct Follow {
     whole: f64,
     last: Option<f64>,
@@ -115,7 +116,7 @@ mod tests {
     const ELLIPSE: Ellipse =
         Ellipse { amplitude_v: 0.5, offset_cosine_v: 0.005, offset_sine_v: 0.0, gain_ratio: 1.0, phase_error_rad: 0.0 };
 
-    /// 1.1 revolutions of 128 periods with an eccentricity of 0.02°.
+    /// Returns 1.1 revolutions of 128 periods with an eccentricity of 0.02°.
     fn made(sign: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         let (mut sine, mut cosine, mut reference) = (vec![], vec![], vec![]);
         for at in 0..20_000 {

@@ -1,6 +1,6 @@
-//! All there is to say about a capture of sine and cosine: the ellipse (Heydemann 1981), how well it fits, how much of the
-//! period it covers, and the position error it stands for. Sections 2, 6 and 7 of the project's sine/cosine reference.
-//! Single samples far off are left out of all of it, and told.
+//! All results about a capture of sine and cosine: the ellipse (Heydemann 1981), how well it fits, how much of the period
+//! it covers, and the resulting position error. Sections 2, 6 and 7 of the project's sine/cosine reference. Single outliers
+//! are left out of all of it, and reported.
 
 use super::continuity::Continuity;
 use super::coverage::Coverage;
@@ -15,7 +15,7 @@ pub const LEAST_OCTANTS: u32 = 6;
 pub const LARGEST_RESIDUAL: f64 = 0.25;
 
 /// Median angle from one sample to the next, in degrees, above which the direction is not certain: fewer than four samples
-/// a period, where noise or an uneven motion soon makes half a period of it (U).
+/// per period, where noise or an uneven motion easily makes it half a period (U).
 const LARGEST_STEP_DEG: f64 = 90.0;
 
 /// The result.
@@ -24,7 +24,7 @@ pub struct Analysis {
     pub ellipse: Ellipse,
     /// How the samples cover the ellipse.
     pub coverage: Coverage,
-    /// How the times of the samples follow each other.
+    /// Continuity of the times.
     pub continuity: Continuity,
     /// Median angle from one sample to the next, in degrees, 0 to 180.
     pub step_deg: f64,
@@ -34,8 +34,7 @@ pub struct Analysis {
     pub samples: usize,
     /// Time from the first to the last sample in seconds; `None` without growing times.
     pub duration_s: Option<f64>,
-    /// Samples that were left out because they are far off, with the ellipse as it would be with them; `None` where none
-    /// were.
+    /// Outliers that were left out, with the ellipse that would include them; `None` if there were none.
     pub outliers: Option<Outliers>,
 }
 
@@ -45,13 +44,13 @@ pub enum AnalysisError {
     /// The samples determine no ellipse.
     #[error(transparent)]
     Fit(#[from] FitError),
-    /// The capture covers too little of a period for its ellipse to be trusted.
+    /// The capture covers too little of a period for a reliable ellipse.
     #[error("samples in {octants} of 8 octants where {least} are needed", least = LEAST_OCTANTS)]
     Coverage {
         /// Octants that hold samples.
         octants: u32,
     },
-    /// All samples lie around one point, away from zero: the signal is there, and the shaft stands.
+    /// All samples are around one point, away from zero: the signal is present, and the shaft stands still.
     #[error("all samples lie around one point")]
     AtRest,
     /// The samples are too far from the ellipse to be a sine and a cosine.
@@ -63,16 +62,16 @@ pub enum AnalysisError {
 }
 
 impl Analysis {
-    /// Analyses samples; of columns that are not equally long, what is over is left out.
+    /// Analyses samples; surplus values of unequal columns are ignored.
     ///
     /// # Errors
-    /// [`AnalysisError`] where they determine no ellipse or cover less than six octants of a period.
+    /// [`AnalysisError`] if they determine no ellipse or cover less than six octants of a period.
     pub fn of(samples: Samples<'_>) -> Result<Self, AnalysisError> {
         Self::attempt(samples).map_err(|error| match error {
-            // Few samples and such that are no numbers say nothing more; equal points may be a dead cable as well.
+            // Few samples and NaN tell nothing more; equal points may also be a dead cable.
             AnalysisError::Fit(FitError::TooFew { .. } | FitError::NotFinite { .. } | FitError::Constant) => error,
             _ if is_at_rest(samples.sine_v, samples.cosine_v) => AnalysisError::AtRest,
-            // One spark on a dead channel makes it look alive, and what it gives then says nothing about the cause.
+            // One spark on a dead channel makes it look alive, and the resulting error does not show the cause.
             AnalysisError::Fit(FitError::NotAnEllipse)
             | AnalysisError::Coverage { .. }
             | AnalysisError::NoSignal { .. } => {
@@ -115,8 +114,8 @@ impl Analysis {
         })
     }
 
-    /// Periods a second on average, of continuous stretches only; negative when the angle falls. Where it turned back, the
-    /// mean of both directions, which is positive. `None` without times.
+    /// Returns the average periods per second, of continuous sections only; negative if the angle falls. If it reversed,
+    /// the mean of both directions, which is positive. `None` without times.
     pub fn frequency_hz(&self) -> Option<f64> {
         let Coverage { path_periods, travel_periods, reversals, .. } = self.coverage;
         self.continuity.stretches_s.map(|seconds| if reversals > 0 { path_periods } else { travel_periods } / seconds)
@@ -128,11 +127,11 @@ impl Analysis {
     }
 }
 
-/// The samples scatter by little around a point that is no zero.
+/// Returns whether the samples scatter by little around a point that is no zero.
 fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     /// Scatter of one channel, rms, as a share of the point's distance from zero: 6° of a signal (U).
     const SCATTER: f64 = 0.1;
-    /// Nearer to zero there may be no signal at all, in volts (U).
+    /// Closer to zero there may be no signal at all, in volts (U).
     const LEAST_V: f64 = 0.1;
     let of = |values: &[f64]| {
         let count = values.len().max(1) as f64;
@@ -144,12 +143,12 @@ fn is_at_rest(sine_v: &[f64], cosine_v: &[f64]) -> bool {
     away >= LEAST_V && sine_rms.max(cosine_rms) <= SCATTER * away
 }
 
-/// Median angle from one sample to the next, in degrees.
+/// Returns the median angle from one sample to the next, in degrees.
 fn step_deg(sine_v: &[f64], cosine_v: &[f64], ellipse: &Ellipse) -> f64 {
-    /// Steps that are looked at.
+    /// Number of steps examined.
     const SAMPLED: usize = 1 << 13;
     let correction = ellipse.correction();
-    // An odd stride does not keep step with a period of 2ⁿ samples.
+    // An odd stride is not synchronous with a period of 2ⁿ samples.
     let stride = (sine_v.len() / SAMPLED) | 1;
     let step = |pair: (&[f64], &[f64])| match pair {
         ([y, later_y], [x, later_x]) => {

@@ -1,5 +1,5 @@
 //! The amplitude spectrum of a signal by the fast Fourier transform of the crate realfft, in a Hann window: interference,
-//! harmonics and noise of a sine/cosine channel. The window's gain is taken out, so that a sine reads its peak amplitude.
+//! harmonics and noise of a sine/cosine channel. The window's gain is compensated, so that a sine reads its peak amplitude.
 
 use std::f64::consts::TAU;
 
@@ -27,7 +27,7 @@ pub enum SpectrumError {
     /// A spectrum needs at least eight samples.
     #[error("{samples} samples where 8 are needed")]
     TooFew {
-        /// Samples that were given.
+        /// Given samples.
         samples: usize,
     },
     /// The times do not run on evenly.
@@ -47,10 +47,10 @@ const LEAST: usize = 8;
 const PEAK_REACH: usize = 2;
 
 impl Spectrum {
-    /// The spectrum of samples taken `rate_hz` times a second; their mean is taken out.
+    /// Calculates the spectrum of samples taken `rate_hz` times per second; their mean is removed.
     ///
     /// # Errors
-    /// [`SpectrumError`] where there are too few or one is not finite.
+    /// [`SpectrumError`] if there are too few or one is not finite.
     pub fn of(samples: &[f64], rate_hz: f64) -> Result<Self, SpectrumError> {
         let count = samples.len();
         if count < LEAST {
@@ -64,25 +64,25 @@ impl Spectrum {
         let mut windowed: Vec<f64> = samples.iter().enumerate().map(|(at, value)| (value - mean) * hann(at)).collect();
         let transform = RealFftPlanner::new().plan_fft_forward(count);
         let mut lines = transform.make_output_vec();
-        // The buffers are made for this transform, so that it cannot fail; a sum beyond all numbers shows in the lines.
+        // The buffers are made for this transform, so it cannot fail; an overflow shows in the lines.
         transform.process(&mut windowed, &mut lines).map_err(|_| SpectrumError::NotFinite)?;
         // A sine has half its amplitude in each of its two lines, and the window has the mean ½.
         let amplitudes_v = lines.iter().map(|line| line.norm() * 4.0 / count as f64).collect();
         Ok(Spectrum { spacing_hz: rate_hz / count as f64, amplitudes_v })
     }
 
-    /// Distance of two lines in hertz: one over the duration.
+    /// Returns the distance of two lines in hertz: one over the duration.
     pub fn spacing_hz(&self) -> f64 {
         self.spacing_hz
     }
 
-    /// Peak amplitudes in volts, from 0 Hz to half the sample rate, [`spacing_hz`](Self::spacing_hz) apart.
+    /// Returns the peak amplitudes in volts, from 0 Hz to half the sample rate, [`spacing_hz`](Self::spacing_hz) apart.
     pub fn amplitudes_v(&self) -> &[f64] {
         &self.amplitudes_v
     }
 
-    /// The `most` highest peaks, the highest first; frequency and amplitude are interpolated between the lines. What
-    /// belongs to a peak already taken and the lines around 0 Hz (the mean) are passed over.
+    /// Returns the `most` highest peaks, highest first; frequency and amplitude are interpolated between the lines. Lines
+    /// of a peak already taken and those around 0 Hz (the mean) are skipped.
     pub fn peaks(&self, most: usize) -> Vec<SpectralLine> {
         let lines = &self.amplitudes_v;
         let mut order: Vec<usize> = (PEAK_REACH..lines.len())
@@ -107,23 +107,23 @@ impl Spectrum {
         taken.into_iter().map(|at| self.peak_at(at)).collect()
     }
 
-    /// A sine between two lines of a Hann window: the ratio of the highest to its higher neighbour tells how far.
+    /// Interpolates a sine between two lines of a Hann window: from the ratio of the highest line to its higher neighbour.
     pub(super) fn peak_at(&self, at: usize) -> SpectralLine {
         let height = |at: usize| self.amplitudes_v.get(at).copied().unwrap_or(0.0);
         let (before, top, after) = (height(at.saturating_sub(1)), height(at), height(at + 1));
         let (side, sign) = if after > before { (after, 1.0) } else { (before, -1.0) };
         let off = ((2.0 * side - top) / (side + top)).clamp(0.0, 0.5);
-        // The window's own shape: sinc(δ)/(1 − δ²).
+        // The shape of the window: sinc(δ)/(1 − δ²).
         let shape = if off < 1e-9 { 1.0 } else { (TAU / 2.0 * off).sin() / (TAU / 2.0 * off) / (1.0 - off * off) };
         SpectralLine { frequency_hz: (at as f64 + sign * off) * self.spacing_hz, amplitude_v: top / shape }
     }
 }
 
-/// The sample rate in hertz of evenly spaced times in seconds; steps may differ by a tenth, as times printed with few
-/// digits do.
+/// Returns the sample rate in hertz of evenly spaced times in seconds; steps may differ by a tenth, as times printed with
+/// few digits do.
 ///
 /// # Errors
-/// [`SpectrumError`] where there are fewer than eight, they do not run on, or not evenly.
+/// [`SpectrumError`] if there are fewer than eight, or they do not increase, or not evenly.
 pub fn sample_rate_hz(times_s: &[f64]) -> Result<f64, SpectrumError> {
     let (Some(first), Some(last), true) = (times_s.first(), times_s.last(), times_s.len() >= LEAST) else {
         return Err(SpectrumError::TooFew { samples: times_s.len() });

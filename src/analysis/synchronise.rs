@@ -1,9 +1,9 @@
-//! The absolute position of the parameter channel and the angle of the analogue signals, made one fine position. SICK
-//! 8010701, forming the absolute position; section 4 of the project's sine/cosine reference.
+//! The absolute position of the parameter channel and the angle of the analogue signals, combined to one fine position.
+//! SICK 8010701, forming the absolute position; section 4 of the project's sine/cosine reference.
 //!
-//! Both know the last 1/32 of a period; the coarse value is corrected by one period towards the smaller difference, which
-//! tolerates half a period of drift and delay. How the zero of one lies to that of the other is not told by the manual
-//! (U): it is an offset that can be set or [measured](measure_offset).
+//! Both contain the last 1/32 of a period; the coarse value is corrected by one period towards the smaller difference,
+//! which tolerates half a period of drift and delay. The manual does not define the offset between their zeros (U): it can
+//! be set or [measured](measure_offset).
 
 use std::f64::consts::TAU;
 
@@ -16,9 +16,9 @@ pub const STEPS: u64 = 32;
 /// Combines two positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Synchroniser {
-    /// Periods in the whole range: periods a revolution times revolutions, at least 1.
+    /// Periods in the whole range: periods per revolution times revolutions, at least 1.
     pub periods: u64,
-    /// Lead of the absolute position when both are right, in steps of 1/32 period; 0 if not known.
+    /// Lead of the absolute position if both are right, in steps of 1/32 period; 0 if not known.
     pub offset_steps: f64,
     /// The absolute position means the middle of its step instead of its beginning.
     pub half_step: bool,
@@ -39,7 +39,7 @@ pub struct Synchronised {
     pub verdict: Verdict,
 }
 
-/// Both positions are just half a period apart: either neighbour could be right.
+/// Both positions differ by exactly half a period: either neighbour could be right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("absolute and analogue position are half a period apart")]
 pub struct Unsynchronisable;
@@ -60,7 +60,7 @@ impl Synchroniser {
         let half = if self.half_step { 0.5 } else { 0.0 };
         let low = (absolute % STEPS) as f64 + half - self.offset_steps;
         let difference = low - STEPS as f64 * phase.periods();
-        // With an offset the difference may be several periods; one of them is what remains to be decided.
+        // With an offset the difference may be several periods; only the last one is to be decided.
         let periods = difference / STEPS as f64;
         let nearest = periods.round();
         let residual = periods - nearest;
@@ -79,7 +79,7 @@ impl Synchroniser {
         Ok(Synchronised { period, phase, correction: nearest as i8, residual_periods: residual, verdict })
     }
 
-    /// The fine position from a counter of quarters of a period (quadrature counter).
+    /// Returns the fine position from a counter of quarters of a period (quadrature counter).
     pub fn with_quadrature(&self, quarters: u64, phase: Phase) -> (u64, Phase) {
         let nearest = (((quarters % 4) as f64 + 0.5) / 4.0 - phase.periods()).round();
         let range = u128::from(self.periods.max(1));
@@ -90,12 +90,12 @@ impl Synchroniser {
 }
 
 impl Synchronised {
-    /// The fine position in periods.
+    /// Returns the fine position in periods.
     pub fn periods(&self) -> f64 {
         self.period as f64 + self.phase.periods()
     }
 
-    /// The fine position in steps of 2^`bits` a period (at most 32).
+    /// Returns the fine position in steps of 2^`bits` a period (at most 32).
     pub fn steps(&self, bits: u32) -> u128 {
         (u128::from(self.period) << bits.min(32)) + u128::from(self.phase.step(bits))
     }
@@ -103,7 +103,7 @@ impl Synchronised {
 
 /// Returns the number of steps of 1/32 period by which the absolute position is ahead on average: the mean of the
 /// differences over at least one turn, taken as angles, so that a difference of 31 steps is one of −1. `None` without
-/// samples, or where they cancel.
+/// samples, or if they cancel.
 pub fn measure_offset(samples: impl IntoIterator<Item = (u64, Phase)>) -> Option<f64> {
     let (mut sine, mut cosine, mut count) = (0.0, 0.0, 0_usize);
     for (absolute, phase) in samples {
@@ -168,7 +168,7 @@ mod tests {
         }
     }
 
-    /// A true position with every delay below half a period gives itself back, wherever it lies.
+    /// A true position with every delay below half a period is reconstructed, at any place.
     #[test]
     fn drift_below_half_a_period_is_corrected() {
         let synchroniser = Synchroniser { half_step: true, ..Synchroniser::new(64) };
@@ -192,7 +192,7 @@ mod tests {
             })
             .collect();
         let offset = measure_offset(pairs.iter().copied()).unwrap();
-        // 0.55 periods are 17.6 steps, which is −14.4; a step says on average half of itself less.
+        // 0.55 periods are 17.6 steps, which is −14.4; a step is on average half of itself less.
         assert!((offset - -14.9).abs() < 0.05, "{offset}");
         let synchroniser = Synchroniser { offset_steps: offset, ..Synchroniser::new(64) };
         for (absolute, phase) in pairs {

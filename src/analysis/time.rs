@@ -1,9 +1,9 @@
-//! The time of a sample: whole nanoseconds, so that differences stay exact after days. Reads no clock.
+//! The time of a sample: whole nanoseconds, so that differences stay exact after days. Independent of clocks.
 
 use crate::units::Moment;
 
-/// A point in time in whole nanoseconds from an origin that the samples of one history share: the start of a session's
-/// clock, or the trigger of a capture (what lies before it is negative). Reaches 292 years to either side.
+/// Point in time in whole nanoseconds from an origin that the samples of one history share: the start of a session's clock,
+/// or the trigger of a capture (earlier times are negative). Covers 292 years in both directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Time(i64);
@@ -11,7 +11,7 @@ pub struct Time(i64);
 impl Time {
     pub const ORIGIN: Time = Time(0);
 
-    /// The point `nanoseconds` after the origin.
+    /// Creates the point `nanoseconds` after the origin.
     pub const fn from_nanoseconds(nanoseconds: i64) -> Self {
         Time(nanoseconds)
     }
@@ -21,24 +21,25 @@ impl Time {
         self.0
     }
 
-    /// The point `nanoseconds` later; stays at the end of the range instead of wrapping.
+    /// Returns the point `nanoseconds` later; saturates at the end of the range.
     pub const fn plus(self, nanoseconds: i64) -> Self {
         Time(self.0.saturating_add(nanoseconds))
     }
 
-    /// Nanoseconds from `origin` to here, negative when `origin` lies ahead. Exact.
+    /// Returns the nanoseconds from `origin` to here, negative if `origin` is later. Exact.
     pub const fn nanoseconds_since(self, origin: Time) -> i64 {
         self.0.saturating_sub(origin.0)
     }
 
-    /// Seconds from `origin` to here. The difference is taken before it is rounded: near `origin` nothing is lost.
+    /// Returns the seconds from `origin` to here. The difference is taken before it is rounded: near `origin` nothing is
+    /// lost.
     pub fn seconds_since(self, origin: Time) -> f64 {
         self.nanoseconds_since(origin) as f64 / 1e9
     }
 }
 
 impl From<Moment> for Time {
-    /// The moment on its clock; the start of the clock is the origin.
+    /// Converts a moment on its clock; the start of the clock is the origin.
     fn from(moment: Moment) -> Self {
         let elapsed = moment.since_start();
         let seconds = i64::try_from(elapsed.as_secs()).unwrap_or(i64::MAX);

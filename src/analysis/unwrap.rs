@@ -1,43 +1,43 @@
-//! Positions without the wrap: a rotary encoder counts from 0 to its range and begins again, which in a plot would be a
-//! spike of thousands of turns. Only for display and speed; what is written to a device never comes from here.
+//! Unwrapped positions: a rotary encoder counts from 0 to its range and starts again, which in a plot would be a spike of
+//! thousands of turns. Only for display and speed; values written to a device never come from here.
 
-/// Follows a position word beyond its range.
+/// Unwraps position words.
 #[derive(Clone, Copy, Debug)]
 pub struct Unwrap {
     range: Option<i64>,
-    /// Last position word and what it was unwrapped to.
+    /// Last position word and its unwrapped value.
     last: Option<(i64, i64)>,
     gap: bool,
 }
 
-/// A position as it goes on.
+/// Unwrapped position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unwrapped {
     /// Steps; beyond the range after a wrap, negative below zero.
     pub steps: i64,
-    /// The path from the previous sample is not known: there was a gap, or the step was half the range, which is
-    /// ambiguous. Not set for the very first position.
+    /// The path from the previous sample is not known: there was a gap, or the step was half the range, which is ambiguous.
+    /// Not set for the very first position.
     pub broken: bool,
 }
 
 impl Unwrap {
-    /// An encoder that counts 0…`range` − 1 and begins again; `None` for a range below 2.
+    /// Creates it for an encoder that counts 0…`range` − 1 and starts again; `None` for a range below 2.
     pub fn rotary(range: i64) -> Option<Self> {
         (range >= 2).then_some(Unwrap { range: Some(range), last: None, gap: false })
     }
 
-    /// An encoder without a wrap: its positions go through as they are.
+    /// Creates it for an encoder without a wrap: its positions are unchanged.
     pub fn linear() -> Self {
         Unwrap { range: None, last: None, gap: false }
     }
 
-    /// Samples are missing before the next one.
+    /// Notes that samples are missing before the next one.
     pub fn gap(&mut self) {
         self.gap = true;
     }
 
-    /// The next position word, which is taken as the shortest way from the one before, so a wrap is a step like any other.
-    /// `None` when it lies outside the range: such a word is no position, and counts as a gap.
+    /// Takes the next position word by the shortest way from the previous one, so a wrap is a step like any other. `None`
+    /// if it is outside the range: such a word is no position, and counts as a gap.
     pub fn next(&mut self, word: i64) -> Option<Unwrapped> {
         if self.range.is_some_and(|range| !(0..range).contains(&word)) {
             self.gap();
@@ -118,7 +118,7 @@ mod tests {
     }
 
     proptest! {
-        /// Any walk whose steps are below half the range comes back as it was.
+        /// Any walk whose steps are below half the range is reproduced.
         #[test]
         fn a_walk_is_followed(range in 3_i64..1 << 40, start in 0_i64..1 << 40, walk in proptest::collection::vec(-1.0..1.0, 1..200)) {
             let mut truth = start % range;

@@ -1,5 +1,5 @@
-//! The four wires of a sine/cosine signal against ground, as SICK 8010701 names them: SIN, REFSIN, COS, REFCOS. What a
-//! source of analogue samples gives; says nothing about when they were taken.
+//! The four wires of a sine/cosine signal against ground, as named by SICK 8010701: SIN, REFSIN, COS, REFCOS. The samples
+//! of an analogue source, without their times.
 
 /// Voltages of the four wires, all columns equally long.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -42,7 +42,7 @@ impl Wire {
 }
 
 impl Wires {
-    /// Samples.
+    /// Returns the number of samples.
     pub fn len(&self) -> usize {
         self.sin_v.len()
     }
@@ -52,12 +52,12 @@ impl Wires {
         self.sin_v.is_empty()
     }
 
-    /// SIN − REFSIN in volts, as a differential receiver gives it.
+    /// Returns SIN − REFSIN in volts, as a differential receiver gives it.
     pub fn sine_v(&self) -> Vec<f64> {
         difference(&self.sin_v, &self.refsin_v)
     }
 
-    /// COS − REFCOS in volts.
+    /// Returns COS − REFCOS in volts.
     pub fn cosine_v(&self) -> Vec<f64> {
         difference(&self.cos_v, &self.refcos_v)
     }

@@ -34,29 +34,29 @@ pub enum Action {
     KeepSize(u32, u32),
     /// Show another session.
     Select(SessionId),
-    /// End a session; asks when it holds edits.
+    /// End a session; asks first if it has edits.
     CloseSession(SessionId),
     /// End everything that runs, in all sessions.
     Stop,
     /// Stop all drives of all sessions, and nothing else.
     StopMotion,
-    /// The window has lost the keyboard, or has put something over itself: what is held is let go.
+    /// The window has lost the keyboard, or something covers it: release held buttons.
     LetGo,
-    /// Escape: stops what runs, or else closes what is open.
+    /// Escape: stops the running job, or else closes the dialog.
     Escape,
-    /// Close the window; asks when something would be lost.
+    /// Close the window; asks first if something would be lost.
     Close,
-    /// The system ends the program: close the window and ask nothing.
+    /// The system ends the program: close the window without questions.
     Quit,
-    /// The answer to the open question: go on.
+    /// The answer to the open question: continue.
     Confirm,
-    /// The notice that stands in the window has been read.
+    /// Dismiss the notice displayed in the window.
     Dismiss,
     /// The connection dialog.
     Connect(connect::ConnectAction),
     /// Connect the virtual device of the open tab.
     OpenVirtual,
-    /// Save a profile: into the file that is open, else into one that is asked for.
+    /// Save a profile: to the open file, else to one that is asked for.
     Save(SessionId),
     /// Resolves a profile that another program has changed meanwhile.
     Resolve(Resolve),
@@ -64,43 +64,42 @@ pub enum Action {
     AskOpen,
     /// Open a capture (`.csv`), or else a profile.
     Open(PathBuf),
-    /// No file was chosen.
+    /// The file dialog was cancelled.
     FileNotChosen,
-    /// The system has no dialog for files: the path is to be typed.
+    /// The system has no file dialog: the path must be typed.
     TypePath(FileQuestion),
-    /// A path was typed. What is there already is not replaced without a question, which the system's dialogs ask
-    /// themselves.
+    /// A path was typed. An existing file is not replaced without a question, which the system's dialogs ask themselves.
     Typed(FileQuestion, PathBuf),
-    /// A file was chosen, and what is there may be replaced.
+    /// A file was chosen, which may be replaced if it exists.
     Chosen(FileQuestion, PathBuf),
     /// Close the comparison on display.
     CloseComparison,
     /// Something with the recorder of a desk.
     Recorder(RecorderOwner, recorder::RecorderAction),
-    /// Forget what a recorder has recorded; asks first when that is much.
+    /// Clear a recording; asks first if it is long.
     AskForget(RecorderOwner),
-    /// Ask where to write a table of what a recorder shows: of what is visible, or of all.
+    /// Ask where to write a table of a recording: of the visible part, or of everything.
     AskTable {
-        /// Whose recorder.
+        /// Recorder to export.
         owner: RecorderOwner,
-        /// Only what is visible.
+        /// Only the visible part.
         visible: bool,
     },
     /// Ask where to save a picture.
     AskPicture(Picture),
-    /// A picture was wished of something that cannot be seen as a whole.
+    /// A picture was requested of something that is not visible as a whole.
     PictureCut,
     /// The review of a write, about one session.
     Review(SessionId, ReviewAction),
     /// Something that every kind of device can be asked for, about one session, whichever is shown by then.
     Command(SessionId, DeviceCommand),
-    /// Something that one kind of device can be asked for; see [`Action::device`].
+    /// An action of one kind of device; see [`Action::device`].
     Device(SessionId, Payload),
     /// A profile that is in no file yet, of the kind of device of this tab.
     New(Tab),
-    /// Something in a tab that needs no device; see [`Action::tool`].
+    /// An action of a tab that needs no device; see [`Action::tool`].
     Tool(Tab, Payload),
-    /// A task has come back.
+    /// A task has ended with a result.
     Done(Done),
     /// The system has no thread left for a task.
     NoThread(String),
@@ -111,7 +110,7 @@ pub enum Action {
 pub enum ReviewAction {
     /// Write the plan that was shown, and no other.
     Write(PlanId),
-    /// This allowed, or no more: another plan.
+    /// Give or withdraw a permission, which makes another plan.
     Toggle(Permit),
     /// Write although the device counts as worn.
     ForceWear(bool),
@@ -129,18 +128,18 @@ pub enum Done {
     },
     /// A link was opened for a session, or not.
     Opened(Attempt),
-    /// A task of a search, from the connection form of the kind of device of this tab; see [`Done::finder`].
+    /// A task of a search, from the connection form for this tab's kind of device; see [`Done::finder`].
     Finder(Tab, Payload),
-    /// A task whose result is for no one session, and what is done with it.
+    /// A task whose result belongs to no particular session, and the handler of the result.
     Shared(SharedResult),
     /// The serial ports of this machine.
     Ports(Result<Vec<connect::Offer>, LinkError>),
     /// A profile was read.
     Read {
-        /// The file and its content.
+        /// The file with its content.
         file: ProfileFile,
         result: Result<Box<Document>, ReadError>,
-        /// Puts it on the desk, with the tables that its kind needs; `None` of a kind that the window does not show.
+        /// Opens the profile, with the tables that its kind needs; `None` for a kind that the window does not support.
         open: Option<OpenProfile>,
     },
     /// A profile was read to be compared with a session, or not.
@@ -148,13 +147,13 @@ pub enum Done {
     /// A profile was written.
     Written {
         saving: Box<Saving>,
-        /// The file, with what it is to say.
+        /// The file, with its intended content.
         file: ProfileFile,
         result: Result<(), FileError>,
     },
-    /// The file of a profile is not what was opened, and was not written.
+    /// The file of a profile differs from what was opened, and was not written.
     Diverged(Box<Diverged>),
-    /// Comments of a person would be lost, and the file was not written: which.
+    /// A user's comments would be lost, and the file was not written: which.
     WouldLose(Box<Saving>, Vec<String>),
     /// A table was written, or not.
     TableWritten(RecorderOwner, Exported),
@@ -170,7 +169,7 @@ pub enum Done {
     SettingsRead(SettingsRead),
     /// The settings were kept.
     SettingsKept(Result<SettingsWritten, FileError>),
-    /// The settings were read while drives are in hand; `None` where there are none to read.
+    /// The settings were read while drives are under control; `None` if there are none to read.
     SettingsSeen(Result<Option<Box<Settings>>, FileError>),
     /// About the draft of a session.
     Draft(SessionId, DraftDone),
@@ -192,31 +191,31 @@ pub enum Done {
 
 /// The result of opening a link for a session.
 pub struct Attempt {
-    /// For whom.
+    /// The session to connect.
     pub session: SessionId,
     /// Number of the attempt within its session: only the latest counts.
     pub attempt: u32,
-    /// The session on its thread.
+    /// The session on its thread, or the error.
     pub(super) result: Result<Box<dyn AnyOpened>, Box<OpenFailed>>,
 }
 
-/// A session on its thread, with the ring that its trace goes into.
+/// Session on its thread, with the ring for its trace.
 pub struct Opened<D: Kind> {
     /// The session.
     pub(super) worker: Worker<D>,
-    /// The part of the session that stays outside its thread.
+    /// The part of the session outside its thread.
     pub(crate) aside: D::SessionHandle,
     pub(super) url: crate::link::LinkUrl,
     pub(super) trace: crate::worker::Ring<crate::link::TraceEntry>,
     /// The device lives in this process.
     pub(super) is_virtual: bool,
-    /// When its clock began.
+    /// Start of its clock.
     pub began: jiff::Zoned,
     /// Dropping it lets the next attempt use the wire.
     pub(super) turn: crossbeam_channel::Sender<()>,
 }
 
-/// A session on its thread, of a kind of device that is not known on the way.
+/// Session on its thread, with its kind of device erased.
 pub trait AnyOpened: Any + Send {
     /// Closes the session that is no longer needed.
     fn turn_away(self: Box<Self>, session: SessionId, services: &mut Services);
@@ -262,11 +261,11 @@ pub(crate) type SharedResult = Box<dyn FnOnce(&mut Services, &mut [Box<AnyDevice
 #[derive(Debug)]
 pub enum ReadError {
     File(FileError),
-    /// Its content.
+    /// Invalid content.
     Profile(ProfileError),
 }
 
-/// Whose recorder it is.
+/// Owner of a recorder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecorderOwner {
     /// A device's.

@@ -1,5 +1,5 @@
-//! The drives of all sessions, for what ends the program: the window that closes, a signal, a display that is gone. They
-//! stop, are switched off and their connections are closed, whether the window still draws or not.
+//! The drives of all sessions, for the end of the program: a closed window, a signal, a lost display. They stop, are
+//! switched off and their connections are closed, whether the window still draws or not.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,29 +11,30 @@ use crate::worker::Stopper;
 /// Stops the drives of a session when the program ends. A handle shared with the session: it works from any thread,
 /// whatever the session does and whether or not the window still draws.
 pub trait Brake: Send {
-    /// The program ends: asks for all drives to stop, to be switched off, and their connection to be closed. From then on
-    /// nothing moves any more, whatever else is asked. Does not wait, and may be called again.
+    /// Ends motion with the program: all drives stop, are switched off, and their connection is closed. Nothing moves after
+    /// that, whatever is requested. Does not wait, and may be called again.
     fn leave(&self);
 
-    /// The device holds a connection that was opened here, over which drives move, and that has not been closed. After
-    /// [`leave`](Self::leave) this becomes false as soon as the drives are stopped and the connection is closed.
+    /// Returns whether the device holds a connection that was opened here, over which drives move, and that has not been
+    /// closed. After [`leave`](Self::leave) this becomes false as soon as the drives are stopped and the connection is
+    /// closed.
     fn is_connected(&self) -> bool;
 
-    /// The session is gone: nothing else has a handle to its drives, so that nothing here can move them.
+    /// Returns whether the session has ended: nothing else holds a handle to its drives, so nothing here can move them.
     fn is_left_over(&self) -> bool;
 }
 
-/// All drives that can be moved from here. Clones share them.
+/// All drives that this program can move. Clones share them.
 #[derive(Clone, Default)]
 pub struct Brakes(Arc<Shared>);
 
-/// A session with drives: what stops them, and what ends its jobs.
+/// Session with drives: the brake, and the stopper of its jobs.
 type Session = (Box<dyn Brake>, Stopper);
 
 #[derive(Default)]
 struct Shared {
     sessions: Mutex<Vec<Session>>,
-    /// Nothing moves any more.
+    /// Set when nothing may move any more.
     released: AtomicBool,
     /// The window closes.
     closing: AtomicBool,
@@ -46,11 +47,11 @@ impl Brakes {
     /// Time that drives have to stop and connections to close before the program ends regardless.
     pub const PATIENCE: Duration = Duration::from_secs(1);
 
-    /// Drives of a session that begins.
+    /// Adds the drives of a session that begins.
     pub(crate) fn add(&self, brake: Box<dyn Brake>, stopper: Stopper) {
         let mut sessions = self.sessions();
         sessions.retain(|(own, _)| !own.is_left_over());
-        // Under the lock that `begin` takes as well: a session is left by the one or by the other.
+        // Under the lock that `begin` takes as well: one of the two releases the session.
         if self.has_begun() {
             brake.leave();
             stopper.stop();
@@ -58,16 +59,16 @@ impl Brakes {
         sessions.push((brake, stopper));
     }
 
-    /// Stops all drives, switches them off and closes their connections. Nothing moves any more. Does not wait.
+    /// Stops all drives, switches them off and closes their connections. Nothing moves after that. Does not wait.
     pub fn begin(&self) {
         self.0.released.store(true, Ordering::SeqCst);
         let sessions = self.sessions();
         sessions.iter().for_each(|(brake, _)| brake.leave());
-        // Jobs end, and what waits wakes up.
+        // Jobs end, and waiting threads wake up.
         sessions.iter().for_each(|(_, stopper)| stopper.stop());
     }
 
-    /// [`begin`](Self::begin) was called.
+    /// Returns whether [`begin`](Self::begin) was called.
     pub fn has_begun(&self) -> bool {
         self.0.released.load(Ordering::SeqCst)
     }
@@ -77,17 +78,17 @@ impl Brakes {
         !self.sessions().iter().any(|(brake, _)| brake.is_connected())
     }
 
-    /// Waits until no drive is connected, for at most so long. Whether that is so.
+    /// Waits until no drive is connected, for at most `patience`. Returns whether that was reached.
     pub fn wait(&self, patience: Duration) -> bool {
         wait_for(patience, || self.is_done())
     }
 
-    /// The window has begun to close.
+    /// Notes that the window has begun to close.
     pub(super) fn note_closing(&self) {
         self.0.closing.store(true, Ordering::SeqCst);
     }
 
-    /// Waits until the window has begun to close, for at most so long. Whether it has.
+    /// Waits until the window has begun to close, for at most `patience`. Returns whether it has.
     pub fn wait_for_window(&self, patience: Duration) -> bool {
         wait_for(patience, || self.0.closing.load(Ordering::SeqCst))
     }

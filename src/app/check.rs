@@ -1,4 +1,4 @@
-//! A device check in words, for every kind of device.
+//! A device check as text, for every kind of device.
 
 use super::Text;
 use crate::analysis::check::{StepResult, Verdict};
@@ -11,7 +11,7 @@ pub struct CheckLine {
 }
 
 impl CheckLine {
-    /// A line with the words of its device.
+    /// Creates a line with the texts of its device.
     pub(crate) fn of<S: Copy, F>(line: &StepResult<S, F>, step: fn(S) -> Text, finding: fn(&F) -> Text) -> Self {
         CheckLine {
             step: step(line.step),

@@ -1,4 +1,4 @@
-//! Closing a session or the window: what would be lost or cut off is asked about once, and waited for.
+//! Closing a session or the window: asks once about losses and interruptions, and waits for the rest.
 
 use super::action::{Action, Done, Waited};
 use super::brakes::Brakes;
@@ -12,18 +12,18 @@ use super::{AnyDevice, Text, recorder};
 pub(super) const MUCH: i64 = 120_000_000_000;
 
 impl Studio {
-    /// The drives of all sessions, for what ends the program.
+    /// Returns the drives of all sessions, for the end of the program.
     pub fn brakes(&self) -> Brakes {
         self.services.brakes.clone()
     }
 
-    /// The window closes: nothing is asked any more.
+    /// Returns whether the window is closing: no more questions are asked.
     pub fn is_closing(&self) -> bool {
         self.closing
     }
 
-    /// The window may close now: no drive is in hand, nothing runs any more, not even in sessions that were let go, and what is to be kept is
-    /// on disk; or it has had time enough.
+    /// Returns whether the window may close now: no drive is under control, nothing runs any more, not even in released
+    /// sessions, and all data are on disk; or the grace period is over.
     pub fn may_close(&self) -> bool {
         let services = &self.services;
         let drafts = services.drafts_on_their_way == 0 && self.devices.iter().all(|device| device.is_draft_kept());
@@ -116,7 +116,7 @@ impl Studio {
         }
     }
 
-    /// A question is declined; true where one was open.
+    /// Declines a question; returns true if one was open.
     pub(super) fn decline(&mut self) -> bool {
         let Some(question) = self.question.take() else { return false };
         match question.then {

@@ -9,7 +9,8 @@ use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
 
 impl Studio {
-    /// Asks a device for what every device can be asked for. Links are opened here, and here two sessions meet.
+    /// Carries out a command that every device has. Links are opened here, and commands between two sessions are handled
+    /// here.
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
@@ -22,7 +23,7 @@ impl Studio {
     }
 
     fn write_into(&mut self, id: SessionId, target: SessionId) {
-        // Into a device without a memory nothing is written: it takes over what is only looked at, too.
+        // Nothing is written to a device without a memory: it also takes over profiles that are read-only.
         let is_written = self.device(id).is_some_and(|device| device.memory().is_some());
         if is_written && self.is_only_looked_at(id) {
             return;
@@ -39,7 +40,7 @@ impl Studio {
         }
     }
 
-    /// Asks a device for what its kind alone can be asked for.
+    /// Carries out an action of the device's kind.
     pub(super) fn act_device(&mut self, id: SessionId, action: Payload) {
         let Some(at) = self.devices.iter().position(|device| device.id() == id) else { return };
         let mut device = self.devices.remove(at);
@@ -53,15 +54,14 @@ impl Studio {
         }
     }
 
-    /// A task of a device has come back.
+    /// Handles the result of a task of a device.
     pub(super) fn device_done(&mut self, id: SessionId, done: Payload) {
         let mut taken = Ok(());
         self.with_device(id, |device, services| taken = device.done(done, services));
         self.check_kind(taken, id);
     }
 
-    /// An action that reached another kind of device was meant for something that is not there: nothing goes on moving on
-    /// the strength of it.
+    /// Stops all motion if an action has reached another kind of device: its intended target does not exist.
     pub(super) fn check_kind(&mut self, done: Result<(), WrongKind>, id: SessionId) {
         if done.is_err() {
             let name = self.device(id).map(AnyDevice::name);

@@ -1,4 +1,4 @@
-//! The devices on the desk, of whatever kind: what the studio asks of each of them.
+//! The open devices of all kinds.
 
 mod any_device;
 mod command;

@@ -1,5 +1,5 @@
-//! A profile that others have changed in its file since it was opened here: what differs, entry by entry, and what becomes
-//! of it.
+//! A profile that others have changed in its file since it was opened: the differences, entry by entry, and their
+//! resolution.
 
 use super::Kinds;
 use super::action::ReadError;
@@ -16,7 +16,7 @@ pub struct Diverged {
     saving: Saving,
     /// The present content of the file.
     theirs: Result<Box<Document>, ReadError>,
-    /// As it is written there.
+    /// Text in the file.
     text: String,
     rows: Vec<Row>,
     /// Why the last choice is not possible.
@@ -29,7 +29,7 @@ pub struct Row {
     change: Change,
     /// Which side changed it.
     pub changed: Changed,
-    /// The version that is taken; `None` until it is chosen.
+    /// The selected version; `None` until one is selected.
     pub take: Option<Side>,
 }
 
@@ -53,7 +53,7 @@ pub enum Resolve {
     Take(usize, Side),
     /// Each entry from the version that was chosen.
     Merge,
-    /// Nothing is written; the edits stay.
+    /// Writes nothing; the edits stay.
     Close,
 }
 
@@ -104,7 +104,7 @@ impl Diverged {
         self.saving.session
     }
 
-    /// The file.
+    /// Returns the file.
     pub fn path(&self) -> &std::path::Path {
         &self.saving.path
     }
@@ -119,13 +119,13 @@ impl Diverged {
         self.problem.clone()
     }
 
-    /// The file can be taken as it is.
+    /// Returns whether the file can be taken as it is.
     pub fn can_reload(&self) -> bool {
         self.theirs.is_ok()
     }
 
-    /// The file can be written without regard to other changes. A file of a newer version of the program cannot: that would lose
-    /// what this one does not know.
+    /// Returns whether the file can be written regardless of other changes. A file of a newer version of the program
+    /// cannot: its unknown content would be lost.
     pub fn can_keep_mine(&self) -> bool {
         !matches!(self.theirs, Err(ReadError::Profile(ProfileError::Schema { .. })))
     }
@@ -135,7 +135,7 @@ impl Diverged {
         self.theirs.is_ok() && self.rows.iter().all(|row| row.take.is_some())
     }
 
-    /// The versions brought together.
+    /// Returns the versions brought together.
     fn merged(&self, kinds: Kinds) -> Result<Document, Text> {
         let Ok(theirs) = &self.theirs else { return Err(Text::new("diverged.unfit")) };
         let mine = self.rows.iter().filter(|row| row.take == Some(Side::Mine));
@@ -149,7 +149,7 @@ impl Diverged {
     /// Returns the save that overwrites only the present content of the file.
     fn over_theirs(self, document: Option<Document>) -> Saving {
         let Diverged { mut saving, theirs, text, .. } = self;
-        // A file that is no longer a profile has nothing to keep, and the person was told.
+        // A file that is no longer a profile has nothing to preserve, and the user was told so.
         saving.may_lose = theirs.is_err();
         saving.opened = saving.opened.map(|opened| Guard { text, ..opened });
         if let Some(document) = document {
@@ -160,7 +160,7 @@ impl Diverged {
 }
 
 impl Studio {
-    /// Saves into the file that is open, else asks for one.
+    /// Saves to the open file, else asks for one.
     pub(super) fn save_in_place(&mut self, id: SessionId) {
         let Some(device) = self.device(id) else { return };
         match device.source() {
@@ -175,7 +175,7 @@ impl Studio {
         }
     }
 
-    /// The file of a profile is not what was opened: that is asked about where the session is shown.
+    /// Shows that the file of a profile differs from what was opened, in its session.
     pub(super) fn has_diverged(&mut self, diverged: Diverged) {
         self.with_device(diverged.session(), |device, _| device.save_waits());
         if let Some(tab) = self.device(diverged.session()).map(|device| device.tab()) {
@@ -184,7 +184,7 @@ impl Studio {
         }
     }
 
-    /// Comments would be lost: that is said before.
+    /// Asks before comments are lost.
     pub(super) fn ask_to_lose(&mut self, mut saving: Saving, lost: &[String]) {
         self.with_device(saving.session, |device, _| device.save_waits());
         saving.may_lose = true;

@@ -1,4 +1,4 @@
-//! Profiles that are opened: read as a task, and put on the desk.
+//! Opening profiles: read as a task, and added to the open devices.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use crate::profile::{Body, Document, Formats, ProfileError};
 use crate::store::{Store, read_file};
 
 impl Studio {
-    /// A profile was read, or not.
+    /// Handles the end of reading a profile.
     pub(super) fn read(
         &mut self,
         file: ProfileFile,
@@ -56,7 +56,7 @@ impl Studio {
         }
     }
 
-    /// A profile is of a kind of device that the window does not show.
+    /// Reports that a profile is of a kind of device that the window does not show.
     fn cannot_show(&mut self, path: &Path, found: &str) {
         let error = ProfileError::Device {
             found: found.to_owned(),
@@ -65,7 +65,7 @@ impl Studio {
         self.services.notify(Severity::Error, vec![explain::profile(path, &error, self.services.world.kinds)], None);
     }
 
-    /// The draft of a session was looked for, kept or removed.
+    /// Handles a draft of a session that was looked up, stored or removed.
     pub(super) fn draft_done(&mut self, id: SessionId, done: DraftDone) {
         if let DraftDone::Kept { result, .. } = &done {
             self.services.drafts_on_their_way = self.services.drafts_on_their_way.saturating_sub(1);
@@ -79,7 +79,8 @@ impl Studio {
         self.with_device(id, |device, services| device.take_draft(done, services));
     }
 
-    /// A profile of a newer schema is neither saved nor written into a device; true, and told, where this is one.
+    /// Refuses to save a profile of a newer schema or write it to a device; returns true, after reporting it, if this is
+    /// one.
     pub(crate) fn is_only_looked_at(&mut self, id: SessionId) -> bool {
         let refusal = self.device(id).and_then(|device| only_looked_at(device.source()));
         let Some(refusal) = refusal else { return false };

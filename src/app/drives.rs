@@ -1,8 +1,8 @@
-//! The memory of drives in the settings, besides what the drives keep themselves: their spindles, the unit of their
-//! positions, limits not confirmed since the scaling was changed, and values not saved.
+//! The settings' data about drives that the drives do not store themselves: their spindles, the unit of their positions,
+//! limits not confirmed since the scaling was changed, and values not saved.
 //!
-//! A drive may be open in another session or another window too. What is typed in one of them does not change another; limits
-//! that are marked as unconfirmed in one of them lock all of them, and are confirmed in each.
+//! A drive may be open in another session or another window too. An entry in one of them does not change the others. Limits
+//! marked as unconfirmed in one of them lock all of them, and are confirmed in each.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// The unit in which positions are shown and entered.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Measure {
-    /// As they are sent.
+    /// Transmitted steps.
     #[default]
     Steps,
     /// Turns of the shaft.
@@ -23,10 +23,10 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// All of them.
+    /// All units.
     pub const ALL: [Measure; 4] = [Measure::Steps, Measure::Turns, Measure::Degrees, Measure::Millimetres];
 
-    /// The name of its unit in the table of texts.
+    /// Returns the text id of its unit.
     pub const fn unit(self) -> &'static str {
         match self {
             Measure::Steps => "unit.steps",
@@ -37,7 +37,7 @@ impl Measure {
     }
 }
 
-/// The memory of the drives behind one device.
+/// Stored data about the drives behind one device.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RememberedDrives {
@@ -45,9 +45,9 @@ pub struct RememberedDrives {
     pub pitches: BTreeMap<u8, u64>,
     /// Unit of the positions.
     pub measure: Measure,
-    /// Drives whose limits have not been confirmed.
+    /// Drives with unconfirmed limits.
     unconfirmed: Vec<u8>,
-    /// How often each drive was marked: distinguishes a mark from an earlier one.
+    /// Number of marks of each drive, which distinguishes a mark from an earlier one.
     marks: BTreeMap<u8, u64>,
     /// Written values that the drive has not saved, by parameter number.
     pub unsaved: BTreeMap<u16, i64>,
@@ -74,14 +74,14 @@ pub enum SettingsReadState {
 
 /// Drives of which the settings remember something.
 pub trait RemembersDrives {
-    /// Returns the name under which the settings remember its drives; `None` before it was read.
+    /// Returns the name under which the settings store its drives; `None` before it was read.
     fn remembered_as(&self) -> Option<String>;
 
-    /// Takes what the settings remember of its drives, and returns what they are to remember from now on, where that is
-    /// something else. All of it is taken once for a device; later only limits that were marked elsewhere.
+    /// Takes the stored data of its drives, and returns the data to store from now on, if they differ. All data are taken
+    /// once per device; later only limits that were marked elsewhere.
     fn exchange_remembered(&mut self, kept: &RememberedDrives) -> Option<RememberedDrives>;
 
-    /// Locks the drives whose limits were marked elsewhere, before the settings know of it.
+    /// Locks the drives whose limits were marked elsewhere, before the settings contain it.
     fn lock_by(&mut self, found: &RememberedDrives);
 
     /// Returns whether the settings were read since control was taken.
@@ -98,7 +98,7 @@ impl From<LocksOnly> for RememberedDrives {
 }
 
 impl RememberedDrives {
-    /// Drives of which no limits are unconfirmed.
+    /// Creates drives of which no limits are unconfirmed.
     pub fn confirmed(pitches: BTreeMap<u8, u64>, measure: Measure, unsaved: BTreeMap<u16, i64>) -> Self {
         RememberedDrives { pitches, measure, unsaved, ..RememberedDrives::default() }
     }
@@ -124,8 +124,8 @@ impl RememberedDrives {
         self.marks.insert(drive, self.marks(drive).wrapping_add(times));
     }
 
-    /// Drives that were marked since `before`: a mark of the same number is the same, which may be confirmed here and not yet
-    /// on disk. A program that does not count leaves out the numbers.
+    /// Returns the drives that were marked since `before`: a mark of the same number is the same, which may be confirmed
+    /// here and not yet on disk. A program that does not count omits the numbers.
     pub(crate) fn marked_since(&self, before: &RememberedDrives) -> Vec<u8> {
         let is_new = |drive: &u8| {
             let number = self.marks(*drive);
@@ -134,8 +134,8 @@ impl RememberedDrives {
         self.unconfirmed.iter().copied().filter(is_new).collect()
     }
 
-    /// The same with what `ours` has changed since `known`. Limits stay unconfirmed that were marked here meanwhile, whatever
-    /// `ours` has confirmed.
+    /// Returns the same with the changes of `ours` since `known`. Limits that were marked meanwhile stay unconfirmed,
+    /// whatever `ours` has confirmed.
     #[must_use]
     pub(crate) fn with_changes(mut self, known: &RememberedDrives, ours: &RememberedDrives) -> Self {
         let drives = |maps: [&BTreeMap<u8, u64>; 2]| -> BTreeSet<u8> {
@@ -177,7 +177,7 @@ fn change<K: Copy + Ord, V: Copy + Eq>(own: &mut BTreeMap<K, V>, known: &BTreeMa
 mod tests {
     use super::*;
 
-    /// Issue 21.11: what was confirmed here locks again by another's mark, and not by the one that was confirmed.
+    /// Issue 21.11: limits confirmed here are locked again by another mark, and not by the confirmed one.
     #[test]
     fn a_mark_of_the_same_number_is_the_same() {
         let of = |text: &str| ron::from_str::<RememberedDrives>(&format!("({text})")).unwrap();

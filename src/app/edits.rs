@@ -1,5 +1,5 @@
-//! Values that a user wants otherwise than the device has them, by their place, with steps that can be undone. What a value
-//! is on the device, and whether it may be edited at all, is said by the memory beside which they stand.
+//! Edited values of a device by location, with steps that can be undone. The underlying memory knows the device's values
+//! and which may be edited.
 
 use std::collections::BTreeMap;
 
@@ -12,11 +12,11 @@ pub trait EditBase: Default {
     type Place: Ord + Copy;
     type Value: Copy + PartialEq;
 
-    /// A value at a place is an edit: another one was read there.
+    /// Returns whether a value at a location is an edit: it differs from the value read.
     fn is_edit(&self, at: Self::Place, value: Self::Value) -> bool;
 }
 
-/// A memory as it was read, and the values that are wanted otherwise.
+/// A memory as read, and the edited values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edits<B: EditBase> {
     base: B,
@@ -31,22 +31,22 @@ impl<B: EditBase> Default for Edits<B> {
 }
 
 impl<B: EditBase> Edits<B> {
-    /// The memory as it was read.
+    /// Returns the memory as it was read.
     pub fn base(&self) -> &B {
         &self.base
     }
 
-    /// The value that is wanted here; `None`: as the device has it.
+    /// Returns the edited value; `None`: as in the device.
     pub fn get(&self, at: B::Place) -> Option<B::Value> {
         self.edits.get(&at).copied()
     }
 
-    /// All of them, in the order of their places.
+    /// Returns all edits, in the order of their locations.
     pub fn iter(&self) -> impl Iterator<Item = (B::Place, B::Value)> {
         self.edits.iter().map(|(at, value)| (*at, *value))
     }
 
-    /// Edits values, as one step that can be undone; one that is as the device has it is no edit.
+    /// Edits values, as one step that can be undone; a value equal to the device's is no edit.
     pub fn set(&mut self, values: impl IntoIterator<Item = (B::Place, B::Value)>) {
         let mut after = self.edits.clone();
         for (at, value) in values {
@@ -59,26 +59,26 @@ impl<B: EditBase> Edits<B> {
         self.history.step(&mut self.edits, after);
     }
 
-    /// Undoes the edits that `is_meant` selects, as one step. False if there are none.
+    /// Undoes the edits that `is_meant` selects, as one step. Returns false if there are none.
     pub fn take_back(&mut self, is_meant: impl Fn(B::Place) -> bool) -> bool {
         let mut after = self.edits.clone();
         after.retain(|at, _| !is_meant(*at));
         self.history.step(&mut self.edits, after)
     }
 
-    /// The memory was read again: edits stay, unless the device has them by now.
+    /// Takes a new reading of the memory: edits stay, unless the device has their values now.
     pub fn read_again(&mut self, read: impl FnOnce(&mut B)) {
         read(&mut self.base);
         self.settle();
         self.history.forget_undone();
     }
 
-    /// Forgets everything: another device.
+    /// Discards everything, for another device.
     pub fn clear(&mut self) {
         *self = Edits::default();
     }
 
-    /// Forgets what is no edit any more: an earlier step may hold such.
+    /// Removes edits that are no longer any: an earlier step may contain such.
     fn settle(&mut self) {
         let base = &self.base;
         self.edits.retain(|at, value| base.is_edit(*at, *value));

@@ -9,7 +9,7 @@ use super::payload::Payload;
 use super::studio::SessionId;
 use super::{DeviceAction, Language, Picture, Text};
 
-/// A file that the user is asked for. The window asks, with a dialog of the system or a path to type.
+/// File that the user is asked for, by a dialog of the system or an entry for the path.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileQuestion {
     /// Opens a profile.
@@ -23,7 +23,7 @@ pub enum FileQuestion {
     Recording,
     /// Saves under a name, with a suggestion.
     Save {
-        /// Whose profile it is.
+        /// Session of the profile.
         session: SessionId,
         /// A name to begin with.
         suggested: PathBuf,
@@ -32,9 +32,9 @@ pub enum FileQuestion {
     OfDevice(DeviceFile),
     /// Saves a table of samples.
     Table {
-        /// Whose they are.
+        /// Recorder of the samples.
         owner: RecorderOwner,
-        /// Only what is visible.
+        /// Only the visible part.
         visible: bool,
         /// A name to begin with.
         suggested: PathBuf,
@@ -59,8 +59,8 @@ pub struct DeviceFile {
 }
 
 impl DeviceFile {
-    /// A file to read: `title` is what the dialog is for, `kind` what such files are called, with the endings of their
-    /// names.
+    /// Creates the question for a file to read: `title` is the title of the dialog, `kind` the name of such files, with
+    /// their extensions.
     pub fn to_read<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
@@ -71,7 +71,7 @@ impl DeviceFile {
         DeviceFile { session, title, kind, endings, suggested: None, then: Arc::new(then) }
     }
 
-    /// A file to write, with a name to begin with; what is written may be in the language of the window.
+    /// Creates the question for a file to write, with a suggested name; its content may be in the language of the window.
     pub fn to_write<A: DeviceAction>(
         session: SessionId,
         (title, kind): (Text, Text),
@@ -88,12 +88,12 @@ impl DeviceFile {
         self.session
     }
 
-    /// Returns what the dialog is for.
+    /// Returns the title of the dialog.
     pub fn title(&self) -> &Text {
         &self.title
     }
 
-    /// Returns what such files are called.
+    /// Returns the name of such files.
     pub fn kind(&self) -> &Text {
         &self.kind
     }
@@ -134,7 +134,7 @@ impl FileQuestion {
         }
     }
 
-    /// A name to begin with, where a file is to be written.
+    /// Returns the suggested name, if a file is to be written.
     pub fn suggested(&self) -> Option<&Path> {
         match self {
             FileQuestion::Open

@@ -1,4 +1,4 @@
-//! Files that the user is asked for: what happens when one was chosen. Whatever touches the disk runs as a task.
+//! Files chosen by the user, and what is done with them. All disk access runs as a task.
 
 use std::path::{Path, PathBuf};
 
@@ -13,8 +13,7 @@ use crate::link::{LinkUrl, Scheme};
 use crate::store::{FileError, Folders};
 
 impl Studio {
-    /// The same with a path that leads to the same file from everywhere: here, and nowhere else, paths that a person gives
-    /// come in.
+    /// Returns the action with an absolute path. Paths given by the user enter the program only here.
     pub(super) fn with_whole_path(&self, action: Action) -> Action {
         let whole = |path: PathBuf| self.services.world.folders.absolute(&path);
         match action {
@@ -25,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// The same of a link that leads to a file.
+    /// Returns the same for a link that leads to a file.
     pub(super) fn with_whole_file(&self, mut url: LinkUrl) -> LinkUrl {
         if url.scheme == Scheme::Replay {
             url.target = self.services.world.folders.absolute(Path::new(&url.target)).display().to_string();
@@ -38,7 +37,7 @@ impl Studio {
         &self.services.world.folders
     }
 
-    /// A path was typed: what is there already is not replaced without a question.
+    /// Handles a typed path: an existing file is not replaced without a question.
     pub(super) fn typed(&mut self, question: FileQuestion, path: PathBuf) {
         if question.suggested().is_none() {
             return self.chosen(question, path);
@@ -49,7 +48,7 @@ impl Studio {
         });
     }
 
-    /// A file was chosen.
+    /// Handles the choice of a file.
     pub(super) fn chosen(&mut self, question: FileQuestion, path: PathBuf) {
         match question {
             FileQuestion::Open => self.act(Action::Open(path)),
@@ -110,7 +109,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Table { owner, visible, suggested });
     }
 
-    /// A picture was wished of something that cannot be seen as a whole.
+    /// Reports that a picture was requested of something that is not visible as a whole.
     pub(super) fn tell_picture_cut(&mut self) {
         self.services.notify(Severity::Warning, vec![Text::new("recorder.picture_cut")], None);
     }
@@ -120,7 +119,7 @@ impl Studio {
         self.services.file_question = Some(FileQuestion::Picture { picture, suggested });
     }
 
-    /// A name after the encoder and the time of day: what is recorded is not recorded again.
+    /// Returns a name after the encoder and the time of day, so that recordings have different names.
     fn suggested(&self, owner: Option<RecorderOwner>, ending: &str) -> PathBuf {
         let device = match owner {
             Some(RecorderOwner::Device(id)) => self.device(id),
@@ -150,7 +149,7 @@ impl Studio {
 
     pub(super) fn table_written(&mut self, owner: RecorderOwner, exported: Exported) {
         let is_written = matches!(exported.rows, Ok(Some(_)));
-        // Another drive may be shown by now.
+        // Another drive may be selected by now.
         let recorders = match owner {
             RecorderOwner::Device(id) => self.device_mut(id).map(|device| device.recorders_mut()).unwrap_or_default(),
             RecorderOwner::Tool(_) => self.recorder_mut(owner).into_iter().collect(),

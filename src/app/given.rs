@@ -1,5 +1,5 @@
-//! Values that one kind of device is given from outside: options of a person at the start, or what a test puts in the place
-//! of the real thing. The core hands them on and knows none of them.
+//! Values for one kind of device that are given from outside: options at the start, or a test's substitutes. The core
+//! passes them on without knowing them.
 
 use std::any::{Any, TypeId};
 use std::collections::HashMap;
@@ -10,12 +10,12 @@ use crate::link::LinkUrl;
 use crate::store::Store;
 use crate::worker::{Device, OpenError, Session};
 
-/// Values that kinds of device are given from outside, at most one of each type.
+/// Values for kinds of devices, at most one of each type.
 #[derive(Clone, Default)]
 pub struct Given(HashMap<TypeId, Arc<dyn Any + Send + Sync>>);
 
 impl Given {
-    /// Adds a value, in the place of another one of its type.
+    /// Adds a value, replacing another one of its type.
     #[must_use]
     pub fn with<T: Send + Sync + 'static>(mut self, value: T) -> Self {
         self.0.insert(TypeId::of::<T>(), Arc::new(value));
@@ -28,7 +28,7 @@ impl Given {
     }
 }
 
-/// Their number only: a value may be a secret.
+/// Prints only their number: a value may be a secret.
 impl fmt::Debug for Given {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "Given({})", self.0.len())
@@ -37,7 +37,7 @@ impl fmt::Debug for Given {
 
 type Open<D> = dyn Fn(&LinkUrl, Store) -> Result<Session<D>, OpenError> + Send + Sync;
 
-/// Opens links to a kind of device instead of the kind's own way. Used by tests only.
+/// Opens links to a kind of device instead of the kind's own function. Used by tests only.
 pub struct Opener<D: Device>(Box<Open<D>>);
 
 impl<D: Device> Opener<D> {

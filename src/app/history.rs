@@ -1,4 +1,4 @@
-//! Steps that can be undone and redone, whatever they change. The owner holds the present state.
+//! Steps that can be undone and redone, for any kind of state. The owner holds the present state.
 
 /// The states before the last steps, and those undone.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,7 +27,7 @@ impl<T> History<T> {
         !self.redo.is_empty()
     }
 
-    /// A step was made from `before`: what was undone cannot be done again any more.
+    /// Notes a step made from `before`: undone steps can no longer be redone.
     pub(crate) fn note(&mut self, before: T) {
         self.redo.clear();
         self.undo.push(before);
@@ -36,14 +36,14 @@ impl<T> History<T> {
         }
     }
 
-    /// Undoes the last step: `now` is what was before it. False when there is none.
+    /// Undoes the last step: `now` becomes the state before it. Returns false if there is none.
     pub(crate) fn undo(&mut self, now: &mut T) -> bool {
         let Some(before) = self.undo.pop() else { return false };
         self.redo.push(std::mem::replace(now, before));
         true
     }
 
-    /// Redoes the last undone step. False if there is none.
+    /// Redoes the last undone step. Returns false if there is none.
     pub(crate) fn redo(&mut self, now: &mut T) -> bool {
         let Some(after) = self.redo.pop() else { return false };
         self.undo.push(std::mem::replace(now, after));
@@ -62,7 +62,7 @@ impl<T> History<T> {
 }
 
 impl<T: PartialEq> History<T> {
-    /// Makes a step from `now` to `after`. False where that is the same.
+    /// Makes a step from `now` to `after`. Returns false if they are equal.
     pub(crate) fn step(&mut self, now: &mut T, after: T) -> bool {
         if *now == after {
             return false;
@@ -71,8 +71,8 @@ impl<T: PartialEq> History<T> {
         true
     }
 
-    /// The ground has changed under all steps: `follow` changes what is and what was. Steps between which nothing is left
-    /// fall away.
+    /// Applies a change of the base to the present and all earlier states. Steps without a remaining difference are
+    /// removed.
     pub(crate) fn rebase(&mut self, now: &mut T, follow: impl Fn(&mut T)) {
         self.undo.iter_mut().for_each(&follow);
         follow(now);
@@ -113,7 +113,7 @@ mod tests {
             history.step(&mut now, after);
         }
         history.undo(&mut now);
-        // Of 1, 2 and 3 remain 0, 0 and 0.
+        // Of 1, 2 and 3, three times 0 remains.
         history.rebase(&mut now, |own| *own /= 10);
         assert!(now == 0 && !history.can_undo() && !history.can_redo());
     }

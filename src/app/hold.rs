@@ -1,4 +1,4 @@
-//! A button that counts while it is held, without its picture: what begins a hold, and everything that ends it.
+//! A button that is active while it is held, without drawing: the start of a hold, and everything that ends it.
 //!
 //! | what comes | nothing is held | held by the pointer | held by a key |
 //! |---|---|---|---|
@@ -12,21 +12,21 @@
 //! | the keyboard goes to another widget | keys are forgotten | keys are forgotten | ends |
 //! | the window loses or gets the keyboard; it is disabled, enabled, or was not in the last picture | keys are forgotten | ends | ends |
 //!
-//! What has ended begins again only by another press; a key only by one that is [fresh](FreshKeys), which none is at once
-//! after another key.
+//! After its end it starts again only by another press; by a key only if that press is [fresh](FreshKeys), which none is
+//! immediately after another key.
 
 use super::press::{FreshKeys, PressKey};
 
 /// The state of a hold button at the start of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HoldScene {
-    /// It may be pressed.
+    /// Whether it may be pressed.
     pub enabled: bool,
     /// The window has the keyboard.
     pub window: bool,
     /// The button has the keyboard.
     pub keyboard: bool,
-    /// Something moves that this button does not hold, or was stopped just now: a key means that.
+    /// Something moves that this button does not hold, or was stopped just now: a key press then stops motion.
     pub moving: bool,
 }
 
@@ -35,46 +35,46 @@ pub struct HoldScene {
 pub enum HoldInput {
     /// The window got or lost the keyboard.
     WindowFocus(bool),
-    /// A key went down, or repeats itself.
+    /// A key was pressed, or repeats.
     Down {
         key: PressKey,
         /// Without modifiers.
         plain: bool,
     },
-    /// A key went up.
+    /// A key was released.
     Up(PressKey),
-    /// Another key went down.
+    /// Another key was pressed.
     OtherKey,
-    /// A modifier went down or up.
+    /// A modifier was pressed or released.
     Modifiers,
-    /// A button of the pointer went down.
+    /// A button of the pointer was pressed.
     PointerDown {
         /// The first one, on this button.
         on: bool,
     },
-    /// The pointer went to another place.
+    /// The pointer was moved.
     PointerMoved {
         /// On this button.
         inside: bool,
     },
-    /// A button of the pointer went up.
+    /// A button of the pointer was released.
     PointerUp,
-    /// The pointer is nowhere any more.
+    /// The pointer has left.
     PointerGone,
-    /// A finger came down, also one that is the pointer: then the pointer goes down after it.
+    /// A finger touched the screen, also one that acts as the pointer: a press of the pointer then follows.
     Finger,
 }
 
 /// The effect of a frame on a hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HoldEvent {
-    /// It begins.
+    /// It starts.
     Press,
-    /// It goes on: told with every picture.
+    /// It continues: returned in every frame.
     Hold,
-    /// It is over.
+    /// It has ended.
     Release,
-    /// A key was pressed that holds nothing, while something moves: everything is to stop.
+    /// A key that holds nothing was pressed while something moves: everything must stop.
     Stop,
 }
 
@@ -90,7 +90,7 @@ pub struct HoldState {
     scene: Option<HoldScene>,
     holder: Option<Holder>,
     keys: FreshKeys,
-    /// A button of the pointer is down, wherever.
+    /// A button of the pointer is pressed anywhere.
     pointer: bool,
     was_held: bool,
     /// A hold has begun since the last picture.
@@ -100,7 +100,7 @@ pub struct HoldState {
 }
 
 impl HoldState {
-    /// A picture begins; `follows`: the button was in the picture before it.
+    /// Begins a frame; `follows`: the button was in the previous frame.
     pub fn begin(&mut self, scene: HoldScene, follows: bool) {
         let before = self.scene.replace(scene).filter(|_| follows);
         self.pointer &= before.is_some();
@@ -158,14 +158,15 @@ impl HoldState {
         }
     }
 
-    /// The picture of this time ends, with the pointer down or not, and on the button or not. What became of the hold.
+    /// Ends the frame of this time, with the pointer pressed or not, and on the button or not. Returns the state of the
+    /// hold.
     pub fn end(&mut self, now: f64, pointer_down: bool, inside: bool) -> Option<HoldEvent> {
         self.next_picture = self.keys.end_picture(now);
         self.pointer = pointer_down;
         if !(pointer_down && inside) {
             self.let_go_of_pointer();
         }
-        // Let go and pressed between two pictures: the next press counts.
+        // Released and pressed between two frames: the next press counts.
         if self.stop || self.was_held && self.began {
             self.let_go();
         }
@@ -187,12 +188,12 @@ impl HoldState {
         self.holder.is_some()
     }
 
-    /// The pointer holds it.
+    /// Returns whether the pointer holds it.
     pub fn is_held_by_pointer(&self) -> bool {
         self.holder == Some(Holder::Pointer)
     }
 
-    /// Returns whether it has the keyboard and no release of a key has been seen yet: the first press will not count.
+    /// Returns whether it has the keyboard focus and no release of a key has been seen yet: the first press will not count.
     pub fn waits_for_release(&self) -> bool {
         let has_keyboard = self.scene.is_some_and(|scene| scene.enabled && scene.window && scene.keyboard);
         let armed = self.keys.is_armed(PressKey::Space) || self.keys.is_armed(PressKey::Enter);

@@ -1,5 +1,4 @@
-//! The kinds of devices and the tools that a program has, as the studio knows them. The list is handed over: nothing here
-//! names one.
+//! The kinds of devices and the tools of a program, as used by the studio. The list is an argument: nothing here names one.
 
 use super::devices::DeviceKind;
 use super::tab::Tab;
@@ -19,7 +18,7 @@ pub struct Kinds {
 impl Kinds {
     pub const NONE: Kinds = Kinds::new(Formats::new(&[]), &[], &[]);
 
-    /// These.
+    /// Creates a list of these.
     pub const fn new(
         formats: Formats,
         devices: &'static [&'static dyn DeviceKind],
@@ -36,7 +35,7 @@ impl Kinds {
         self.tools
     }
 
-    /// Returns the kind of device that a tab shows; `None` for a tool, and for a tab that is not there.
+    /// Returns the kind of device of a tab; `None` for a tool, and for an unknown tab.
     pub(super) fn of_tab(self, tab: Tab) -> Option<&'static dyn DeviceKind> {
         self.devices.iter().copied().find(|kind| kind.tab() == tab)
     }
@@ -45,12 +44,12 @@ impl Kinds {
         self.devices.iter().copied().find(|kind| kind.word() == word)
     }
 
-    /// Returns why one of the kinds refuses a profile; in the cause's own words, which are English, where none knows it.
+    /// Returns why one of the kinds refuses a profile; in English, from the cause itself, if no kind knows it.
     pub(super) fn explain(self, cause: &Cause) -> Text {
         self.devices.iter().find_map(|kind| kind.explain(cause)).unwrap_or_else(|| explain::plain(cause))
     }
 
-    /// Returns the first tab of a device; where there is none, the first of a tool.
+    /// Returns the first tab of a device, or if there is none the first of a tool.
     pub(super) fn first_tab(self) -> Tab {
         let device = self.devices.first().map(|kind| kind.tab());
         device.or_else(|| self.tools.first().map(|kind| kind.tab())).unwrap_or_default()

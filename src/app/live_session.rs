@@ -1,5 +1,5 @@
-//! A session on its thread, seen from the window: the job that runs, what has passed over the line, live samples. It
-//! knows no device.
+//! A session on its thread, as seen from the window: the running job, the trace, the samples. Independent of the kind of
+//! device.
 
 use std::time::Duration;
 
@@ -22,11 +22,11 @@ pub struct Running<W> {
     pub progress: Option<Progress<W>>,
     /// It changes the device's memory.
     pub writes: bool,
-    /// It has been asked to end.
+    /// Its end was requested.
     pub stopping: bool,
 }
 
-/// A session on its thread.
+/// Session on its thread.
 pub struct LiveSession<D: Device> {
     worker: Worker<D>,
     trace: Ring<TraceEntry>,
@@ -39,20 +39,20 @@ pub struct LiveSession<D: Device> {
 #[derive(Clone, Debug)]
 pub struct Progressing {
     pub title: Text,
-    /// Steps done, steps in all, and what is being done.
+    /// Steps done, total steps, and the present step.
     pub progress: Option<(u64, u64, Text)>,
-    /// It has been asked to end.
+    /// Its end was requested.
     pub stopping: bool,
 }
 
 impl<D: Kind> LiveSession<D> {
-    /// Takes over what was opened.
+    /// Creates it from an opened session.
     pub(crate) fn new(opened: Opened<D>) -> Self {
         let Opened { worker, trace, is_virtual, .. } = opened;
         LiveSession { worker, trace, running: None, is_virtual }
     }
 
-    /// The job that runs, in words.
+    /// Returns the job that runs, as text.
     pub fn progressing(&self) -> Option<Progressing> {
         let running = self.running.as_ref()?;
         let progress = running.progress.as_ref().map(|own| (own.done, own.total, D::step_text(&own.step)));
@@ -62,14 +62,14 @@ impl<D: Kind> LiveSession<D> {
     /// Starts a job.
     ///
     /// # Errors
-    /// Another one runs, or the session has ended.
+    /// Another job runs, or the session has ended.
     pub(crate) fn submit(&mut self, job: D::Job, what: Text, writes: bool, now: Zoned) -> Result<JobId, SubmitError> {
         let id = self.worker.submit(job)?;
         self.running = Some(Running { id, title: what, since: now, progress: None, writes, stopping: false });
         Ok(id)
     }
 
-    /// The job that runs.
+    /// Returns the job that runs.
     pub fn running(&self) -> Option<&Running<D::JobStep>> {
         self.running.as_ref()
     }
@@ -89,7 +89,7 @@ impl<D: Kind> LiveSession<D> {
         self.worker.watch(watched);
     }
 
-    /// Ends what runs, live samples included.
+    /// Stops the running job and polling.
     pub(crate) fn stop(&mut self) {
         self.worker.stop();
         if let Some(running) = &mut self.running {
@@ -97,14 +97,14 @@ impl<D: Kind> LiveSession<D> {
         }
     }
 
-    /// Ends the job that runs; live samples go on.
+    /// Stops the running job; polling continues.
     pub(super) fn stop_job(&mut self) {
         let pace = self.polling();
         self.stop();
         self.poll(pace);
     }
 
-    /// The next event; what it says about the job that runs is noted here.
+    /// Returns the next event, and notes what it reports about the running job.
     pub(crate) fn next(&mut self) -> Option<Event<D>> {
         let event = self.worker.events().try_recv().ok()?;
         match &event {
@@ -119,17 +119,17 @@ impl<D: Kind> LiveSession<D> {
         Some(event)
     }
 
-    /// The thread has ended without being let go, and has told all that it had to.
+    /// Returns whether the thread has ended without being released, and has reported everything.
     pub(crate) fn is_dead(&self) -> bool {
         self.worker.is_ended() && self.worker.events().is_empty()
     }
 
-    /// Samples since the last time, and how many were dropped.
+    /// Returns the samples since the last time, and how many were dropped.
     pub(super) fn samples(&mut self) -> (Vec<D::Sample>, u64) {
         self.worker.samples().drain()
     }
 
-    /// Frames since the last time, and how many were dropped.
+    /// Returns the frames since the last time, and how many were dropped.
     pub(super) fn frames(&mut self) -> (Vec<TraceEntry>, u64) {
         self.trace.drain()
     }

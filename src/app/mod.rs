@@ -1,5 +1,5 @@
-//! The state and logic of the program, without drawing: the state of the window and its actions, the texts, the theme
-//! as data.
+//! The state and logic of the program, without drawing: the state of the window and its actions, the texts, the theme as
+//! data.
 
 pub(crate) mod action;
 mod brakes;

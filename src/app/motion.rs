@@ -12,7 +12,7 @@ impl Studio {
         self.devices.iter_mut().filter_map(|device| device.motion_mut())
     }
 
-    /// Drives are connected, in whichever session: STOP has to be in reach.
+    /// Returns whether drives are connected, in any session: STOP must be reachable.
     pub fn has_drives(&self) -> bool {
         self.devices.iter().any(|device| device.motion().is_some() && device.is_connected())
     }
@@ -22,12 +22,12 @@ impl Studio {
         self.motions().any(MotionControl::is_moving)
     }
 
-    /// A motion from this window is under way. Escape stops it before anything else.
+    /// Returns whether a motion from this window is running. Escape stops it before anything else.
     pub fn moves_by_hand(&self) -> bool {
         self.motions().any(MotionControl::moves_by_hand)
     }
 
-    /// A motion that was asked for here has not ended.
+    /// Returns whether a motion that was asked for here has not ended.
     pub fn is_under_way(&self) -> bool {
         self.motions().any(MotionControl::is_under_way)
     }
@@ -42,14 +42,13 @@ impl Studio {
         self.motions_mut().for_each(MotionControl::stop);
     }
 
-    /// Lets go of everything that is held, and of endless rotation: the window has lost the keyboard, or a dialog
-    /// covers it.
+    /// Ends everything that is held, and endless rotation: the window has lost the keyboard, or a dialog covers it.
     pub(super) fn let_go_of_jogs(&mut self) {
         self.motions_mut().for_each(MotionControl::let_go);
     }
 
-    /// A jog and a run live only as long as their panel can be seen: another tab or device, a dialog, a question for a file or
-    /// any other end them.
+    /// Ends a jog and a run unless their panel is visible: another tab or device, a dialog, a question for a file or any
+    /// other question ends them.
     pub(super) fn hold_in_sight(&mut self) {
         let asks = self.question.is_some() || self.services.file_question.is_some();
         let is_covered = self.connect.is_some() || asks;
@@ -58,7 +57,7 @@ impl Studio {
         for device in &mut self.devices {
             let is_seen = seen == Some(device.id()) && !device.is_reviewing();
             if let Some(motion) = device.motion_mut().filter(|_| !is_seen) {
-                // A run in speed mode has no end of its own either.
+                // A run in speed mode does not end by itself either.
                 motion.let_go();
             }
         }

@@ -13,7 +13,7 @@ use super::Text;
 pub enum Severity {
     /// Something was done.
     Note,
-    /// It was done and verified.
+    /// A success, verified.
     Good,
     /// Needs attention.
     Warning,
@@ -22,7 +22,7 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// Returns for how long a notice still stands that has been shown for so long; `None`: until it is closed.
+    /// Returns how much longer a notice is displayed that has been shown for this time; `None`: until it is dismissed.
     pub fn stands_for(self, shown: Duration) -> Option<Duration> {
         let seconds = match self {
             Severity::Note | Severity::Good => 6,
@@ -36,12 +36,12 @@ impl Severity {
 /// One thing that happened.
 #[derive(Clone, Debug)]
 pub struct Notice {
-    /// When.
+    /// Time of the notice.
     pub at: Zoned,
     pub severity: Severity,
     /// What happened, and what to do.
     pub texts: Vec<Text>,
-    /// Whose it is: the name of a session.
+    /// Name of the session concerned.
     pub about: Option<String>,
     /// The part concerned: a drive of a hub.
     pub part: Option<Text>,
@@ -56,20 +56,20 @@ impl Notice {
     }
 }
 
-/// The log of the window: the newest last, the oldest go.
+/// Log of the window, newest last; the oldest notices are removed.
 #[derive(Debug, Default)]
 pub struct Log {
     notices: VecDeque<Notice>,
-    /// The latest one that still stands in the window.
+    /// The latest notice still displayed in the window.
     standing: Option<Notice>,
 }
 
 impl Log {
     const CAPACITY: usize = 2_000;
 
-    /// Adds a notice; it stands in the window until another comes or it is dismissed.
+    /// Adds a notice; it is displayed until another one arrives or it is dismissed.
     pub fn add(&mut self, notice: Notice) {
-        // Good news does not push away notices that need attention.
+        // A success does not replace a notice that needs attention.
         if notice.severity >= Severity::Warning
             || self.standing.as_ref().is_none_or(|old| old.severity <= Severity::Good)
         {
@@ -78,7 +78,7 @@ impl Log {
         self.add_to_log(notice);
     }
 
-    /// Adds a notice that stands elsewhere in the window.
+    /// Adds a notice that is displayed elsewhere in the window.
     pub fn add_to_log(&mut self, notice: Notice) {
         if notice.severity >= Severity::Warning {
             tracing::warn!("{}", terminal(&notice));
@@ -91,12 +91,12 @@ impl Log {
         }
     }
 
-    /// All notices, the oldest first.
+    /// Returns all notices, oldest first.
     pub fn notices(&self) -> impl DoubleEndedIterator<Item = &Notice> + ExactSizeIterator {
         self.notices.iter()
     }
 
-    /// The one that stands in the window.
+    /// Returns the displayed notice.
     pub fn standing(&self) -> Option<&Notice> {
         self.standing.as_ref()
     }
@@ -110,7 +110,7 @@ impl Log {
         }
     }
 
-    /// A file was read or written: that it could not be is true no more.
+    /// Removes the error about a file that was read or written now.
     pub(crate) fn settle_file(&mut self, path: &Path) {
         let is_it = |notice: &Notice| {
             notice.severity == Severity::Error && notice.texts.first().is_some_and(|text| text.is_about(path))
@@ -118,7 +118,7 @@ impl Log {
         self.standing.take_if(|notice| is_it(notice));
     }
 
-    /// Removes the notice: the user has read it.
+    /// Dismisses the notice: the user has read it.
     pub fn dismiss(&mut self) {
         self.standing = None;
     }
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(Severity::Warning.stands_for(Duration::from_secs(21)), Some(Duration::ZERO));
     }
 
-    /// Issue 22.28: what stood in the way of a file is over with that file, and with no other.
+    /// Issue 22.28: the error of a file ends with that file, and with no other.
     #[test]
     fn a_file_settles_what_stood_in_its_way() {
         let mut log = Log::default();

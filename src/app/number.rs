@@ -1,23 +1,23 @@
-//! Numbers as people type them: with a point or a comma, without words, never infinite; within a range that the refusal
+//! Parsing of entered numbers: with a decimal point or comma, without words, always finite; within a range that an error
 //! names.
 
 use super::Text;
 
-/// Most signal periods in a revolution that can be entered: encoders have no more.
+/// Maximum number of signal periods per revolution that can be entered: encoders have no more.
 pub(crate) const MOST_PERIODS: u32 = 65_536;
 
-/// A decimal number, with an exponent if need be; `None` where it is none.
+/// Parses a decimal number, with an optional exponent; `None` if it is none.
 pub fn number(text: &str) -> Option<f64> {
     let text = text.trim().replace(',', ".").replace('−', "-");
-    // The parser would take words for infinity.
+    // The parser would accept words such as `inf`.
     let plain = text.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E'));
     text.parse().ok().filter(|value: &f64| plain && value.is_finite())
 }
 
-/// A number from `least` to `most`; `what` names the entry.
+/// Parses a number from `least` to `most`; `what` names the entry.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -> Result<f64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -28,10 +28,10 @@ pub(crate) fn within(what: impl Into<Text>, text: &str, least: f64, most: f64) -
     number(text).filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-/// A whole number from `least` to `most`, decimal or with `0x` in front.
+/// Returns a whole number from `least` to `most`, decimal or with `0x` in front.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) -> Result<u32, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -48,10 +48,10 @@ pub(crate) fn whole(what: impl Into<Text>, text: &str, least: u32, most: u32) ->
     value.filter(|value| (least..=most).contains(value)).ok_or_else(refused)
 }
 
-/// A number from 0 to `last`, decimal or hexadecimal with `0x` in front or `h` behind.
+/// Parses a number from 0 to `last`, decimal or hexadecimal with `0x` or a final `h`.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Result<u64, Text> {
     let what = what.into();
     filled(&what, text)?;
@@ -69,9 +69,9 @@ pub(crate) fn number_or_hex(what: impl Into<Text>, text: &str, last: u64) -> Res
     value.filter(|value| *value <= last).ok_or_else(refused)
 }
 
-/// A quantity as it stands on a component: a number with a prefix from f to G, behind it or in place of its decimal point,
-/// with or without the unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`); or an exponent (`22e-12`). `None` where it is
-/// none.
+/// Parses a quantity as printed on a component: a number with a prefix from f to G, after it or in place of its decimal
+/// point, with or without the unit (`10k`, `10 kΩ`, `4k7`, `22p`, `22 pF`, `0,1µ`); or an exponent (`22e-12`). `None` if it
+/// is none.
 fn quantity(text: &str) -> Option<f64> {
     const UNITS: [&str; 6] = ["Ohm", "ohm", "Ω", "\u{2126}", "F", "R"];
     const PREFIXES: [(char, f64); 10] = [
@@ -91,7 +91,7 @@ fn quantity(text: &str) -> Option<f64> {
     let prefix = PREFIXES.iter().find_map(|(prefix, factor)| Some((text.split_once(*prefix)?, factor)));
     match prefix {
         Some(((before, ""), factor)) => number(before).map(|value| value * factor),
-        // 4k7; what has a point already has no second one.
+        // 4k7; a number with a decimal point has no second one.
         Some(((before, behind), factor)) => {
             let whole = |digits: &str| !digits.is_empty() && digits.bytes().all(|c| c.is_ascii_digit());
             let value = number(&format!("{before}.{behind}")).filter(|_| whole(before) && whole(behind))?;
@@ -101,10 +101,10 @@ fn quantity(text: &str) -> Option<f64> {
     }
 }
 
-/// A quantity from `least` to `most`, which the refusal says as `range`.
+/// Parses a quantity from `least` to `most`; an error gives this as `range`.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub(crate) fn quantity_within(
     what: impl Into<Text>,
     text: &str,

@@ -1,4 +1,5 @@
-//! Opening links: on a thread, after what holds the wire has let go of it, and in the session that has the wire already.
+//! Opening links: on a thread, after the present user of the connection has released it, and in the session that already
+//! has it.
 
 use crossbeam_channel::{Receiver, Sender, bounded};
 
@@ -19,26 +20,26 @@ use crate::worker::{OpenError, Ring, Session, Worker};
 const FRAMES: usize = 2_000;
 
 impl Studio {
-    /// The tab of the device that a link leads to. What the link does not say is remembered: the kind of device that was
-    /// at it before, the tab shown last if it was one of several; for a new link that tab.
+    /// Returns the tab of the device that a link leads to. If the link does not tell, this is the kind of device last used
+    /// with it, of several the tab shown last; for a new link the open tab.
     pub(super) fn tab_of(&self, link: Option<&LinkUrl>) -> Tab {
         let kinds = self.services.world.kinds;
         let tab = self.settings.tab;
         let shown = if kinds.of_tab(tab).is_some() { tab } else { kinds.first_tab() };
         let Some(link) = link else { return shown };
         let fits = |tab: &Tab| kinds.of_tab(*tab).is_some_and(|kind| kind.check(link).is_ok());
-        // Each kind has virtual devices: their links tell nothing about it.
+        // Each kind has virtual devices: their links do not tell the kind.
         let text = (link.scheme != Scheme::Sim).then(|| link.to_string());
         let used = |tab: &Tab| fits(tab) && text.as_ref().is_some_and(|text| self.settings.links(*tab).contains(text));
         let tabs = || std::iter::once(shown).chain(kinds.devices().iter().map(|kind| kind.tab()));
         let is_elsewhere = |error| matches!(error, OpenError::Url(UrlError::Device { .. }));
         let leads_there = |tab: &Tab| kinds.of_tab(*tab).is_some_and(|kind| !kind.check(link).is_err_and(is_elsewhere));
-        // One that none takes is told by a kind that such links lead to.
+        // An invalid link is reported by a kind that such links lead to.
         tabs().find(used).or_else(|| tabs().find(fits)).or_else(|| tabs().find(leads_there)).unwrap_or(shown)
     }
 
-    /// Opens a link to a kind of device: in the session that has this wire already, else in a new one. A session of
-    /// another kind lets go of the wire.
+    /// Opens a link to a kind of device: in the session that already has this connection, else in a new one. A session of
+    /// another kind releases the connection.
     pub(super) fn open_link(&mut self, tab: Tab, url: LinkUrl) {
         let url = self.with_whole_file(url);
         if let Some(id) = self.session_at(tab, &url) {
@@ -46,14 +47,14 @@ impl Studio {
         }
     }
 
-    /// Opens a link to a device that a search has found: about other masters on its line it was asked before.
+    /// Opens a link to a device found by a search: other masters on its line were asked about before.
     pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
         if let Some(id) = self.session_at(tab, &url) {
             self.attempt_to_open(id, url);
         }
     }
 
-    /// The session for a link, now the one that is shown; `None` where none may be opened.
+    /// Returns the session for a link and selects it; `None` if it must not be opened.
     fn session_at(&mut self, tab: Tab, url: &LinkUrl) -> Option<SessionId> {
         let mut own = None;
         for device in &mut self.devices {
@@ -90,11 +91,11 @@ impl Studio {
         Some(id)
     }
 
-    /// Lets the session on this wire go for something else, unless it writes; one whose link is still being opened is over
-    /// when what is given tells so.
+    /// Releases the session on this connection for another use, unless it writes; one whose link is still being opened has
+    /// ended when the returned channel closes.
     ///
     /// # Errors
-    /// It writes: which one.
+    /// The session that writes.
     pub(super) fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let holds = |device: &&mut Box<AnyDevice>| {
             let held = device.is_connected() || device.is_opening();
@@ -121,8 +122,8 @@ impl Studio {
         self.open_for(id, url);
     }
 
-    /// Opens a link for a session. Where a drive may be on the line, that is asked before anything is opened: it may have
-    /// read the encoder at power-up and be silent since, so that listening proves nothing.
+    /// Opens a link for a session. If a drive may be on the line, the user is asked before anything is opened: the drive
+    /// may have read the encoder at power-up and be silent since, so listening proves nothing.
     fn open_for(&mut self, id: SessionId, url: LinkUrl) {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
@@ -133,14 +134,14 @@ impl Studio {
         self.question = Some(Question::other_master(&url, Then::OpenLink(id)));
     }
 
-    /// The user says that no drive is on the line of this session.
+    /// Opens the link after the user has confirmed that no drive is on its line.
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
         if let Some(Source::Link(url)) = self.device(id).map(|device| device.source()) {
             self.attempt_to_open(id, url.clone());
         }
     }
 
-    /// Opens a link for a session once more: only the result of this attempt counts.
+    /// Opens a link for a session again: only the result of this attempt counts.
     fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);
@@ -151,7 +152,7 @@ impl Studio {
         *device.opening_mut() = Some(Opening { attempt: Some(attempt), over });
     }
 
-    /// A link was opened, or not.
+    /// Handles the end of opening a link.
     pub(super) fn opened(&mut self, done: Attempt) {
         let Attempt { session, attempt, result } = done;
         let own = |device: &&mut Box<AnyDevice>| device.id() == session && device.is_attempt(attempt);
@@ -179,8 +180,8 @@ impl Studio {
 }
 
 impl Services {
-    /// Opens a link on a thread, after an earlier attempt and any other user of the wire have finished. Dropping its
-    /// turn shows that the wire is free again.
+    /// Opens a link on a thread, after an earlier attempt and any other user of the connection have finished. Dropping its
+    /// turn shows that the connection is free again.
     pub(crate) fn open_task<D: Kind>(
         &mut self,
         url: LinkUrl,
@@ -193,7 +194,7 @@ impl Services {
         let endings = self.endings_on(&url);
         self.tasks.run("open", move || {
             if let Some(earlier) = earlier {
-                // Nothing is ever sent: it ends, or hangs for ever.
+                // Nothing is sent on it: it disconnects, or never does.
                 let _ = earlier.recv_timeout(world.patience.job);
             }
             let free = endings.into_iter().all(|(ending, patience)| ending.wait(patience));
@@ -231,7 +232,7 @@ fn open<D: Kind>(
     }
 }
 
-/// Wakes the window when a session's thread is gone, however it ended.
+/// Wakes the window when a session's thread has ended, however it ended.
 struct WakeOnDrop(Wake);
 
 impl Drop for WakeOnDrop {

@@ -12,7 +12,7 @@ use super::tab::Tab;
 /// An action that a kind of device takes.
 pub trait DeviceAction: Any + Send {}
 
-/// An action, or a result of a task, for a device whose kind is not known on the way.
+/// An action, or a result of a task, with its kind of device erased.
 pub struct Payload(Box<dyn Any + Send>);
 
 /// A payload reached a device of another kind.
@@ -30,10 +30,10 @@ impl Payload {
         self.0.is::<T>()
     }
 
-    /// Returns what was put in.
+    /// Returns the content.
     ///
     /// # Errors
-    /// [`WrongKind`] where that is of another type.
+    /// [`WrongKind`] if it is of another type.
     pub fn open<T: Any>(self) -> Result<T, WrongKind> {
         self.0.downcast().map(|content| *content).map_err(|_| WrongKind)
     }
@@ -46,24 +46,24 @@ impl fmt::Debug for Payload {
 }
 
 impl Action {
-    /// Returns an action for one device, as its kind takes it.
+    /// Returns an action for one device, typed for its kind.
     pub fn device(id: SessionId, action: impl DeviceAction) -> Self {
         Action::Device(id, Payload::of(action))
     }
 }
 
 impl Done {
-    /// Returns what a task of one device comes back with, as its kind takes it.
+    /// Returns the result of a task of one device, typed for its kind.
     pub(crate) fn device(id: SessionId, done: impl Any + Send) -> Self {
         Done::Device(id, Payload::of(done))
     }
 
-    /// Returns what a task of a search comes back with, for the connection form of a kind of device.
+    /// Returns the result of a task of a search, for the connection form of a kind of device.
     pub fn finder<F: Finder>(tab: Tab, done: F::Done) -> Self {
         Done::Finder(tab, Payload::of(done))
     }
 
-    /// Returns what a task of a tool comes back with, as the tool takes it.
+    /// Returns the result of a task of a tool.
     pub fn tool(tab: Tab, done: impl Any + Send) -> Self {
         Done::Tool(tab, Payload::of(done))
     }

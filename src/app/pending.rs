@@ -14,18 +14,18 @@ pub trait PendingEdits {
     /// Returns whether there is a step to redo.
     fn can_redo(&self) -> bool;
 
-    /// Undoes the last step. False where nothing has changed.
+    /// Undoes the last step. Returns false if there is none.
     fn undo(&mut self) -> bool;
 
-    /// Redoes the last undone step. False if there is none.
+    /// Redoes the last undone step. Returns false if there is none.
     fn redo(&mut self) -> bool;
 
-    /// Discards all edits as one step that can be undone. False if there are none.
+    /// Discards all edits as one step that can be undone. Returns false if there are none.
     fn revert(&mut self) -> bool;
 
-    /// The edits were written or saved: what led to them cannot be undone any more.
+    /// Forgets the steps: the edits were written or saved, and can no longer be undone.
     fn forget_steps(&mut self);
 }
 
-/// A step through the edits: one undone or done again, or all taken back.
+/// Step through the edits: undoes or redoes one, or discards all.
 pub type EditStep = fn(&mut dyn PendingEdits) -> bool;

@@ -22,7 +22,7 @@ impl fmt::Debug for Picture {
 }
 
 impl Picture {
-    /// Pixels as red, green and blue; `None` where there are none, or not as many as the size says.
+    /// Creates a picture of red, green and blue pixels; `None` if there are none, or their number does not match the size.
     pub fn new(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
         let wanted = u64::from(width) * u64::from(height) * 3;
         let fits = wanted > 0 && u64::try_from(bytes.len()) == Ok(wanted);
@@ -32,7 +32,7 @@ impl Picture {
     /// Writes it as PNG.
     ///
     /// # Errors
-    /// With the old content in place.
+    /// The error of writing; the old content stays.
     pub(super) fn save(&self, path: &Path) -> Result<(), FileError> {
         let refused = |error: std::io::Error| FileError {
             path: path.to_owned(),
@@ -42,7 +42,7 @@ impl Picture {
         write_atomically(path, &self.png().map_err(refused)?)
     }
 
-    /// The file's content.
+    /// Returns the file's content.
     fn png(&self) -> Result<Vec<u8>, std::io::Error> {
         let mut file = Vec::new();
         let mut encoder = png::Encoder::new(&mut file, self.width, self.height);

@@ -1,10 +1,10 @@
-//! Fresh presses: whether a key that goes down is an act of a person just now, or a key that is held and repeats itself.
+//! Fresh presses: whether a key press is an act of the user just now, or the repetition of a held key.
 //!
-//! A press alone proves nothing. A toolkit forgets which keys are down when the window loses the keyboard, so that the
-//! next repetition of a key that is still held looks like a first press; and what it calls a release at that moment is made
-//! up. A release that came while the window had the keyboard does prove something, once a later picture has seen the key
-//! still up: a release and a press that were made at once may come in two pictures, however far these lie apart. Pure: what
-//! came is handed in, in the order in which it came, with the time of its picture in seconds.
+//! A press alone proves nothing. A toolkit forgets which keys are down when the window loses the keyboard focus, so that
+//! the next repetition of a held key looks like a first press; and the release that it reports at that moment is
+//! artificial. A release received while the window had the focus does prove something, once a later frame has seen the key
+//! still up: a release and a press made at the same time may arrive in two frames, however far apart. Pure: the inputs are
+//! arguments, in order, with the time of their frame in seconds.
 
 /// A key that presses a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,8 +15,8 @@ pub enum PressKey {
     Enter,
 }
 
-/// No finger is off a key for a shorter time, in seconds. Remote desktops, and displays that do not tell repetitions from
-/// presses, repeat a key by a release and a press at once.
+/// Minimum time between a user's release and press of a key, in seconds. Remote desktops, and displays that do not
+/// distinguish repetitions from presses, repeat a key by a release and an immediate press.
 const LEAST: f64 = 0.05;
 
 /// The known state of a key.
@@ -26,7 +26,8 @@ enum KeyState {
     #[default]
     Nothing,
     Down,
-    /// Its release, or another key, came in the picture of this time; since then it was not seen up for long enough.
+    /// It was released, or another key was pressed, in the frame of this time; since then it was not seen up for long
+    /// enough.
     Released(f64),
     Up,
 }
@@ -39,20 +40,20 @@ pub struct FreshKeys {
 }
 
 impl FreshKeys {
-    /// Keys that are up: where no keyboard was taken away yet.
+    /// The keys are up: the keyboard focus was never lost.
     pub const UP: FreshKeys = FreshKeys { space: KeyState::Up, enter: KeyState::Up };
 
-    /// Forgets what was seen: the keyboard went, came, or means something else from now on.
+    /// Forgets everything: the keyboard focus was lost or gained, or has another meaning from now on.
     pub fn forget(&mut self) {
         *self = FreshKeys::default();
     }
 
-    /// A key goes down. Whether that is a fresh press: a picture before this one saw it up for long enough.
+    /// Handles a key press. Returns whether it is fresh: an earlier frame saw the key up for long enough.
     pub fn press(&mut self, key: PressKey) -> bool {
         std::mem::replace(self.of(key), KeyState::Down) == KeyState::Up
     }
 
-    /// A key goes up, while the window has the keyboard.
+    /// Handles the release of a key, while the window has the keyboard.
     pub fn release(&mut self, key: PressKey, now: f64) {
         *self.of(key) = KeyState::Released(now);
     }
@@ -68,8 +69,8 @@ impl FreshKeys {
         }
     }
 
-    /// Notes that another key was pressed outside a text entry: a press immediately after it is not a person's, because
-    /// a barcode scanner types digits and Enter that fast.
+    /// Notes that another key was pressed outside a text entry: a press immediately after it is not a user's, because a
+    /// barcode scanner types digits and Enter that fast.
     pub fn doubt(&mut self, now: f64) {
         for key in [PressKey::Space, PressKey::Enter] {
             let own = self.of(key);
@@ -79,8 +80,8 @@ impl FreshKeys {
         }
     }
 
-    /// Ends a picture. Returns in how many seconds the next one is needed at the latest: a person who presses a key again
-    /// after its release causes no picture in between.
+    /// Ends a frame. Returns in how many seconds the next one is needed at the latest: a user who presses a key again after
+    /// its release causes no frame in between.
     #[must_use]
     pub fn end_picture(&mut self, now: f64) -> Option<f64> {
         let mut next: Option<f64> = None;
@@ -97,12 +98,12 @@ impl FreshKeys {
         next
     }
 
-    /// The key was seen up: its next press is fresh, unless it follows at once.
+    /// Returns whether the key was seen up: its next press is fresh, unless it follows immediately.
     pub fn is_armed(&self, key: PressKey) -> bool {
         matches!(self.get(key), KeyState::Released(_) | KeyState::Up)
     }
 
-    /// The key was seen down, and not up since.
+    /// Returns whether the key was seen down, and not up since.
     pub fn is_down(&self, key: PressKey) -> bool {
         self.get(key) == KeyState::Down
     }
@@ -134,7 +135,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.2: what a toolkit calls a first press is none where the key was not seen up.
+    /// Issue 21.2: a press that the toolkit reports as the first is not fresh if the key was not seen up.
     #[test]
     fn a_press_is_fresh_only_after_a_release_was_seen() {
         let mut keys = FreshKeys::default();
@@ -157,7 +158,7 @@ mod tests {
         assert!(!keys.press(Space), "the keyboard was elsewhere meanwhile");
     }
 
-    /// Issue 21.2: a repetition by release and press is a repetition, in one picture or in two, however far apart these are.
+    /// Issue 21.2: a repetition by release and press is a repetition, in one frame or in two, however far apart.
     #[test]
     fn a_release_and_a_press_at_once_are_a_repetition() {
         for apart in [0.004, 0.016, 0.05, 0.08, 0.25, 2.0] {
@@ -177,7 +178,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.2: a person's press counts although nothing else came after the release, because a picture was asked for.
+    /// Issue 21.2: a user's press counts although nothing else happened after the release, because a frame was requested.
     #[test]
     fn a_press_of_a_person_is_fresh_by_the_picture_that_was_asked_for() {
         for apart in [0.001, 0.016, 0.05, 1.0] {
@@ -188,7 +189,7 @@ mod tests {
             let (mut now, mut pictures) = (1.0, 0);
             while let Some(next) = keys.end_picture(now) {
                 assert!(next > 0.0 && next < 0.0501, "{next}");
-                // By what is asked for, or by something else before it.
+                // By the requested frame, or by an earlier one.
                 now += next.min(apart);
                 pictures += 1;
             }
@@ -211,7 +212,7 @@ mod tests {
         assert!(!keys.press(Enter), "it is known to be down");
     }
 
-    /// Issue 22.29: what a barcode scanner types.
+    /// Issue 22.29: the input of a barcode scanner.
     #[test]
     fn a_press_at_once_after_another_key_is_not_fresh() {
         let mut keys = FreshKeys::UP;

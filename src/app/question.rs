@@ -10,14 +10,14 @@ use super::studio::SessionId;
 use super::tab::Tab;
 use crate::link::LinkUrl;
 
-/// A question that has to be answered before something is done.
+/// Question to be answered before something is done.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Question {
     /// What would be lost or interrupted.
     pub text: Text,
-    /// The word for going on.
+    /// The word for continuing.
     pub confirm: Text,
-    /// The word for not going on.
+    /// The word for not continuing.
     pub decline: Text,
     pub(super) then: Then,
 }
@@ -31,12 +31,12 @@ pub(crate) enum Then {
     Forget(RecorderOwner),
     Save(Box<Saving>),
     OpenLink(SessionId),
-    /// The search of the form of this tab, in the connection dialog, goes on.
+    /// Continue the search of the form of this tab, in the connection dialog.
     Find(Tab),
 }
 
 impl Question {
-    /// A question before something is lost or interrupted.
+    /// Creates a question before something is lost or interrupted.
     pub(super) fn before(text: Text, confirm: Text, then: Then) -> Self {
         Question { text, confirm, decline: Text::new("question.stay"), then }
     }

@@ -1,5 +1,5 @@
-//! Names that stand in people's files: settings and changes of a text of today are read and written word for word the same.
-//! Drafts stand with their kinds.
+//! Names in users' files: settings and changes of a present-day text are read and written unchanged. Tests of drafts are
+//! with their kinds.
 
 use std::fmt::Debug;
 
@@ -35,7 +35,7 @@ where
     assert_eq!(ron::to_string(&edits).unwrap(), draft, "{kind}");
 }
 
-/// A change of a text, as it stands in a draft of an SSI layout.
+/// A change of a text, as in a draft of an SSI layout.
 #[test]
 fn a_change_is_read_and_written_as_recorded() {
     let change = "(path:[Entry(\"ranges\"),Named(\"name\",\"error\"),At(2)],from:Some(\"24\"),to:None,\

@@ -1,4 +1,4 @@
-//! The recording of a device, as far as it is the same for every kind.
+//! The recording of a device, as far as it is common to all kinds.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ pub trait Recording {
     /// Returns the number of samples that were taken and dropped before they were recorded.
     fn dropped(&self) -> u64;
 
-    /// Samples are asked for at this interval from now on; `begins`: they were not before.
+    /// Sets the interval of polling; `begins`: there was none before.
     #[doc(hidden)]
     fn poll(&mut self, interval: Option<Duration>, begins: bool);
 }

@@ -1,4 +1,4 @@
-//! Exchange of remembered values between the settings and the drives; other windows write the same file.
+//! Exchange of stored values between the settings and the drives; other windows write the same file.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ impl Studio {
         }
     }
 
-    /// Reads the settings again periodically while drives are in control: another window may have marked limits as
+    /// Reads the settings periodically while drives are under control: another window may have marked limits as
     /// unconfirmed.
     pub(super) fn refresh_settings(&mut self) {
         let now = self.services.now();
@@ -41,7 +41,7 @@ impl Studio {
         }
     }
 
-    /// The settings were read.
+    /// Handles the settings that were read.
     pub(super) fn settings_read(&mut self, found: Option<Settings>) {
         if let Some(found) = self.settings_store.read_done(found, &mut self.settings) {
             for drives in self.devices.iter_mut().filter_map(|device| device.remembers_drives()) {
@@ -53,7 +53,7 @@ impl Studio {
         self.drives_in_hand().filter(reading).for_each(|drives| drives.set_marks(SettingsReadState::Read));
     }
 
-    /// The settings could not be read: no drive in hand moves before they are.
+    /// Notes that the settings could not be read: no drive under control moves before they are.
     pub(super) fn settings_unread(&mut self, error: &FileError) {
         tracing::warn!("{error}");
         self.settings_store.read_failed();

@@ -1,4 +1,4 @@
-//! The review of a write, for every kind of device: what it would do, the consent, how far it is, and what came of it.
+//! The review of a write, for every kind of device: its effect, the consent, its progress, and its result.
 
 mod permit;
 
@@ -12,7 +12,7 @@ use crate::profile::{Plan, PlanId};
 use crate::worker::commit::Planned;
 use crate::worker::{Committed, is_uncounted};
 
-/// A write on its way.
+/// Review of a write.
 pub struct Review<K: Reviewed> {
     pub title: Text,
     pub state: ReviewState<K>,
@@ -23,7 +23,7 @@ pub struct Review<K: Reviewed> {
     /// The change was made for another type of device.
     pub is_for_another_type: bool,
     pub(crate) change: K::Change,
-    /// The permits in question, and whether they are given.
+    /// The permissions in question, and whether they are given.
     permits: Vec<Toggle>,
 }
 
@@ -33,17 +33,17 @@ pub enum ReviewState<K: Reviewed> {
     Planning,
     /// The plan is shown.
     Ready(Box<K::Prepared>),
-    /// It is being carried out.
+    /// The plan is being carried out.
     Writing(Box<K::Prepared>),
-    /// It was carried out and read back.
+    /// The plan was carried out and read back.
     Done(Box<K::Prepared>, Committed<K::Written>),
-    /// It cannot be done, or ended early: what happened, and what to do.
+    /// It is not possible, or ended early: what happened, and what to do.
     Failed {
-        /// In words.
+        /// What happened, as texts.
         texts: Vec<Text>,
         /// Something was written before it ended.
         begun: bool,
-        /// The plan that was being carried out, and how many of its operations are known to be done.
+        /// The plan that was being carried out, and the number of operations known to be done.
         cut_off: Option<(Box<K::Prepared>, usize)>,
     },
 }
@@ -64,7 +64,7 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// The plan as it was shown, from then to its end.
+    /// Returns the plan as shown, until its end.
     pub fn prepared(&self) -> Option<&K::Prepared> {
         match &self.state {
             ReviewState::Ready(prepared) | ReviewState::Writing(prepared) | ReviewState::Done(prepared, _) => {
@@ -74,12 +74,12 @@ impl<K: Reviewed> Review<K> {
         }
     }
 
-    /// The plan that is being carried out.
+    /// Returns the plan that is being carried out.
     pub(crate) fn writing(&self) -> Option<&K::Prepared> {
         self.prepared().filter(|_| self.is_writing())
     }
 
-    /// The plan is being made.
+    /// Returns whether the plan is being made.
     pub fn is_planning(&self) -> bool {
         matches!(self.state, ReviewState::Planning)
     }
@@ -107,29 +107,29 @@ impl<K: Reviewed> Review<K> {
         Some(change)
     }
 
-    /// Returns the permits that are given or would make a difference.
+    /// Returns the permissions that are given or would make a difference.
     fn toggles(&self) -> Vec<Toggle> {
         let matters = |permit| match permit {
             Permit::OtherDevice => self.is_for_another,
             Permit::OtherType => self.is_for_another_type,
             Permit::Mounting => self.prepared().is_some_and(K::leaves_mounting),
             Permit::Recreate => true,
-            // It stands among the questions.
+            // It is shown as a question.
             Permit::Copy(_) => false,
         };
         self.permits.iter().copied().filter(|own| own.is_on || matters(own.permit)).collect()
     }
 }
 
-/// An operation of a plan in words.
+/// An operation of a plan as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OpWords {
     pub item: Text,
-    /// Each thing that it changes, in its order; at least one.
+    /// The changes in order; at least one.
     pub changes: Vec<ChangeWords>,
 }
 
-/// One thing that an operation changes, in words.
+/// One thing that an operation changes, as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ChangeWords {
     /// The part of the item; `None` for all of it.
@@ -139,7 +139,7 @@ pub struct ChangeWords {
 }
 
 impl OpWords {
-    /// An operation that changes one thing.
+    /// Creates an operation that changes one thing.
     pub fn one(item: Text, old: Text, new: Text) -> Self {
         OpWords { item, changes: vec![ChangeWords { part: None, old, new }] }
     }
@@ -150,7 +150,7 @@ impl OpWords {
     }
 }
 
-/// Something about a plan that has to be answered, and makes another plan.
+/// Question about a plan, whose answer makes another plan.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Question {
     pub title: Text,
@@ -167,7 +167,7 @@ pub struct Question {
 /// How a plan is carried out, and what starts it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExecutionMode {
-    /// From end to end.
+    /// From start to end.
     Writes,
     /// Step by step, with the user at the device.
     Leads,
@@ -185,7 +185,7 @@ impl ExecutionMode {
         }
     }
 
-    /// Returns the id of the text that says what will be done.
+    /// Returns the id of the text about the next action.
     pub const fn summary_id(self) -> &'static str {
         match self {
             ExecutionMode::Writes => "review.way",
@@ -195,7 +195,7 @@ impl ExecutionMode {
     }
 }
 
-/// A review as a person sees it, whatever the device.
+/// Review as displayed, for any device.
 #[derive(Clone, Debug)]
 pub struct ReviewSheet {
     pub title: Text,
@@ -206,8 +206,7 @@ pub struct ReviewSheet {
     pub warnings: Vec<Text>,
     /// What the plan requires of the user at the device.
     pub needs: Vec<Text>,
-    /// Values from another device that have to be set up again afterwards; shown during planning, writing and at the
-    /// end.
+    /// Values from another device that must be set up again afterwards; shown during planning, writing and at the end.
     pub redo: Option<Text>,
     /// The cost, besides the write cycles that this computer has counted.
     pub cost: Option<Text>,
@@ -230,9 +229,9 @@ pub enum Stage {
     Nothing,
     /// The plan is shown.
     Ready(PlanId),
-    /// It is being carried out: operations that are done.
+    /// The plan is being carried out: number of operations done.
     Writing(usize),
-    /// It was carried out.
+    /// The plan was carried out.
     Done {
         /// Confirmation that it was read back.
         verified: Text,
@@ -241,18 +240,18 @@ pub enum Stage {
         /// What the logbook could not record.
         logbook: Option<Text>,
     },
-    /// It cannot be done, or ended early.
+    /// It is not possible, or ended early.
     Failed {
         /// What happened, and what to do.
         texts: Vec<Text>,
         /// Something was written before it ended.
         begun: bool,
-        /// Operations that are known to be done.
+        /// Number of operations known to be done.
         done: usize,
     },
 }
 
-/// A kind of device with a memory: the words for its writes.
+/// Kind of device with a memory: the texts of its writes.
 pub trait Reviewed: Kind<Review = Review<Self>> {
     /// The requested change.
     type Change: Clone;
@@ -261,13 +260,13 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
     /// The result of the write.
     type Written;
 
-    /// Returns the change in words.
+    /// Returns the change as text.
     fn change(change: &Self::Change) -> Text;
-    /// Returns the flag of a permit; `None` if it is not in question.
+    /// Returns the flag of a permission; `None` if it is not in question.
     fn permitted(change: &mut Self::Change, permit: Permit) -> Option<&mut bool>;
-    /// An operation of it, in words.
+    /// Returns the text of an operation of it.
     fn op(prepared: &Self::Prepared, op: &Op<Self>) -> OpWords;
-    /// Values of the mounting differ and are left alone.
+    /// Returns whether values of the mounting differ and are left alone.
     fn leaves_mounting(_prepared: &Self::Prepared) -> bool {
         false
     }
@@ -292,19 +291,19 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
         Vec::new()
     }
 
-    /// Returns the cost in words.
+    /// Returns the cost as text.
     fn cost(prepared: &Self::Prepared) -> Text;
 
-    /// The device counts as worn after it.
+    /// Returns whether the device counts as worn after it.
     fn is_worn(prepared: &Self::Prepared) -> bool {
         let seen = prepared.cycles_seen().unwrap_or(0);
         seen.saturating_add(prepared.plan().write_cycles()) > prepared.wear_limit()
     }
 
-    /// Returns the result of the write in words.
+    /// Returns the result of the write as text.
     fn written(written: &Self::Written) -> Text;
 
-    /// The same for the end of a review, which shows each operation.
+    /// Returns the same for the end of a review, which shows each operation.
     fn verified(written: &Self::Written) -> Text {
         Self::written(written)
     }
@@ -318,7 +317,7 @@ pub trait Reviewed: Kind<Review = Review<Self>> {
 /// An operation of a plan.
 pub(crate) type Op<K> = <<K as Reviewed>::Prepared as Planned>::Op;
 
-/// Returns the result of a write in words, with its severity.
+/// Returns the result of a write as text, with its severity.
 pub fn written_texts<K: Reviewed>(committed: &Committed<K::Written>) -> (Severity, Vec<Text>) {
     let text = K::written(&committed.written);
     match &committed.logbook_warning {
@@ -345,12 +344,12 @@ pub fn redo(items: Vec<Text>) -> Option<Text> {
 }
 
 impl<K: Reviewed> Review<K> {
-    /// The review as a person sees it; `done` operations have been carried out.
+    /// Returns the review as displayed; `done` operations have been carried out.
     pub fn sheet(&self, done: usize) -> ReviewSheet {
         self.sheet_with(done, K::op)
     }
 
-    /// The same with the words that the device on the desk has for an operation.
+    /// Returns the same with the words that the device on the desk has for an operation.
     pub(in crate::app) fn sheet_with(&self, done: usize, op: impl Fn(&K::Prepared, &Op<K>) -> OpWords) -> ReviewSheet {
         let prepared = self.prepared();
         let cut_off = match &self.state {

@@ -19,7 +19,7 @@ use crate::link::{LinkError, PortInfo};
 use crate::store::{Folders, Store};
 use crate::worker::JobId;
 
-/// The world outside, as the studio reaches it; a test has one of its own.
+/// The studio's access to the outside world; a test has its own.
 #[derive(Clone)]
 pub struct Environment {
     /// Backups, logbook, drafts, settings.
@@ -34,12 +34,12 @@ pub struct Environment {
     pub folders: Folders,
     /// The time of day.
     pub now: Arc<dyn Fn() -> Zoned + Send + Sync>,
-    /// How long closing waits.
+    /// Maximum waiting times of closing.
     pub patience: GracePeriods,
 }
 
 impl Environment {
-    /// This machine, with these kinds of devices and tools.
+    /// Creates the real environment, with these kinds of devices and tools.
     pub fn real(store: Store, kinds: Kinds) -> Self {
         Environment {
             store,
@@ -56,9 +56,9 @@ impl Environment {
 /// How a job ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobEnd {
-    /// It is not over.
+    /// It is still running.
     Running,
-    /// As it should.
+    /// Successfully.
     Done,
     /// It failed: why.
     Failed(Text),
@@ -73,7 +73,7 @@ pub struct JobRecord {
     pub since: Zoned,
     /// Until when.
     pub until: Option<Zoned>,
-    /// Whose it is.
+    /// Name of the device concerned.
     pub about: String,
     pub title: Text,
     pub end: JobEnd,
@@ -97,7 +97,7 @@ pub struct Services {
     pub(super) closing_sessions: Vec<ClosingSession>,
     /// Profiles that are being read.
     pub(super) opening_files: Vec<std::path::PathBuf>,
-    /// Drafts that are on their way to the disk.
+    /// Number of drafts being written to disk.
     pub(super) drafts_on_their_way: usize,
     /// Data shared by the sessions of one kind of device.
     shared: HashMap<TypeId, Box<dyn Any>>,
@@ -106,12 +106,12 @@ pub struct Services {
 impl Services {
     const JOBS: usize = 500;
 
-    /// Returns what the sessions of one kind of device have in common; `None` before one has shared it.
+    /// Returns the data shared by the sessions of one kind of device; `None` before one has shared any.
     pub fn shared<T: Any>(&self) -> Option<&T> {
         self.shared.get(&TypeId::of::<T>())?.downcast_ref()
     }
 
-    /// Shares something with the other sessions of this kind of device, in the place of what was shared before.
+    /// Shares data with the other sessions of this kind of device, replacing earlier ones.
     pub fn share<T: Any>(&mut self, value: T) {
         self.shared.insert(TypeId::of::<T>(), Box::new(value));
     }
@@ -134,17 +134,17 @@ impl Services {
         }
     }
 
-    /// The time of day.
+    /// Returns the time of day.
     pub(crate) fn now(&self) -> Zoned {
         (self.world.now)()
     }
 
-    /// Adds to the log, and stands in the window.
+    /// Adds a notice to the log and displays it in the window.
     pub(crate) fn notify(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add(self.notice(severity, texts, about));
     }
 
-    /// The same about a part of what it is about.
+    /// Does the same for a part of the device.
     pub(crate) fn notify_part(
         &mut self,
         severity: Severity,
@@ -154,7 +154,7 @@ impl Services {
         self.log.add(Notice { part, ..self.notice(severity, texts, about) });
     }
 
-    /// Adds to the log only: the window shows it elsewhere.
+    /// Adds a notice to the log only: the window shows it elsewhere.
     pub(crate) fn note(&mut self, severity: Severity, texts: Vec<Text>, about: Option<&str>) {
         self.log.add_to_log(self.notice(severity, texts, about));
     }
@@ -163,7 +163,7 @@ impl Services {
         Notice { at: self.now(), severity, texts, about: about.map(ToOwned::to_owned), part: None }
     }
 
-    /// Jobs, the newest last.
+    /// Returns the jobs, the newest last.
     pub fn jobs(&self) -> impl DoubleEndedIterator<Item = &JobRecord> + ExactSizeIterator {
         self.jobs.iter()
     }

@@ -1,5 +1,5 @@
-//! The settings that are kept between starts: appearance, language, links, arrangement of the panels. If they cannot be
-//! read, the defaults apply. Files are opened elsewhere.
+//! The settings that are stored between runs: appearance, language, links, arrangement of the panels. If they cannot be
+//! read, the defaults apply. File access is elsewhere.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -30,7 +30,7 @@ pub struct Settings {
     pub theme: ColorScheme,
     /// Language of the window.
     pub language: Language,
-    /// Links used, the latest first, by the tab of the device; never with access codes, which are no part of a link.
+    /// Links used, the latest first, by the tab of the device; never with access codes, which are not part of a link.
     links: Links,
     /// Arrangement of the panels, which only the window reads.
     pub layout: Option<String>,
@@ -38,7 +38,7 @@ pub struct Settings {
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
-    /// Remembered drives, by the device that they are behind.
+    /// Stored data about drives, by the device that they are behind.
     drives: BTreeMap<String, RememberedDrives>,
 }
 
@@ -65,7 +65,7 @@ impl Settings {
     /// Links that are remembered.
     const LINKS: usize = 12;
 
-    /// Reads settings; `None` when the text is not what [`emit`](Self::emit) writes.
+    /// Parses settings; `None` if the text was not written by [`emit`](Self::emit).
     pub fn parse(text: &str) -> Option<Self> {
         ron::from_str(text).ok()
     }
@@ -88,7 +88,7 @@ impl Settings {
             language: entry!(language: Language, usual.language),
             links: entry!(
                 links: Links,
-                // As it was while there was one kind of device.
+                // The format from when there was only one kind of device.
                 entry!(links: Vec<String>, Vec::new()).into_iter().rev().fold(Links::default(), |mut links, link| {
                     links.change(Tab::default(), |own| own.insert(0, link));
                     links
@@ -99,7 +99,7 @@ impl Settings {
             size: entry!(size: Option<(u32, u32)>, usual.size),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
-                // Unconfirmed limits stay so, whatever else is broken.
+                // Unconfirmed limits stay unconfirmed, even if other parts are broken.
                 entry!(drives: BTreeMap<String, LocksOnly>, BTreeMap::new())
                     .into_iter()
                     .map(|(device, locks)| (device, locks.into()))
@@ -108,7 +108,8 @@ impl Settings {
         }
     }
 
-    /// The same with what `ours` has changed since `known`: the rest may have been written by another window meanwhile.
+    /// Returns the same with the changes of `ours` since `known`: the rest may have been written by another window
+    /// meanwhile.
     #[must_use]
     pub(super) fn with_changes(mut self, known: &Settings, ours: &Settings) -> Self {
         macro_rules! take {
@@ -140,17 +141,17 @@ impl Settings {
         self.drives = from.drives.clone();
     }
 
-    /// The settings as text.
+    /// Returns the settings as text.
     pub fn emit(&self) -> String {
         ron::ser::to_string_pretty(self, ron::ser::PrettyConfig::default()).unwrap_or_default()
     }
 
-    /// Returns what is remembered of the drives behind a device.
+    /// Returns the stored data of the drives behind a device.
     pub(crate) fn drives(&self, device: &str) -> RememberedDrives {
         self.drives.get(device).cloned().unwrap_or_default()
     }
 
-    /// Remembers the drives behind a device.
+    /// Stores data of the drives behind a device.
     pub(crate) fn remember_drives(&mut self, device: String, what: RememberedDrives) {
         self.drives.insert(device, what);
     }
@@ -178,7 +179,7 @@ impl Settings {
     }
 }
 
-/// Links used, by the tab of the device, in the order in which the tabs came.
+/// Links used, by the tab of the device, in the order of first use of the tabs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Links(Vec<(Tab, Vec<String>)>);
 
@@ -237,7 +238,7 @@ impl<'de> Deserialize<'de> for Links {
     }
 }
 
-/// Links of `ours` that were used since they stood as in `known`: those before the rest, which stands as it did.
+/// Returns the links of `ours` used since `known`: those before the unchanged rest.
 fn newer_links<'o>(known: &[String], ours: &'o [String]) -> &'o [String] {
     let is_rest = |at: &usize| {
         let (used, rest) = ours.split_at(*at);
@@ -278,7 +279,7 @@ mod tests {
         assert!(Settings::salvage("no settings").links(HIPERFACE).is_empty());
     }
 
-    /// A tab that another version has is none here; what stands there of it stays.
+    /// A tab of another version is unknown here; its entries are kept.
     #[test]
     fn links_of_a_tab_that_is_not_known_are_kept() {
         let text = "(tab: Gearbox, links: {Hiperface: [\"sim:\"], Gearbox: [\"tcp:host:1\"]})";
@@ -309,7 +310,7 @@ mod tests {
         Settings::parse(&format!("(drives: {{\"HUB-4 7\": ({drives})}})")).unwrap()
     }
 
-    /// Issue 21.11: what another window has written, what was known of it, and what was changed here.
+    /// Issue 21.11: the content written by another window, the known content, and the changes made here.
     #[test]
     fn changes_are_merged_and_marks_only_tighten() {
         let cases = [
@@ -364,7 +365,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: limits that have not been confirmed stay locked, whatever else cannot be read.
+    /// Issue 21.11: unconfirmed limits stay locked, even if other parts cannot be read.
     #[test]
     fn marks_are_read_from_a_broken_entry() {
         let broken = "(drives: {\"HUB-4 7\": (measure: Cubits, unconfirmed: [1], marks: {1: 2})})";
@@ -372,7 +373,7 @@ mod tests {
         assert_eq!(Settings::salvage(broken), with_drives("unconfirmed: [1], marks: {1: 2}"));
     }
 
-    /// Issue 21.11: links that others have used meanwhile stay, behind those that were used here.
+    /// Issue 21.11: links that others have used meanwhile stay, after those that were used here.
     #[test]
     fn links_of_two_windows_stand_together() {
         let of = |links: &[&str]| {
@@ -394,7 +395,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.11: a file of before has no marks.
+    /// Issue 21.11: an older file has no marks.
     #[test]
     fn settings_without_marks_are_read() {
         let before = "(drives: {\"HUB-4 7\": (pitches: {1: 4000000}, measure: Millimetres, unconfirmed: [1])})";

@@ -1,8 +1,8 @@
-//! Keeping the settings: written on a thread when they have changed, one write at a time.
+//! Storing the settings: written on a thread when they have changed, one write at a time.
 //!
-//! Other windows write the same file. What is written is what the file says at that moment with what was changed here since
-//! it was last read or written, and no window writes between the two. What others have changed comes into this window only
-//! where it locks drives, or is about devices that are not open.
+//! Other windows write the same file. A write merges the present content of the file with the changes made here since the
+//! last read or write, and no window writes in between. Changes by others enter this window only if they lock drives, or
+//! concern devices that are not open.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,7 +24,7 @@ const PATIENCE: Duration = Duration::from_millis(300);
 /// Text id of the notice that the settings cannot be kept.
 const NOT_KEPT: &str = "session.settings_not_kept";
 
-/// Behind a reading that failed, the next one waits so long.
+/// Pause after a failed reading before the next one.
 const AGAIN: Duration = Duration::from_secs(1);
 
 /// The settings on disk, and a write in progress.
@@ -36,25 +36,25 @@ pub(crate) struct SettingsStore {
     failed: Option<Settings>,
     /// Settings that are being written.
     writing: Option<Settings>,
-    /// The file has been read, or put aside: before that nothing is written over it.
+    /// The file has been read, or put aside: nothing is written over it before that.
     may_write: bool,
     is_failure_reported: bool,
     /// The file is being read, since then.
     reading_since: Option<Zoned>,
-    /// When it was read last.
+    /// Time of the last reading.
     last_read: Option<Zoned>,
-    /// When they could not be read last.
+    /// Time of the last failed reading.
     last_failed_read: Option<Zoned>,
 }
 
 /// The result of reading the settings.
 #[derive(Debug)]
 pub enum SettingsRead {
-    /// They are as the program writes them.
+    /// They are as written by the program.
     Whole(Box<Settings>),
     /// There are none yet.
     Missing,
-    /// The file is broken: what could be read of it, and where it was put.
+    /// The file is broken: its readable part, and the copy that was made.
     Broken {
         settings: Box<Settings>,
         /// The file.
@@ -71,16 +71,16 @@ pub enum SettingsRead {
 pub struct SettingsWritten {
     /// The present content of the file.
     settings: Box<Settings>,
-    /// It was broken, and this was put aside of it.
+    /// It was broken, and this copy was made of it.
     aside: Option<(PathBuf, PathBuf)>,
 }
 
 impl SettingsStore {
-    /// Reads the settings. A disk that does not answer at once comes back as an action.
+    /// Reads the settings. If the disk does not reply at once, they arrive as an action later.
     pub(super) fn load(services: &mut Services) -> (Settings, Self) {
         let (path, kinds) = (services.world.store.settings_path(), services.world.kinds);
         let mailbox = services.tasks.mailbox();
-        // Handed over directly: a message without a receiver goes into the mailbox.
+        // Rendezvous channel: without a waiting receiver the settings go to the mailbox.
         let (sender, receiver) = bounded(0);
         let _ = thread::Builder::new().name("settings".to_owned()).spawn(move || {
             if let Err(late) = sender.send(read(path, kinds)) {
@@ -173,7 +173,7 @@ impl SettingsStore {
                 }
             }
             Err(error) => {
-                // Another program lets go of it some time: it is tried again.
+                // Another program will release it: the write is retried.
                 self.failed = (error.problem != FileProblem::InUse).then_some(written);
                 if !std::mem::replace(&mut self.is_failure_reported, true) {
                     let text = Text::new(NOT_KEPT).with_text("why", explain::file(&error));
@@ -183,7 +183,7 @@ impl SettingsStore {
         }
     }
 
-    /// Reads the settings as another window may have written them. Whether that begins now.
+    /// Reads the settings as another window may have written them. Returns whether a reading starts now.
     pub(crate) fn begin_read(&mut self, services: &Services) -> bool {
         let has_failed = |at: &Zoned| at.duration_until(&services.now()).unsigned_abs() < AGAIN;
         if self.reading_since.is_some() || self.last_failed_read.as_ref().is_some_and(has_failed) {
@@ -198,7 +198,7 @@ impl SettingsStore {
         true
     }
 
-    /// Handles settings that could not be read: this counts as not having looked, since they may contain locks.
+    /// Handles settings that could not be read: this counts as not having read them, since they may contain locks.
     pub(crate) fn read_failed(&mut self) {
         self.last_failed_read = self.reading_since.take();
     }
@@ -217,12 +217,12 @@ impl SettingsStore {
 
     /// Returns whether the settings have not been read for this long.
     pub(crate) fn is_older(&self, now: &Zoned, than: Duration) -> bool {
-        // A clock of the wall may be set back.
+        // The wall clock may be set back.
         let age = self.last_read.as_ref().map(|looked| looked.duration_until(now).unsigned_abs());
         age.is_none_or(|age| age > than)
     }
 
-    /// Takes over what other windows have written about drives.
+    /// Takes over the data of other windows about drives.
     fn meet(&mut self, found: &Settings, settings: &mut Settings) {
         let ours = settings.clone();
         settings.take_drives(found);
@@ -235,7 +235,7 @@ impl SettingsStore {
     }
 }
 
-/// Reads the settings, and puts a broken file aside: as it is, beside itself.
+/// Reads the settings, and copies a broken file to a name beside it.
 fn read(path: PathBuf, kinds: Kinds) -> SettingsRead {
     match understood(read_text(&path), kinds) {
         Ok(Some((settings, true))) => SettingsRead::Whole(Box::new(settings)),
@@ -284,7 +284,7 @@ fn aside_of(path: &Path) -> PathBuf {
     PathBuf::from(aside)
 }
 
-/// Writes what was changed in `ours` since `known` into the file as it is now.
+/// Writes the changes of `ours` since `known` into the present file.
 fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result<SettingsWritten, FileError> {
     update_text(path, |text| {
         let (there, is_whole) = match understood(text, kinds)? {
@@ -292,14 +292,14 @@ fn write(path: &Path, known: &Settings, ours: &Settings, kinds: Kinds) -> Result
             None => (None, true),
         };
         let aside = if is_whole { None } else { put_aside(path)? };
-        // If the file is gone, no one has changed it.
+        // If the file was deleted, it has no other changes.
         let merged = there.clone().map_or_else(|| ours.clone(), |there| there.with_changes(known, ours));
         let text = (there.as_ref() != Some(&merged) || !is_whole).then(|| merged.emit());
         Ok((text, SettingsWritten { settings: Box::new(merged), aside }))
     })
 }
 
-/// Puts a broken file aside, unless that was done before: from where to where.
+/// Copies a broken file, unless that was done before; returns both paths.
 fn put_aside(path: &Path) -> Result<Option<(PathBuf, PathBuf)>, FileError> {
     let aside = aside_of(path);
     let is_there = fs::read(path).is_ok_and(|broken| fs::read(&aside).is_ok_and(|before| before == broken));

@@ -1,4 +1,4 @@
-//! Sessions that were let go: what still ends there is told, and neither the window nor the wire is free before.
+//! Released sessions: their end is still reported, and neither the window nor the connection is free before.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,15 +15,15 @@ use crate::link::{LinkUrl, Wire};
 use crate::worker::stream::End;
 use crate::worker::{Ending, JobId, Worker};
 
-/// How long closing waits, and opening for a wire that is still held.
+/// Maximum waiting times of closing, and of opening while a connection is still held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GracePeriods {
-    /// For drives: they stop and are let go.
+    /// For drives: they stop and are released.
     pub drives: Duration,
     pub disk: Duration,
     /// For a job that writes nothing.
     pub job: Duration,
-    /// For a write: it comes to a point at which it can end, and locks again what it unlocked.
+    /// For a write: it reaches a point at which it can end, and locks again what it unlocked.
     pub write: Duration,
 }
 
@@ -38,7 +38,7 @@ impl Default for GracePeriods {
     }
 }
 
-/// Whose thread was let go.
+/// Session whose thread was released.
 pub(crate) struct ClosingSessionInfo {
     /// Its number.
     pub(crate) session: SessionId,
@@ -55,12 +55,12 @@ pub(super) struct ClosingSession {
     ending: Arc<dyn ClosingWorker>,
 }
 
-/// A worker that was let go, of whatever device.
+/// Released worker, for any device.
 pub(crate) trait ClosingWorker: Send + Sync {
-    /// The thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the wire is free.
     fn is_ended(&self) -> bool;
 
-    /// Waits at most `patience` for the end; true when it has come.
+    /// Waits at most `patience` for the end; returns whether it has come.
     fn wait(&self, patience: Duration) -> bool;
 
     /// Returns how jobs ended since the last call.
@@ -101,7 +101,7 @@ pub(crate) fn same_wire(one: &LinkUrl, other: &LinkUrl) -> bool {
 }
 
 impl Services {
-    /// Lets a thread go. Who waits for its turn on the wire gets it when `turn` is dropped: at the end.
+    /// Releases a thread. The next user of the connection gets its turn when `turn` is dropped, at the end.
     pub(crate) fn leave<D: Kind>(&mut self, worker: Worker<D>, info: ClosingSessionInfo, turn: Option<Sender<()>>) {
         self.close_session_thread(Arc::new(worker.end()), info, turn);
     }
@@ -131,7 +131,7 @@ impl Services {
     pub(super) fn poll_closing_sessions(&mut self) {
         let mut endings = Vec::new();
         self.closing_sessions.retain_mut(|closing| {
-            // In this order: what has ended tells nothing more.
+            // In this order: a thread that has ended reports nothing more.
             let ended = closing.ending.is_ended();
             for end in closing.ending.job_endings() {
                 if closing.info.write == Some(end.job) {

@@ -1,21 +1,21 @@
-//! The capability that Signals uses: a device that gives sine and cosine besides its absolute position.
+//! The capability used by Signals: a device that provides sine and cosine in addition to its absolute position.
 
 use super::action::Action;
 use super::studio::SessionId;
 use super::texts::Text;
 
-/// A position and the signals beside it, read while the shaft rested.
+/// Position and signals, read while the shaft was at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineReading {
     /// The absolute position, in steps of 1/32 period.
     pub position: u32,
     /// The position can be used.
     pub valid: bool,
-    /// Sine and cosine in volts, where the device gives them.
+    /// Sine and cosine in volts, if the device provides them.
     pub signals: Option<SineCosineVolts>,
 }
 
-/// Sine and cosine, each against its reference.
+/// Sine and cosine, each relative to its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SineCosineVolts {
     /// Sine in volts.
@@ -27,7 +27,7 @@ pub struct SineCosineVolts {
 /// The range of an encoder that turns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SineCosineRange {
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: u32,
     /// Revolutions.
     pub turns: u32,
@@ -37,13 +37,13 @@ pub struct SineCosineRange {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineCosineOrigin {
     pub session: SessionId,
-    /// Its serial number, where it was read.
+    /// Its serial number, if it was read.
     pub serial_number: Option<String>,
-    /// Its range, where that is known and it turns.
+    /// Its range, if it is known and rotary.
     pub range: Option<SineCosineRange>,
 }
 
-/// A device whose sine and cosine can be read at rest.
+/// Device whose sine and cosine can be read at rest.
 pub trait SineCosineSource {
     /// Returns whether it can be read now.
     fn is_ready(&self) -> bool;
@@ -53,6 +53,6 @@ pub trait SineCosineSource {
     /// Returns the identity of the device.
     fn origin(&self) -> SineCosineOrigin;
 
-    /// The reading that was asked for, once; or why there is none.
+    /// Takes the requested reading, or why there is none.
     fn take_reading(&mut self) -> Option<Result<SineCosineReading, Text>>;
 }

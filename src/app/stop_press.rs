@@ -1,8 +1,8 @@
-//! The meaning of a press that closely follows a stop: a person who stops a machine presses twice, holds the key, or
-//! releases the button after the machine has stopped. Such presses apply to nothing else that runs. They still stop
-//! motion, as something may have started meanwhile. Pure: times are those of the frames, in seconds.
+//! The meaning of a press that closely follows a stop: a user who stops a machine presses twice, holds the key, or releases
+//! the button after the machine has stopped. Such presses apply to nothing else that runs. They still stop motion, as
+//! something may have started meanwhile. Pure: times are those of the frames, in seconds.
 
-/// So soon after a stop, in seconds, another press means the same.
+/// Time after a stop, in seconds, in which another press has the same meaning.
 const FRIGHT: f64 = 0.5;
 
 /// When motion was stopped last, and when a button that stops was pressed last.
@@ -13,8 +13,7 @@ pub struct StopPresses {
 }
 
 impl StopPresses {
-    /// Returns whether a press at this time is meant for a motion that runs or has just ended; it is then a stop
-    /// itself.
+    /// Returns whether a press at this time applies to a motion that runs or has just ended; it is then a stop itself.
     pub fn means_motion(&mut self, moves: bool, pressed: f64, now: f64) -> bool {
         let means = moves || self.has_just_stopped(pressed);
         if means {
@@ -28,7 +27,7 @@ impl StopPresses {
         self.stopped.is_some_and(|stopped| pressed - stopped <= FRIGHT)
     }
 
-    /// The pointer goes down on a button that stops.
+    /// Handles a press of the pointer on a button that stops.
     pub fn goes_down(&mut self, now: f64) {
         self.pressed = Some(now);
     }
@@ -49,7 +48,7 @@ mod tests {
         assert!(!presses.means_motion(false, 9.0, 9.0), "nothing moves, and nothing has");
         assert!(presses.means_motion(true, 10.0, 10.0));
         assert!(presses.means_motion(false, 10.5, 10.5), "half a second later");
-        // It counts from the last of them.
+        // The time counts from the last of them.
         assert!(presses.means_motion(false, 11.0, 11.0));
         assert!(!presses.means_motion(false, 11.75, 11.75));
     }
@@ -59,7 +58,7 @@ mod tests {
         let mut presses = StopPresses::default();
         presses.means_motion(true, 10.0, 10.0);
         presses.goes_down(10.25);
-        // Let go long after.
+        // Released long after.
         let pressed = presses.pressed_at(true, 12.0);
         assert_eq!(pressed, 10.25);
         assert!(presses.means_motion(false, pressed, 12.0));

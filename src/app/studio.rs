@@ -1,4 +1,4 @@
-//! All that the window knows, and what it can do. It is complete without a window: a test sends actions and reads state.
+//! The complete state of the window, and its actions. It needs no window: a test sends actions and reads the state.
 
 use std::path::{Path, PathBuf};
 
@@ -23,13 +23,13 @@ use crate::link::LinkUrl;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SessionId(pub(crate) u32);
 
-/// All state of the window.
+/// Complete state of the window.
 pub struct Studio {
     /// The settings that are kept between starts.
     pub settings: Settings,
-    /// The connection dialog, when it is open.
+    /// The open connection dialog.
     pub connect: Option<Connect>,
-    /// A question that has to be answered.
+    /// A question that must be answered.
     pub question: Option<Question>,
     /// A profile that others have changed in its file since it was opened.
     pub diverged: Option<Diverged>,
@@ -47,7 +47,7 @@ pub struct Studio {
 }
 
 impl Studio {
-    /// A studio with what it remembers; `wake` is called when there is something to look at.
+    /// Creates a studio with its stored settings; `wake` is called when there are new events.
     pub fn new(world: Environment, wake: Wake) -> Self {
         let mut services = Services::new(world, wake);
         let kinds = services.world.kinds;
@@ -154,7 +154,7 @@ impl Studio {
         self.write_if_changed();
     }
 
-    /// Looks what has happened since the last time: called for every picture.
+    /// Takes in all events since the last call: called in every frame.
     pub fn poll(&mut self) {
         while let Some(action) = self.services.tasks.next() {
             self.act(action);
@@ -189,22 +189,22 @@ impl Studio {
         self.services.tasks.mailbox()
     }
 
-    /// The file that the user is to be asked for, once.
+    /// Returns the file that the user is to be asked for, once.
     pub fn take_file_question(&mut self) -> Option<FileQuestion> {
         self.services.file_question.take()
     }
 
-    /// The file whose path the user is to type, once.
+    /// Takes the question for a file whose path the user must type.
     pub fn take_path_question(&mut self) -> Option<FileQuestion> {
         self.path_question.take()
     }
 
-    /// Profiles that are being read from the disk.
+    /// Returns the profiles that are being read from the disk.
     pub fn opening_files(&self) -> &[PathBuf] {
         &self.services.opening_files
     }
 
-    /// All devices, in the order in which they came.
+    /// Returns all devices, in the order of opening.
     pub fn devices(&self) -> &[Box<AnyDevice>] {
         &self.devices
     }
@@ -214,29 +214,29 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).find(|device| device.id() == id)
     }
 
-    /// The device that the open tab shows; where that shows none, the one that was shown last.
+    /// Returns the device that the open tab shows; if it shows none, the one shown last.
     pub fn selected_device(&self) -> Option<&AnyDevice> {
         let tab = self.settings.tab;
         let id = if self.is_tool(tab) { self.shown.last() } else { self.shown.of(tab) };
         self.device(id?)
     }
 
-    /// The device of that type which its tab shows.
+    /// Returns the device of that type shown by its tab.
     pub fn selected_model<M: DeviceType>(&self) -> Option<&M> {
         self.device(self.shown.of(M::TAB)?)?.get()
     }
 
-    /// A tab that needs no device.
+    /// Returns whether the tab needs no device.
     fn is_tool(&self, tab: Tab) -> bool {
         self.tools.iter().any(|(own, _)| *own == tab)
     }
 
-    /// The virtual device of a tab; `None` of a tool.
+    /// Returns the virtual device of a tab; `None` for a tool.
     fn virtual_link(&self, tab: Tab) -> Option<LinkUrl> {
         Some(self.services.world.kinds.of_tab(tab)?.virtual_link())
     }
 
-    /// Shows a tab. A kind whose profiles begin here needs no device: where there is none, a profile to begin with.
+    /// Shows a tab. If its kind creates profiles without a device and none is open, a new profile is created.
     fn show_tab(&mut self, tab: Tab) {
         self.settings.tab = tab;
         if self.shown.of(tab).is_none() {
@@ -244,7 +244,7 @@ impl Studio {
         }
     }
 
-    /// A profile that is in no file yet, where the kind has such.
+    /// Creates a profile that is in no file yet, if the kind supports that.
     fn new_profile(&mut self, tab: Tab) {
         let Some(kind) = self.services.world.kinds.of_tab(tab) else { return };
         let taken: Vec<PathBuf> = self.devices.iter().filter_map(|device| device.source().suggested()).collect();
@@ -256,7 +256,7 @@ impl Studio {
         }
     }
 
-    /// Sine and cosine of a device that is shown in its own tab.
+    /// Returns sine and cosine of a device that is shown in its own tab.
     pub fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         let kinds = self.services.world.kinds.devices().iter();
         kinds.into_iter().find_map(|kind| self.device(self.shown.of(kind.tab())?)?.sine_cosine())
@@ -279,7 +279,7 @@ impl Studio {
         self.devices.iter().map(Box::as_ref).any(device) || self.searches() || self.can_stop_tools()
     }
 
-    /// Live values come in: the picture has to be drawn again and again.
+    /// Returns whether live values arrive: the window must be redrawn continuously.
     pub fn is_live(&self) -> bool {
         self.devices.iter().any(|device| device.is_polling()) || self.is_in_control()
     }
@@ -335,7 +335,7 @@ impl Studio {
             Done::TableWritten(owner, exported) => self.table_written(owner, exported),
             Done::PictureSaved(path, result) => self.picture_saved(&path, result),
             Done::ReportSaved(path, result) => self.report_saved(&path, result),
-            // That was to be looked at.
+            // It has been handled by polling.
             Done::Left => {}
             Done::Written { saving, file, result } => self.with_device(saving.session, |device, services| {
                 device.written(*saving, file, result, services);
@@ -380,7 +380,7 @@ impl Studio {
         if self.decline() || self.diverged.take().is_some() || self.close_comparison() {
             return;
         }
-        // Watching is no work: drives stay visible while a dialog closes, or while they are under control.
+        // Polling is no work: drives stay visible while a dialog closes, or while they are under control.
         if self.works() {
             self.stop();
             return;

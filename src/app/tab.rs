@@ -7,12 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use serde::de::{EnumAccess, Error, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A tab of the window: of a kind of device, or a tool that needs none. It is known by the name that stands in the settings.
+/// Tab of the window: of a kind of device, or of a tool that needs none. It is identified by its name in the settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Tab(&'static str);
 
 impl Tab {
-    /// The tab of that name. The name is written into people's settings: it never changes.
+    /// Creates the tab of that name. The name is written to users' settings: it never changes.
     pub const fn named(name: &'static str) -> Self {
         Tab(name)
     }
@@ -23,7 +23,7 @@ impl Tab {
     }
 }
 
-/// Stands for the first tab, in settings that name none.
+/// The first tab, for settings that name none.
 impl Default for Tab {
     fn default() -> Self {
         Tab("First")
@@ -79,8 +79,8 @@ impl<'de> Deserialize<'de> for Name {
     }
 }
 
-/// Interns a name that was read from settings, including tabs that this program does not have: another version keeps
-/// using their links. Each name is kept once for the life of the process.
+/// Interns a name that was read from settings, including tabs that this program does not have: another version continues to
+/// use their links. Each name is kept once for the life of the process.
 fn intern(name: String) -> &'static str {
     static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);

@@ -7,10 +7,10 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use super::Action;
 
-/// Wakes the window: something is to be looked at.
+/// Wakes the window: there are new events.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Threads that come back as actions.
+/// Threads whose results are actions.
 pub struct Tasks {
     sender: Sender<Action>,
     receiver: Receiver<Action>,
@@ -27,12 +27,12 @@ pub struct Mailbox {
 impl Tasks {
     /// Creates an empty list of tasks.
     pub(crate) fn new(wake: Wake) -> Self {
-        // Unbounded: each thread sends once, and there are as many as a person's clicks.
+        // Unbounded: each thread sends once, and there are as many as the user's clicks.
         let (sender, receiver) = unbounded();
         Tasks { sender, receiver, wake }
     }
 
-    /// Runs something on a thread; what it gives comes back as an action.
+    /// Runs a task on a thread; its result is returned as an action.
     pub(crate) fn run(&self, name: &str, task: impl FnOnce() -> Action + Send + 'static) {
         let mailbox = self.mailbox();
         let spawned = thread::Builder::new().name(name.to_owned()).spawn(move || mailbox.send(task()));
@@ -51,7 +51,7 @@ impl Tasks {
         self.wake.clone()
     }
 
-    /// The next thing that is done.
+    /// Returns the next thing that is done.
     pub(crate) fn next(&self) -> Option<Action> {
         self.receiver.try_recv().ok()
     }
@@ -60,7 +60,7 @@ impl Tasks {
 impl Mailbox {
     /// Hands an action over and wakes the window.
     pub fn send(&self, action: Action) {
-        // The studio is gone: no one waits for the action.
+        // The studio has ended: the action is not needed.
         let _ = self.sender.send(action);
         self.wake();
     }

@@ -1,5 +1,5 @@
-//! Texts in English and German from catalogues (`assets/texts`): a common one, and one of each device, of the adapter and
-//! of Signals. A text carries the catalogue that it stands in.
+//! Texts in English and German from catalogues (`assets/texts`): a common one, and one for each device, the adapter and
+//! Signals. A text knows its catalogue.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,7 +15,7 @@ pub enum Language {
     German,
 }
 
-/// A text of a catalogue with its arguments: what is said, before it is known in which language.
+/// Text of a catalogue with its arguments, independent of the language.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Text {
     catalogue: &'static Catalogue,
@@ -26,7 +26,7 @@ pub struct Text {
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Argument {
     Words(String),
-    /// As English writes it, with a point.
+    /// In English format, with a decimal point.
     Number(String),
     /// In English and in German.
     Name(String, String),
@@ -60,7 +60,7 @@ pub static COMMON: Catalogue = Catalogue::new(include_str!("../../assets/texts/c
 struct Row {
     en: String,
     de: String,
-    /// English for the command line; empty where it is that of the window.
+    /// English for the command line; empty if it is the same as for the window.
     #[serde(default)]
     terminal: String,
 }
@@ -73,7 +73,7 @@ enum Output {
 }
 
 impl Text {
-    /// The common text of that name.
+    /// Creates the common text of that name.
     pub fn new(id: &'static str) -> Self {
         COMMON.text(id)
     }
@@ -129,7 +129,7 @@ impl Text {
         self.arguments.iter().any(is_it)
     }
 
-    /// The text's name in its catalogue.
+    /// Returns the text's id in its catalogue.
     pub fn id(&self) -> &'static str {
         self.id
     }
@@ -139,7 +139,7 @@ impl Text {
         self.text_for(Output::Window(language))
     }
 
-    /// The words on the command line, which always speaks English, with hints for its users.
+    /// Returns the text for the command line, which is always English, with hints for its users.
     pub fn terminal(&self) -> String {
         self.text_for(Output::Terminal)
     }
@@ -151,7 +151,7 @@ impl Text {
             Output::Terminal if !row.terminal.is_empty() => &row.terminal,
             Output::Window(Language::English) | Output::Terminal => &row.en,
         };
-        // One pass over the template: an argument may contain braces of its own.
+        // One pass over the template: an argument may itself contain braces.
         let mut words = String::new();
         let mut rest = template.as_str();
         while let Some((before, after)) = rest.split_once('{') {
@@ -168,12 +168,12 @@ impl Text {
     }
 }
 
-/// A number in digits with the language's decimal sign.
+/// Returns a number in digits with the language's decimal sign.
 pub(crate) fn signed(number: &str, language: Language) -> String {
     Argument::Number(number.to_owned()).text_for(Output::Window(language))
 }
 
-/// A number of so many decimals with the language's decimal sign.
+/// Returns a number of this many decimals with the language's decimal sign.
 pub fn decimal(value: f64, decimals: usize, language: Language) -> String {
     Argument::Number(format!("{value:.decimals$}")).text_for(Output::Window(language))
 }
@@ -185,21 +185,21 @@ impl From<&'static str> for Text {
 }
 
 impl Catalogue {
-    /// The catalogue that this RON is.
+    /// Creates the catalogue from RON.
     pub const fn new(source: &'static str) -> Self {
         Catalogue { source, rows: OnceLock::new() }
     }
 
-    /// The text of that name: of this catalogue, or else of the common one.
+    /// Returns the text of that id: from this catalogue, or else from the common one.
     pub fn text(&'static self, id: &'static str) -> Text {
         let is_own = *self != COMMON && self.rows().contains_key(id);
         let catalogue = if is_own { self } else { &COMMON };
-        // The tests find a name that stands nowhere; the window would show it instead of words.
+        // The tests find an unknown id; the window would show it instead of a text.
         debug_assert!(catalogue.rows().contains_key(id), "no text {id}");
         Text { catalogue, id, arguments: Vec::new() }
     }
 
-    /// The text that stands by a number of a table, such as `hd_parameter.158`.
+    /// Returns the text of a number of a table, such as `hd_parameter.158`.
     pub(crate) fn numbered(&'static self, area: &str, number: u16) -> Option<Text> {
         let (id, _) = self.rows().get_key_value(&format!("{area}.{number}"))?;
         Some(Text { catalogue: self, id, arguments: Vec::new() })
@@ -210,13 +210,13 @@ impl Catalogue {
         self.rows().keys().map(String::as_str)
     }
 
-    /// The RON.
+    /// Returns the RON.
     pub fn source(&self) -> &'static str {
         self.source
     }
 
     fn rows(&self) -> &BTreeMap<String, Row> {
-        // That it parses is tested; otherwise every text would show its own name.
+        // A test checks that it parses; otherwise every text would show its own id.
         self.rows.get_or_init(|| ron::from_str(self.source).unwrap_or_default())
     }
 }
@@ -247,7 +247,7 @@ mod tests {
         places
     }
 
-    /// The files of texts by their names.
+    /// Returns the files of texts by their names.
     fn catalogues() -> BTreeMap<String, String> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/texts");
         let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());

@@ -1,5 +1,5 @@
-//! The look of the window as data (`assets/theme.ron`): colours by what they mean, sizes, distances. Drawing takes them
-//! from here; this module draws nothing.
+//! The appearance of the window as data (`assets/theme.ron`): colours by meaning, sizes, distances. Drawing reads them from
+//! here; this module draws nothing.
 
 use std::sync::LazyLock;
 
@@ -16,7 +16,7 @@ pub struct Rgb(pub [u8; 3]);
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextSizes {
-    /// Beside and below things.
+    /// Captions beside and below widgets.
     pub caption: f32,
     /// Text.
     pub body: f32,
@@ -42,7 +42,7 @@ pub struct Spaces {
     pub around: f32,
 }
 
-/// Colours by what they mean.
+/// Colours by meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Palette {
@@ -76,7 +76,7 @@ pub struct Palette {
     pub series: [Rgb; 8],
 }
 
-/// The whole look.
+/// The whole theme.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ThemeData {
@@ -96,15 +96,15 @@ impl ThemeData {
     /// The table's source.
     pub const SOURCE: &'static str = include_str!("../../assets/theme.ron");
 
-    /// The look that ships with the program.
+    /// Returns the built-in theme.
     ///
     /// # Errors
-    /// What is wrong with the table: a defect of the build, which a test keeps from shipping.
+    /// What is wrong with the table: a defect of the build, which a test prevents.
     pub fn built_in() -> Result<&'static ThemeData, &'static str> {
         BUILT_IN.as_ref().map_err(String::as_str)
     }
 
-    /// The colours of a theme.
+    /// Returns the colours of a theme.
     pub fn palette(&self, theme: ColorScheme) -> &Palette {
         match theme {
             ColorScheme::Dark => &self.dark,
@@ -126,7 +126,7 @@ impl TryFrom<String> for Rgb {
 }
 
 impl Rgb {
-    /// Contrast against another colour, 1 to 21, as WCAG 2 defines it.
+    /// Returns the contrast against another colour, 1 to 21, as WCAG 2 defines it.
     pub fn contrast(self, other: Rgb) -> f64 {
         let (a, b) = (self.luminance(), other.luminance());
         (a.max(b) + 0.05) / (a.min(b) + 0.05)

@@ -1,4 +1,4 @@
-//! A tab that needs no device. The studio knows no tool: it asks all of them alike.
+//! A tab that needs no device. The studio knows no particular tool: it treats all of them alike.
 
 #![warn(missing_docs)]
 
@@ -30,16 +30,16 @@ pub trait Tool: Any {
     /// Carries out an action.
     ///
     /// # Errors
-    /// The action is for something else.
+    /// The action is for another tool.
     fn act(&mut self, action: Payload, context: &mut ToolContext<'_>) -> Result<(), WrongKind>;
 
     /// Handles the result of a task.
     ///
     /// # Errors
-    /// It is of something else.
+    /// The result is of another tool.
     fn done(&mut self, done: Payload, services: &mut Services) -> Result<(), WrongKind>;
 
-    /// Looks what has happened since the last time.
+    /// Takes in all events since the last call.
     fn pump(&mut self, services: &mut Services);
 
     /// Returns whether there is something to stop.
@@ -48,13 +48,13 @@ pub trait Tool: Any {
     /// Stops all that runs.
     fn stop(&mut self, services: &mut Services);
 
-    /// Returns what it has recorded.
+    /// Returns its recorder.
     fn recorder(&self) -> &Recorder;
 
-    /// Returns what it has recorded, to be changed.
+    /// Returns its recorder, to be changed.
     fn recorder_mut(&mut self) -> &mut Recorder;
 
-    /// Takes what a device has read at rest.
+    /// Takes a device's reading at rest.
     fn follow(&mut self, source: &mut dyn SineCosineSource);
 
     /// Gives up a wire that is needed elsewhere.
@@ -81,13 +81,13 @@ impl Action {
 }
 
 impl dyn Tool {
-    /// Returns the tool as what it is; `None` where it is another one.
+    /// Returns the tool as its type; `None` if it is another one.
     pub fn get<T: Any>(&self) -> Option<&T> {
         (self as &dyn Any).downcast_ref()
     }
 }
 
-/// The context of a tool: what it may use besides itself.
+/// Resources that a tool may use.
 pub struct ToolContext<'a> {
     tab: Tab,
     studio: &'a mut Studio,
@@ -99,11 +99,11 @@ impl ToolContext<'_> {
         &mut self.studio.services
     }
 
-    /// Lets go of the session on this wire, unless it writes: `why` is told there. The channel, where there is one, closes
-    /// when the wire is free.
+    /// Releases the session on this connection, unless it writes: `why` is reported there. The channel, if any, closes when
+    /// the connection is free.
     ///
     /// # Errors
-    /// The session writes: which one.
+    /// The session that writes.
     pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         self.studio.free_wire(url, why)
     }
@@ -131,7 +131,7 @@ impl Studio {
         }
     }
 
-    /// A task of a tool has come back.
+    /// Handles the result of a task of a tool.
     pub(super) fn tool_done(&mut self, tab: Tab, done: Payload) {
         let tool = self.tools.iter_mut().find(|(own, _)| *own == tab);
         if tool.is_none_or(|(_, tool)| tool.done(done, &mut self.services).is_err()) {
@@ -139,7 +139,7 @@ impl Studio {
         }
     }
 
-    /// Opens a file in the tool that takes such files; the path is given back where there is none.
+    /// Opens a file in the tool that takes such files; returns the path if there is none.
     pub(super) fn open_in_tool(&mut self, path: PathBuf) -> Result<(), PathBuf> {
         let Some((tab, tool)) = self.tools.iter_mut().find(|(_, tool)| tool.takes(&path)) else { return Err(path) };
         self.settings.tab = *tab;
@@ -147,8 +147,8 @@ impl Studio {
         Ok(())
     }
 
-    /// Opens a capture that was asked for: in the open tab where that is a tool, else in the first one. Another tab may be open by
-    /// now, and stays so.
+    /// Opens a requested capture: in the open tab if that is a tool, else in the first tool. If another tab is open by now,
+    /// it stays open.
     pub(super) fn open_capture(&mut self, path: PathBuf) {
         let tab = self.settings.tab;
         let at = self.tools.iter().position(|(own, _)| *own == tab).unwrap_or_default();

@@ -8,7 +8,7 @@ use super::{Language, Text};
 use crate::link::{Direction, TraceEntry};
 use crate::units::Moment;
 
-/// A frame with its meaning.
+/// Frame with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceLine {
     /// When its first byte was sent or received, on the session's clock.
@@ -26,21 +26,21 @@ pub struct TraceLine {
 pub enum TraceFault {
     /// The device reports an error or a warning.
     Reported,
-    /// It is no frame, or no reply to the request before it.
+    /// It is not a frame, or not a reply to the request before it.
     Broken,
 }
 
 /// The meaning of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Explained {
-    /// In words.
+    /// The meaning as text.
     pub meaning: Vec<Text>,
     /// The fault, if any.
     pub fault: Option<TraceFault>,
 }
 
 impl Explained {
-    /// A frame that is broken, and why.
+    /// Creates a frame that is broken, and why.
     pub fn broken(why: Text) -> Self {
         Explained { meaning: vec![why], fault: Some(TraceFault::Broken) }
     }
@@ -70,7 +70,7 @@ pub struct TraceLog {
 impl TraceLog {
     const CAPACITY: usize = 5_000;
 
-    /// Adds frames with their meanings. `dropped` came too fast to be shown.
+    /// Adds frames with their meanings. `dropped` arrived too fast to be shown.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, Explained { meaning, fault }) in entries {
@@ -81,22 +81,22 @@ impl TraceLog {
         self.lines.drain(..surplus);
     }
 
-    /// Frames, the oldest first.
+    /// Returns the frames, the oldest first.
     pub fn lines(&self) -> &VecDeque<TraceLine> {
         &self.lines
     }
 
-    /// Frames that came too fast to be shown.
+    /// Returns the number of frames that arrived too fast to be shown.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// The time of day of a frame.
+    /// Returns the time of day of a frame.
     pub fn time_of(&self, line: &TraceLine) -> Option<Zoned> {
         self.began.as_ref()?.checked_add(line.at.since_start()).ok()
     }
 
-    /// A session begins, whose clock began then.
+    /// Begins a session, whose clock started then.
     pub(super) fn begin(&mut self, began: Zoned) {
         *self = TraceLog { began: Some(began), ..TraceLog::default() };
     }

@@ -1,5 +1,5 @@
-//! The recording of a device while it is read: unwrapped position, speed and acceleration, and watched values. It knows
-//! no device: the kind supplies the meaning of positions and values.
+//! The recording of a device while it is read: unwrapped position, speed and acceleration, and watched values. Independent
+//! of the kind of device, which supplies the meaning of positions and values.
 
 use std::time::Duration;
 
@@ -20,12 +20,12 @@ use follower::Follower;
 pub use meaning::Meaning;
 pub use watchable::{Watchable, Watching};
 
-/// Positions that are kept: more than a day at the fastest rate of a serial line.
+/// Maximum number of positions: more than a day at the fastest rate of a serial line.
 const CAPACITY: usize = 4_000_000;
 /// Nanoseconds between positions beyond which they are not joined at any rate: a line would show a motion that was not
 /// observed.
 const APART: i64 = 5_000_000_000;
-/// Nanoseconds that a position may be late besides four intervals: a lost reply that was requested again.
+/// Additional nanoseconds, besides four intervals, by which a position may be late: a lost reply that was requested again.
 const LATE: i64 = 400_000_000;
 /// Likewise between watched values, which come more slowly.
 const WATCHED_APART: i64 = APART;
@@ -34,23 +34,23 @@ const WATCHED: usize = 500_000;
 /// Nanoseconds that are shown to begin with.
 const SPAN: i64 = 30_000_000_000;
 
-/// Columns of positions: themselves, speed, acceleration.
+/// Columns of positions: position, speed, acceleration.
 const COLUMNS: [Kind; 3] = [Kind::Whole, Kind::Real, Kind::Real];
 
 /// A position, or that there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionSample {
-    /// When.
+    /// Time of the sample.
     pub at: Moment,
-    /// Steps, within the range; `None`: the device has none to give.
+    /// Steps, within the range; `None`: the device has none.
     pub position: Option<i64>,
-    /// The device says that it is invalid.
+    /// The device reports it as invalid.
     pub is_bad: bool,
     /// The device warned with it.
     pub is_warned: bool,
 }
 
-/// The recorder of a device, and what is needed to fill it; `W` is what can be watched.
+/// Recorder of a device, with the state for filling it; `W` is the type of values that can be watched.
 #[derive(Debug)]
 pub struct Track<W> {
     /// Position, speed and acceleration as lines.
@@ -62,23 +62,23 @@ pub struct Track<W> {
     /// The meaning of positions; `None` until the first.
     follower: Option<Follower>,
     dropped: u64,
-    /// When the clock of the first session began, and how much later that of the present one did.
+    /// When the clock of the first session started, and how much later that of the present one did.
     began: Option<Zoned>,
     shift: i64,
     newest: Option<Time>,
-    /// The position that came last, as it came.
+    /// The last position as received.
     last: i64,
     /// Nanoseconds between two positions from which they are not joined.
     apart: i64,
 }
 
-/// A watched value and where it is recorded.
+/// Watched value and its line.
 #[derive(Clone, Debug)]
 struct Watched<W> {
     value: W,
     group: GroupId,
     line: LineId,
-    /// It is recorded; else it was, and its samples are there still.
+    /// It is being recorded; otherwise it was, and its samples remain.
     active: bool,
 }
 
@@ -100,7 +100,7 @@ impl<W: Watchable> Recording for Track<W> {
     }
 }
 
-/// Positions on their way into the recorder.
+/// Positions to be recorded.
 #[derive(Debug, Default)]
 struct Columns {
     times: Vec<Time>,
@@ -128,7 +128,7 @@ impl<W: Watchable> Default for Track<W> {
 }
 
 impl<W: Watchable> Track<W> {
-    /// A recorder for positions that have this meaning.
+    /// Creates a recorder for positions that have this meaning.
     fn about(meaning: &Meaning) -> Self {
         let mut recorder = Recorder::new(SPAN);
         let positions = recorder.add_group(&COLUMNS, CAPACITY, Some(APART));
@@ -148,11 +148,11 @@ impl<W: Watchable> Track<W> {
         }
     }
 
-    /// A session has begun. What was recorded before stays: its samples are earlier by as much as the clocks say.
+    /// Begins a session. Earlier recordings stay, earlier by the difference of the clocks.
     pub fn begin(&mut self, began: &Zoned) {
         let since = self.began.get_or_insert_with(|| began.clone()).duration_until(began);
         let later = i64::try_from(since.as_nanos()).unwrap_or(0);
-        // A clock of the wall may be set back.
+        // The wall clock may be set back.
         let behind = self.newest.map_or(0, |newest| newest.nanoseconds().saturating_add(1));
         self.shift = later.max(behind);
         self.gap();
@@ -163,7 +163,7 @@ impl<W: Watchable> Track<W> {
         self.follower.as_ref().map(|own| &own.meaning)
     }
 
-    /// Positions are wished at this interval from now on; when that begins, what was before is not joined to what comes.
+    /// Sets the interval of polling; when polling begins, earlier positions are not joined to later ones.
     pub fn poll(&mut self, interval: Option<Duration>, begins: bool) {
         let interval = interval.and_then(|interval| i64::try_from(interval.as_nanos()).ok());
         self.apart = interval.map_or(APART, |interval| interval.saturating_mul(4).saturating_add(LATE).min(APART));
@@ -200,12 +200,12 @@ impl<W: Watchable> Track<W> {
     fn sight(&mut self, sighting: &PositionSample, columns: &mut Columns) {
         let time = Time::from(sighting.at).plus(self.shift);
         if self.newest.is_some_and(|newest| time < newest) {
-            // Read on its own between two samples that are recorded already.
+            // A single reading between two samples that are already recorded.
             return;
         }
         self.newest = Some(time);
         let Some(word) = sighting.position else {
-            // A damaged frame: when the positions on both sides were taken is known.
+            // A damaged frame: the times of the positions on both sides are known.
             if let Some(follower) = &mut self.follower {
                 follower.miss();
             }
@@ -227,7 +227,7 @@ impl<W: Watchable> Track<W> {
         columns.push(time, next.steps, rates, flags);
     }
 
-    /// Records these values too, and no others beside the position. What was recorded of others stays.
+    /// Records these values, and no others, in addition to the position. Recordings of others stay.
     pub fn watch(&mut self, watched: &[W]) {
         let mut kept = Vec::new();
         for mut own in std::mem::take(&mut self.watched) {
@@ -241,7 +241,7 @@ impl<W: Watchable> Track<W> {
                 self.recorder.remove_line(own.line);
             }
         }
-        // A recording that was cleared has no lines that have ended.
+        // A recording that was cleared has no ended lines.
         kept.retain(|own| self.recorder.line(own.line).is_some());
         self.watched = kept;
         watched.iter().for_each(|what| self.begin_to_watch(what));
@@ -287,24 +287,23 @@ impl<W: Watchable> Track<W> {
             None => ([0], [f64::NAN]),
         };
         let part = if what.is_whole() { Part::whole(&whole) } else { Part::real(&real) };
-        // Each kind of value comes in the order of time; the clock of a later session begins behind the last position.
+        // Each kind of value arrives in the order of time; the clock of a later session starts after the last position.
         let _ = self.recorder.append(group, &[time], &[part.flagged(&flags)]);
     }
 
-    /// Samples that came too fast to be recorded.
+    /// Returns the number of samples that arrived too fast to be recorded.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// Positions that are recorded.
+    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         let [line, ..] = self.lines;
         let all = self.recorder.line(line).and_then(|line| self.recorder.history(line)).map(|history| history.all());
         all.map_or(0, |all| all.end - all.start)
     }
 
-    /// Forgets the recording of the previous device, unless minutes of it are not exported. Watched values stay
-    /// watched.
+    /// Forgets the recording of the previous device, unless minutes of it are not exported. Watched values stay watched.
     pub fn forget(&mut self) {
         let watched = self.watched();
         if self.recorder.unsaved() >= MUCH {
@@ -319,7 +318,7 @@ impl<W: Watchable> Track<W> {
         self.watch(&watched);
     }
 
-    /// Decodes the recording again, as far as its words are kept; times do not change. If not all of it is kept, the
+    /// Decodes the recording again, as far as its words are stored; times do not change. If not all words are stored, the
     /// old recording stays too.
     pub fn begin_again(&mut self, kept: usize) {
         if usize::try_from(self.positions()).is_ok_and(|own| own > kept) {
@@ -332,7 +331,7 @@ impl<W: Watchable> Track<W> {
         self.recorder.act(recorder::RecorderAction::SetSpan(span));
     }
 
-    /// Positions mean this from now on. What was recorded with another meaning stays as it was, in lines that end here.
+    /// Sets the meaning of later positions. Recordings with another meaning stay unchanged, in lines that end here.
     fn see(&mut self, meaning: &Meaning) {
         if let Some(own) = self.follower.as_mut().filter(|own| own.meaning.is_same_place(meaning)) {
             if own.meaning != *meaning {
@@ -369,7 +368,7 @@ impl<W: Watchable> Track<W> {
         self.recorder.end_line(line, name, heading);
     }
 
-    /// The name of a line that ends now, and its heading.
+    /// Returns the name of a line that ends now, and its heading.
     fn name_of_ended(&self, line: LineId) -> (Text, String) {
         let newest = self.newest.map_or(0, Time::nanoseconds);
         let until = self.began.as_ref().and_then(|own| own.checked_add(SignedDuration::from_nanos(newest)).ok());
@@ -382,7 +381,7 @@ impl<W: Watchable> Track<W> {
         (Text::new("recorder.until").with_text("name", name).with("time", &until), format!("{heading} until {until}"))
     }
 
-    /// Samples are missing before those that come next.
+    /// Notes that samples are missing before the next ones.
     pub fn gap(&mut self) {
         self.recorder.break_all();
         self.lose_track();

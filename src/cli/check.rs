@@ -1,4 +1,4 @@
-//! `do DEVICE check`: the lines of a device check, printed.
+//! Output of `do DEVICE check`: the lines of a device check.
 
 use serde_json::{Value as Json, json};
 
@@ -9,12 +9,12 @@ use crate::app::Text;
 use crate::app::check::{CheckLine, verdict};
 use crate::link::LineQuality;
 
-/// Prints the lines; one that is bad makes the command fail.
+/// Prints the lines; a bad line makes the command fail.
 pub(crate) fn show(output: &Output, lines: &[CheckLine]) -> Result {
     show_with(output, lines, None)
 }
 
-/// The same, with how good the line was, where that was counted.
+/// Prints the lines like `show`, with the quality of the line where it was counted.
 pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&LineQuality>) -> Result {
     let good = lines.iter().all(|line| line.verdict != Verdict::Bad);
     let findings = |line: &CheckLine| line.findings.iter().map(Text::terminal).collect::<Vec<_>>();
@@ -24,7 +24,7 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
         let (step, word) = (line.step.terminal(), word(line.verdict));
         let verdict = verdict(line.verdict).terminal();
         let found = findings(line);
-        // A sentence ends with the line, and not in the middle of it.
+        // A sentence ends with the line, not in the middle of it.
         let found: Vec<&str> = found.iter().map(|words| words.trim_end_matches('.')).collect();
         let found = found.join("; ");
         text.add(&step, format!("{verdict:9}  {found}").trim_end());
@@ -39,7 +39,7 @@ pub(crate) fn show_with(output: &Output, lines: &[CheckLine], quality: Option<&L
     if good { Ok(Done::Well) } else { Err(Failure::Failed(vec!["The check found the faults named above.".to_owned()])) }
 }
 
-/// The word for a verdict that scripts rely on.
+/// Returns the word for a verdict that scripts rely on.
 fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Skipped => "skipped",

@@ -1,5 +1,5 @@
-//! The commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list as a value; no
-//! device is named here.
+//! Commands that devices, buses and Signals add to the command line. `kinds.rs` supplies the list as a value; no device is
+//! named here.
 
 #![warn(missing_docs)]
 
@@ -18,9 +18,9 @@ use crate::profile::Body;
 pub enum CommandId {
     /// Looks for devices.
     Find,
-    /// Says which device answers.
+    /// Determines which device answers.
     Identify,
-    /// Says what the device reports of itself.
+    /// Prints what the device reports about itself.
     Status,
     /// Reads the position.
     Position,
@@ -36,7 +36,7 @@ pub enum CommandId {
     Restore,
     /// Writes values.
     Write,
-    /// Does something else with the device.
+    /// Runs another action of the device.
     Do,
     /// Explains captured bytes.
     Decode,
@@ -81,9 +81,9 @@ impl CommandId {
     }
 }
 
-/// A kind of device on the command line. A command that it does not have is refused as wrong usage.
+/// A kind of device on the command line. A command that the kind does not have is refused as wrong usage.
 pub trait DeviceCommands: Sync {
-    /// The kind as it is written on the command line and in profiles.
+    /// Returns the kind as written on the command line and in profiles.
     fn name(&self) -> &'static str;
 
     /// Returns one sentence about the kind, for the help.
@@ -99,35 +99,36 @@ pub trait DeviceCommands: Sync {
         None
     }
 
-    /// Options that the kind adds to a command. An option that several kinds add is the same option.
+    /// Returns the options that the kind adds to a command. An option that several kinds add is the same option.
     fn options(&self, _command: CommandId) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Options that the kind adds to every command and to the window. An option that several kinds add is the same option.
+    /// Returns the options that the kind adds to every command and to the window. An option that several kinds add is the
+    /// same option.
     fn common_options(&self) -> Vec<Arg> {
         Vec::new()
     }
 
-    /// Adds what those options give to the kind, and what the environment does in their place.
+    /// Adds the values of those options for the kind, and the values from the environment that replace them.
     ///
     /// # Errors
-    /// One of them means nothing.
+    /// One of them is invalid.
     fn given(&self, _options: &OwnOptions, given: Given) -> Result<Given> {
         Ok(given)
     }
 
-    /// The actions of `do`, with their help. An action that several kinds have is the same word.
+    /// Returns the actions of `do`, with their help. An action that several kinds have is the same word.
     fn actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
-    /// The actions of `do` that run several others: they are listed behind those.
+    /// Returns the actions of `do` that run several others: they are listed after those.
     fn combined_actions(&self) -> Vec<PossibleValue> {
         Vec::new()
     }
 
-    /// Options of `simulate` that stand for `--set` of the same name.
+    /// Returns the options of `simulate` that are short for `--set` of the same name.
     fn setting_options(&self) -> Vec<Arg> {
         Vec::new()
     }
@@ -147,8 +148,8 @@ pub trait DeviceCommands: Sync {
         false
     }
 
-    /// Runs a command that names this kind: find, identify, status, position, read, save, write, do, decode. `None` where it
-    /// does not have that.
+    /// Runs a command that names this kind: find, identify, status, position, read, save, write, do, decode. Returns `None`
+    /// if the kind does not have the command.
     fn run(&self, common: &Common, output: &Output, command: &Command) -> Option<Result>;
 
     /// Writes a profile into the device, after a review and consent.
@@ -157,7 +158,7 @@ pub trait DeviceCommands: Sync {
     /// Builds the virtual device that is to be served.
     fn simulated(&self, output: &Output, simulate: &Simulate) -> Result<Box<dyn Simulated>>;
 
-    /// Reads the device for a comparison: all of it, or at least what a profile says something about.
+    /// Reads the device for a comparison: all of it, or at least the items that the profile contains.
     fn present(&self, common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body>;
 
     /// Returns a remark about a profile that applies to every use of it.
@@ -171,16 +172,16 @@ pub trait DeviceCommands: Sync {
     }
 }
 
-/// A command that a kind of device, or a part of the program beside the devices, has for itself.
+/// A command that belongs to one kind of device, or to another part of the program.
 pub trait OwnCommand: Sync {
     /// Returns the name, options and help.
     fn command(&self) -> clap::Command;
 
-    /// Runs it with what was given.
+    /// Runs the command with its arguments.
     fn run(&self, common: &Common, output: &Output, matches: &ArgMatches) -> Result;
 }
 
-/// A protocol that several kinds of device may speak, whose captured bytes `decode` explains.
+/// A protocol that several kinds of device may use, whose captured bytes `decode` explains.
 pub trait ProtocolDecoder: Sync {
     /// Returns the word on the command line.
     fn name(&self) -> &'static str;
@@ -195,7 +196,7 @@ pub trait ProtocolDecoder: Sync {
     fn decode(&self, output: &Output, decode: &Decode) -> Result;
 }
 
-/// The parts of the command line: kinds of device, protocols beside them, and further commands.
+/// The parts of the command line: kinds of device, protocols, and further commands.
 #[derive(Clone, Copy)]
 pub struct Commands {
     devices: &'static [&'static dyn DeviceCommands],
@@ -213,7 +214,7 @@ impl Commands {
     /// The core alone.
     pub(super) const NONE: Commands = Commands::new(&[], &[], &[]);
 
-    /// These.
+    /// Creates a list of these.
     pub const fn new(
         devices: &'static [&'static dyn DeviceCommands],
         protocols: &'static [&'static dyn ProtocolDecoder],
@@ -230,7 +231,7 @@ impl Commands {
         self.protocols
     }
 
-    /// The options that kinds of device add to every command and to the window.
+    /// Returns the options that kinds of device add to every command and to the window.
     pub(super) fn common_options(self) -> impl Iterator<Item = Arg> {
         self.devices.iter().flat_map(|device| device.common_options())
     }
@@ -241,7 +242,7 @@ impl Commands {
         own.unwrap_or_else(|| format!("{option} is not for {chosen} devices"))
     }
 
-    /// An option of every command that was given, and that the chosen kind of device does not have, in words.
+    /// Returns the refusal of a given option of every command that the chosen kind of device does not have.
     pub(super) fn foreign_common_option(self, chosen: &dyn DeviceCommands, given: &OwnOptions) -> Option<String> {
         let own = chosen.common_options();
         let foreign = self.common_options().find(|option| {
@@ -250,27 +251,27 @@ impl Commands {
         Some(self.refusal(&format!("--{}", foreign.get_long().unwrap_or_default()), chosen.name()))
     }
 
-    /// The commands that are not in the core.
+    /// Returns the commands that are not in the core.
     pub(super) fn own(self) -> impl Iterator<Item = &'static dyn OwnCommand> {
         let of_devices = self.devices.iter().flat_map(|device| device.own_commands());
         of_devices.chain(self.further).copied()
     }
 
-    /// The protocol of a name.
+    /// Returns the protocol of a name.
     pub(super) fn protocol(self, name: &str) -> Option<&'static dyn ProtocolDecoder> {
         self.protocols.iter().copied().find(|protocol| protocol.name() == name)
     }
 
-    /// The kind of device of a name.
+    /// Returns the kind of device of a name.
     ///
     /// # Errors
-    /// There is none.
+    /// Returns an error if there is no such kind.
     pub fn device(self, name: &str) -> Result<&'static dyn DeviceCommands> {
         let named = self.devices.iter().copied().find(|device| device.name() == name);
         named.ok_or_else(|| Failure::Failed(vec![format!("There are no commands for {name} devices.")]))
     }
 
-    /// An option that was given to a command, and that the chosen kind of device or protocol does not have, in words.
+    /// Returns the refusal of an option given to a command that the chosen kind of device or protocol does not have.
     pub(super) fn foreign_option(self, command: CommandId, chosen: &str, given: &OwnOptions) -> Option<String> {
         let has = |device: &&&dyn DeviceCommands, id: &clap::Id| {
             device.options(command).iter().any(|option| option.get_id() == id)
@@ -290,7 +291,7 @@ impl Commands {
     }
 }
 
-/// The options that kinds of device add to a command, as they were given.
+/// The options that kinds of device add to a command, as given by the user.
 #[derive(Clone)]
 pub struct OwnOptions(ArgMatches);
 
@@ -305,28 +306,28 @@ impl OwnOptions {
         self.0.value_source(id) == Some(clap::parser::ValueSource::CommandLine)
     }
 
-    /// The text of an option that takes one.
+    /// Returns the text of an option that takes one.
     pub(super) fn text(&self, id: &str) -> Option<&String> {
         self.0.get_one(id)
     }
 }
 
-/// Reads what was given to a command.
+/// Reads the arguments of a command.
 pub(crate) fn parse<O: FromArgMatches>(matches: &ArgMatches) -> Result<O> {
     O::from_arg_matches(matches).map_err(|error| Failure::Usage(error.to_string()))
 }
 
-/// The options of a derived structure.
+/// Returns the options of a derived structure.
 pub(crate) fn options_of<O: clap::Args>() -> Vec<Arg> {
     O::augment_args(clap::Command::new("options")).get_arguments().cloned().collect()
 }
 
-/// The values of a derived enumeration.
+/// Returns the values of a derived enumeration.
 pub(crate) fn values_of<V: ValueEnum>() -> Vec<PossibleValue> {
     V::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect()
 }
 
-/// They are added when the list is known.
+/// The options are added when the list of kinds is known.
 impl clap::Args for OwnOptions {
     fn augment_args(command: clap::Command) -> clap::Command {
         command

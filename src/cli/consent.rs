@@ -1,4 +1,4 @@
-//! Consent to a write: given with --yes, or on a terminal after the plan was shown.
+//! Consent to a write: by `--yes`, or on a terminal after the plan was shown.
 
 use std::io::{IsTerminal, stderr, stdin};
 use std::path::Path;
@@ -25,8 +25,8 @@ pub(crate) fn can_ask() -> bool {
     stdin().is_terminal() && stderr().is_terminal()
 }
 
-/// Shows the plan, and what has to be agreed to beside it, and asks for each, unless the command line has consented already.
-/// Returns the plan with the consent to it.
+/// Shows the plan and the further points that need consent, and asks about each, unless the command line has already
+/// consented. Returns the plan with the consent to it.
 pub fn agreed<P: Planned>(
     output: &Output,
     consent: &Consenting,
@@ -43,7 +43,7 @@ pub fn agreed<P: Planned>(
     Ok(ApprovedPlan { prepared, consent: granted, force_wear: consent.force_wear })
 }
 
-/// Refuses a write into a worn device, or one whose write cycles are not known, before anybody is asked for consent to it.
+/// Refuses a write into a worn device, or one whose write cycles are not known, before consent is requested.
 pub fn check_wear<D>(consent: &Consenting, prepared: &impl Planned) -> Result<()>
 where
     D: Runs,
@@ -57,7 +57,7 @@ where
 /// Asks on a terminal whether an existing file may be replaced, before a device is opened. Without a terminal it is replaced,
 /// as other tools do, and [`Replaces::report`] says so.
 pub(super) fn replaces(path: &Path, force: bool) -> Result<Replaces> {
-    // A pipe or a device is written to, and keeps nothing.
+    // A pipe or a device is written to, and has no content to replace.
     let is_there = path.metadata().is_ok_and(|found| found.is_file());
     if !is_there || force {
         return Ok(Replaces { message: None });
@@ -91,7 +91,7 @@ pub(crate) fn ask(question: &str) -> bool {
     matches!(answer(question).as_str(), "y" | "Y" | "yes")
 }
 
-/// Asks the user at the terminal. A terminal that cannot be read gives an empty answer.
+/// Asks the user at the terminal. If the terminal cannot be read, the answer is empty.
 pub(crate) fn answer(question: &str) -> String {
     say(question);
     let mut answer = String::new();

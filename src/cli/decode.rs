@@ -6,19 +6,19 @@ use super::output::Output;
 use super::{Done, Failure, Result};
 use crate::bits::parse_hex;
 
-/// A captured frame and what it means.
+/// A captured frame and its meaning.
 pub(crate) struct Explained {
-    /// As it was captured, for a person.
+    /// The frame as captured, in readable form.
     pub(crate) shown: String,
-    /// As JSON carries it.
+    /// The frame as printed in JSON.
     pub(crate) compact: String,
-    /// A line each; or why it is no frame.
+    /// The meaning, one line each; or why the bytes are not a frame.
     pub(crate) meaning: std::result::Result<Vec<String>, String>,
     /// Further keys for a script.
     pub(crate) more: Map<String, Json>,
 }
 
-/// Prints what frames mean. One that is none makes the command fail after all are told.
+/// Prints the meaning of frames. An invalid frame makes the command fail after all are printed.
 pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     let mut list = Vec::new();
     let mut text = String::new();
@@ -55,7 +55,7 @@ pub(crate) fn show(output: &Output, frames: &[Explained]) -> Result {
     Err(Failure::Failed(broken))
 }
 
-/// Hex bytes: arguments of three bytes or more are frames of their own; shorter ones together are one frame.
+/// Parses hex bytes: arguments of three bytes or more are separate frames; shorter ones together are one frame.
 pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     let parts: Vec<Vec<u8>> = words.iter().map(|word| bytes(word)).collect::<Result<_>>()?;
     if parts.iter().all(Vec::is_empty) {
@@ -64,7 +64,7 @@ pub(crate) fn frames(words: &[String]) -> Result<Vec<Vec<u8>>> {
     if parts.len() > 1 && parts.iter().all(|part| part.len() >= 3) { Ok(parts) } else { Ok(vec![parts.concat()]) }
 }
 
-/// The hex bytes of an argument.
+/// Returns the hex bytes of an argument.
 pub(crate) fn bytes(word: &str) -> Result<Vec<u8>> {
     parse_hex(word).map_err(|why| Failure::Usage(format!("{word:?} is not a sequence of hexadecimal bytes: {why}")))
 }

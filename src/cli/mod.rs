@@ -1,5 +1,4 @@
-//! The command line: the same jobs without a window. It parses, asks for consent and prints; the work is done by the
-//! worker.
+//! The command line: the same jobs without a window. It parses, asks for consent and prints; the worker does the work.
 
 pub(crate) mod args;
 pub(crate) mod check;
@@ -35,30 +34,30 @@ use crate::app::Given;
 use crate::link::LinkUrl;
 use crate::profile::Formats;
 
-/// How a command ended.
+/// The successful ends of a command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Done {
-    /// As it should: status 0.
+    /// No differences and no error: status 0.
     Well,
     /// `diff` or `verify` found differences: status 3.
     Differs,
 }
 
-/// Why a command failed.
+/// The reason why a command failed.
 #[derive(Debug)]
 pub enum Failure {
-    /// It was called wrongly: status 2.
+    /// Wrong usage: status 2.
     Usage(String),
-    /// The device or the operation failed: status 1. One to four lines.
+    /// Failure of the device or the operation: status 1. One to four lines.
     Failed(Vec<String>),
-    /// The reader of the output is gone: nothing more can be reported.
+    /// The reader of the output has closed it: nothing more can be reported.
     NobodyReads,
 }
 
 /// The result of a command.
 pub type Result<T = Done> = std::result::Result<T, Failure>;
 
-/// What the arguments request.
+/// The request in the arguments.
 pub enum Invocation {
     /// A command, which has ended with this status.
     Command(u8),
@@ -76,8 +75,8 @@ pub struct Window {
     pub given: Given,
 }
 
-/// Runs the command that the arguments of a process name, the first of which is the program's name; without one the window is
-/// asked for. Profiles are read in these formats; these are the kinds of device that there are commands for.
+/// Runs the command in the arguments of a process, the first of which is the program's name; without a command, the window
+/// is requested. `formats` are the readable profiles, and `commands` the kinds of device that have commands.
 pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands: Commands) -> Invocation {
     let arguments = match args::parse_arguments(words, commands) {
         Ok(arguments) => arguments,
@@ -99,7 +98,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>, formats: Formats, commands
     }
 }
 
-/// Prints why there is no window. Returns the exit status.
+/// Prints why the window cannot open. Returns the exit status.
 pub fn no_window(why: &str) -> u8 {
     end(Err(Failure::Failed(vec![why.to_owned()])))
 }

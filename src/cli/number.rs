@@ -2,7 +2,7 @@
 
 use super::Failure;
 
-/// Decimal, or hexadecimal with `0x`; a sign in front.
+/// Parses a decimal number, or a hexadecimal one with `0x`; a sign may precede it.
 pub(crate) fn parse_number(text: &str) -> Option<i64> {
     let (sign, digits) = match text.strip_prefix('-') {
         Some(digits) => (-1, digits),
@@ -16,7 +16,7 @@ pub(crate) fn parse_number(text: &str) -> Option<i64> {
     number.ok().map(|number| sign * number)
 }
 
-/// A value that is a number and lies beyond its limits.
+/// Returns the error for a number outside its limits.
 pub(crate) fn out_of_range(what: impl std::fmt::Display, value: &str, low: i64, high: i64) -> Failure {
     Failure::Failed(vec![format!("{what}: {value} is not within {low} to {high} ({low:#X} to {high:#X}).")])
 }

@@ -1,4 +1,4 @@
-//! The output: text in columns, or one JSON object.
+//! Output as text in columns, or as one JSON object.
 
 use std::io::{self, Write};
 
@@ -37,17 +37,17 @@ impl Output {
         Output { json, formats, commands }
     }
 
-    /// The same, with results as text.
+    /// Creates the same, with results as text.
     pub(crate) fn as_text(&self) -> Self {
         Output { json: false, formats: self.formats, commands: self.commands }
     }
 
-    /// The formats of profiles that can be read.
+    /// Returns the formats of profiles that can be read.
     pub(super) fn formats(&self) -> Formats {
         self.formats
     }
 
-    /// The kinds of device that there are commands for.
+    /// Returns the kinds of device that there are commands for.
     pub(super) fn commands(&self) -> Commands {
         self.commands
     }
@@ -57,7 +57,7 @@ impl Output {
         if self.json { self.print(&format!("{json}\n")) } else { self.print(&visible(text)) }
     }
 
-    /// Prints lines as they are, and lets nothing of them wait.
+    /// Prints lines unchanged and flushes them.
     pub fn print(&self, printed: &str) -> Result<(), Failure> {
         let mut out = io::stdout().lock();
         match out.write_all(printed.as_bytes()).and_then(|()| out.flush()) {
@@ -84,13 +84,13 @@ impl Output {
     }
 }
 
-/// A number with its noun: `1 data field`, `3 data fields`.
+/// Returns a number with its noun: `1 data field`, `3 data fields`.
 pub(crate) fn count(number: usize, noun: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{number} {noun}{ending}")
 }
 
-/// Help as it is; an error in the arguments in at most four lines, the last of them the usage.
+/// Prints help unchanged, and an error in the arguments in at most four lines, the last of them the usage.
 pub(super) fn say_usage(error: &clap::Error) {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     if matches!(error.kind(), DisplayHelp | DisplayHelpOnMissingArgumentOrSubcommand | DisplayVersion) {
@@ -107,13 +107,13 @@ pub(super) fn say_usage(error: &clap::Error) {
     }
 }
 
-/// Writes to stderr. Errors of doing so are ignored, as they cannot be reported anywhere.
+/// Writes to stderr. Errors of writing are ignored, as they cannot be reported anywhere.
 pub(crate) fn say(text: &str) {
     let mut err = io::stderr().lock();
     let _ = err.write_all(visible(text).as_bytes()).and_then(|()| err.flush());
 }
 
-/// Text from a file, a device or an argument must not steer the terminal: control characters are shown, not sent.
+/// Replaces control characters by visible ones: text from a file, a device or an argument must not control the terminal.
 fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
@@ -122,7 +122,7 @@ fn visible(text: &str) -> String {
     shown
 }
 
-/// Warnings of the program itself; details with RUST_LOG-like verbosity are for the log file of the window.
+/// Prints warnings of the program itself to stderr; details are for the log file of the window.
 pub(super) fn log_to_stderr() {
     let subscriber = tracing_subscriber::fmt()
         .with_writer(io::stderr)
@@ -132,7 +132,7 @@ pub(super) fn log_to_stderr() {
         .log_internal_errors(false)
         .with_max_level(tracing::Level::WARN)
         .finish();
-    // A second subscriber cannot be set; the first one serves.
+    // A second subscriber cannot be set; the first one remains.
     let _ = tracing::subscriber::set_global_default(subscriber);
 }
 

@@ -1,4 +1,4 @@
-//! A plan on the command line, whatever the kind of device: old → new line by line, what it costs, and what it has done.
+//! A plan on the command line, for every kind of device: old → new line by line, its cost, and its result.
 
 use std::path::PathBuf;
 
@@ -10,17 +10,17 @@ use crate::profile::{Operation, Plan, Written};
 use crate::store::LogbookError;
 use crate::worker::Committed;
 
-/// A plan, for a person and for a script.
+/// A plan as text and as JSON.
 pub struct PlanReport {
     /// The operations, for a script.
     pub operations: Vec<Json>,
-    /// The same for a person, with what it costs.
+    /// The plan as text, with its cost.
     pub text: String,
     pub write_cycles: u64,
 }
 
 impl PlanReport {
-    /// The report of a plan whose operations a person and a script see as the same steps.
+    /// Creates the report of a plan whose steps are the same in the text and in JSON.
     pub fn of<Base, Op: Operation>(
         plan: &Plan<Base, Op>,
         steps: Vec<PlanStep>,
@@ -44,7 +44,7 @@ pub struct PlanStep {
     pub old: Option<String>,
     /// The new value.
     pub new: Option<String>,
-    /// None for what is saved together with others.
+    /// Zero for an operation that is saved together with others.
     pub write_cycles: u64,
 }
 
@@ -55,7 +55,7 @@ impl PlanStep {
     }
 }
 
-/// Steps for a person, a line each.
+/// Formats the steps as text, a line each.
 pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     let mut lines = Lines::default();
     for PlanStep { item, old, new, .. } in steps {
@@ -68,7 +68,8 @@ pub fn lines(steps: impl Iterator<Item = PlanStep>) -> Lines {
     lines
 }
 
-/// A plan for a person: its lines, and what it costs beside what this computer has seen, and the limit where there is one.
+/// Formats a plan as text: its lines, its cost in addition to the write cycles that this computer knows of, and the limit
+/// if there is one.
 pub fn text<Base, Op: Operation>(
     plan: &Plan<Base, Op>,
     mut lines: Lines,
@@ -84,22 +85,22 @@ pub fn text<Base, Op: Operation>(
     lines.text()
 }
 
-/// Said of a plan without operations.
+/// Text for a plan without operations.
 pub(super) const NOTHING: &str = "nothing to write: the device already has these values\n";
 
 #[derive(Default)]
 pub struct WriteSummary {
-    /// Things that were changed.
+    /// Number of items that were changed.
     pub written: u64,
-    /// Those of them that were read back.
+    /// Number of changed items that were read back.
     pub verified: u64,
     pub write_cycles: u64,
-    /// `None`: there was nothing to write.
+    /// `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
 }
 
 impl WriteSummary {
-    /// Makes the summary of a commit; reports what the logbook could not record.
+    /// Summarises a commit, and prints what the logbook could not record.
     pub fn of(output: &Output, committed: Committed<Written>) -> Self {
         let Committed { written, backup, logbook_warning } = committed;
         warn(output, logbook_warning.as_ref());
@@ -108,7 +109,7 @@ impl WriteSummary {
     }
 }
 
-/// Reports what the logbook could not record.
+/// Prints what the logbook could not record.
 pub(crate) fn warn(output: &Output, warning: Option<&LogbookError>) {
     if let Some(why) = warning {
         output.remark(&explain::logbook(why).terminal());

@@ -1,4 +1,4 @@
-//! `position`: readings one after the other, whatever the device: how many, how far apart, until when.
+//! `position`: repeated readings for every kind of device, with their number, interval and end.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use super::runner::{JobFailure, Runner, Runs};
 use super::{Done, Result};
 use crate::worker::EndedEarly as _;
 
-/// Runs `job` repeatedly and prints each result with `show`; a job that fails ends it.
+/// Runs `job` repeatedly and prints each result with `show`; a failed job ends it.
 pub fn readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
@@ -19,7 +19,7 @@ pub fn readings<D: Runs>(
     })
 }
 
-/// Runs `job` repeatedly and lets `show` print each result or error; it returns whether that was a line.
+/// Runs `job` repeatedly and lets `show` print each result or error; `show` returns whether it printed a line.
 pub fn try_readings<D: Runs>(
     runner: &mut Runner<D>,
     position: &Position,
@@ -28,7 +28,7 @@ pub fn try_readings<D: Runs>(
 ) -> Result {
     let interval = Duration::from_millis(position.interval);
     let mut next = Instant::now();
-    // A table of no certain length is ended by Ctrl-C: then it is done.
+    // A table without a fixed length ends with Ctrl-C, which is then no failure.
     let endless = position.csv && position.count.is_none();
     let count = position.count.unwrap_or(if endless { u64::MAX } else { 1 });
     let (mut lines, mut first) = (0, true);

@@ -1,5 +1,5 @@
-//! Commands about profiles, whatever the kind of device: it stands in the file. `diff` and `verify` are here; what a save
-//! and a restore have in common, too.
+//! Commands about profiles for every kind of device, which the file names: `diff`, `verify`, and the common parts of save
+//! and restore.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -17,14 +17,14 @@ use crate::app::{Kinds, explain, review};
 use crate::profile::{Body, Comparison, Document, Profile, RestoreOptions};
 use crate::store::{read_text, write_atomically};
 
-/// Reads a profile of any kind, to look at it or to compare it.
+/// Reads a profile of any kind, for viewing or comparison.
 pub(crate) fn load(output: &Output, path: &Path) -> Result<Body> {
     let document = read_document(output, path)?;
     remark(output, path, &document)?;
     Ok(document.body)
 }
 
-/// Reads a profile that is to be written into a device: all of it has to be known.
+/// Reads a profile that is to be written into a device: all its entries have to be known.
 pub(crate) fn load_to_write(output: &Output, path: &Path) -> Result<Body> {
     let document =
         read_document(output, path)?.known().map_err(|error| failed(&explain::profile(path, &error, Kinds::NONE)))?;
@@ -78,7 +78,7 @@ pub(super) fn verify(common: &Common, output: &Output, file: &Path) -> Result {
         output.remark(&words);
     }
     let comparison = profile.compare(&device).map_err(|error| failed(&explain::profile(file, &error, Kinds::NONE)))?;
-    // Items that only the device has do not concern the profile.
+    // Items that only the device has are not part of the profile.
     let equal = comparison.differences.is_empty() && comparison.only_left.is_empty();
     show_comparison(output, &comparison, equal)
 }
@@ -88,7 +88,7 @@ pub(super) fn restore(common: &Common, output: &Output, restore: &Restore) -> Re
     output.commands().device(profile.kind())?.restore(common, output, restore, profile)
 }
 
-/// Returns the profile that is to be restored: refused before anything is opened where there can be no consent.
+/// Returns the profile to restore. Refuses before anything is opened if consent cannot be given.
 pub fn to_restore<P: Profile>(restore: &Restore, profile: Body) -> Result<P> {
     if !restore.dry_run {
         require_consent(&restore.consent)?;
@@ -161,9 +161,9 @@ fn show_comparison(output: &Output, comparison: &Comparison, equal: bool) -> Res
     Ok(if equal { Done::Well } else { Done::Differs })
 }
 
-/// What a restore leaves unchanged.
+/// Items that a restore leaves unchanged.
 pub struct Unrestored {
-    /// Things that are already as the profile says.
+    /// Number of items that already have the value of the profile.
     pub unchanged: u64,
     /// Items that only one side has.
     pub missing: Vec<String>,
@@ -181,7 +181,7 @@ impl Unrestored {
     }
 }
 
-/// Prints what a restore would do.
+/// Prints the plan of a restore without running it.
 fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result {
     let json = json!({
         "dry_run": true,
@@ -198,7 +198,7 @@ fn show_dry_run(output: &Output, plan: &PlanReport, left: &Unrestored) -> Result
     Ok(Done::Well)
 }
 
-/// Prints what a restore has done.
+/// Prints the result of a restore.
 fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Result {
     let json = json!({
         "written": spent.written,
@@ -219,17 +219,17 @@ fn show_restored(output: &Output, spent: &WriteSummary, left: &Unrestored) -> Re
         lines.add("backup", backup.display());
     }
     output.show_written(&json, &lines.text())?;
-    // Said before the write as well: it is what is still to be done.
+    // Printed before the write as well, because it lists what remains to be done.
     left.warn(output);
     Ok(Done::Well)
 }
 
-/// Prints what writing an item has done; `operations` are what was carried out.
+/// Prints the result of writing an item; `operations` are those that were carried out.
 pub(crate) fn show_changed(output: &Output, item: &str, operations: &[Json], spent: &WriteSummary) -> Result {
     show_done(output, item, operations, spent, &[], "")
 }
 
-/// Prints what an action has done, and what came of it.
+/// Prints the result of an action.
 pub(crate) fn show_done(
     output: &Output,
     item: &str,

@@ -1,4 +1,4 @@
-//! Opening a link and running jobs on it: progress and codes to stderr, Ctrl-C to the worker.
+//! Opens a link and runs jobs on it: progress and codes go to stderr, Ctrl-C to the worker.
 
 use std::fs::File;
 use std::io::{BufWriter, IsTerminal, Write, stderr};
@@ -26,23 +26,23 @@ use crate::worker::{Device, Event, OpenError, Session, Worker};
 pub trait Runs: Kind {
     /// State of a session outside its thread.
     type Context;
-    /// Its line has one master, and a drive may be it: `--only-master` says that there is none.
+    /// Whether the line has one master, which may be a connected drive: `--only-master` confirms that there is none.
     const HAS_ONE_MASTER: bool = false;
-    /// Its kind on the command line.
+    /// The command-line part of the kind.
     const COMMANDS: &'static dyn DeviceCommands;
 
-    /// Returns whether another master may be on the line behind a link; the user is then asked before the first byte.
+    /// Returns whether another master may be on the line of a link; the user is then asked before the first byte.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
 
-    /// Makes a session ready, with what the options of every command give.
+    /// Prepares a session, with the options of every command.
     fn begin(session: &mut Session<Self>, given: &Given) -> Self::Context;
 
     /// Prints a message of the device at once.
     fn print_message(remark: &Self::DeviceMessage);
 
-    /// A step, beside the bar at a terminal.
+    /// Returns the text of a step, for the progress bar on a terminal.
     fn step(doing: &Self::JobStep) -> String;
 
     /// Returns a message about a step for the user at the terminal, printed when it changes.
@@ -55,8 +55,8 @@ pub trait Runs: Kind {
         None
     }
 
-    /// Returns the immediate effect of Ctrl-C, called each time; the program ends after the second time, for which the
-    /// argument is `true`.
+    /// Returns the immediate effect of Ctrl-C, called each time; the argument is `true` for the second time, after which
+    /// the program ends.
     fn interrupt(_kept: &Self::Context) -> Box<dyn Fn(bool) + Send> {
         Box::new(|_| ())
     }
@@ -65,7 +65,7 @@ pub trait Runs: Kind {
 /// A session on its thread.
 pub struct Runner<D: Runs> {
     worker: Worker<D>,
-    /// Ctrl-C was pressed: kept apart from the worker's wish, which is for one job.
+    /// Whether Ctrl-C was pressed: separate from the worker's cancellation, which applies to one job.
     interrupted: Arc<AtomicBool>,
     patience: SlowReplyNotice,
     /// Messages of the device during the last job.
@@ -79,13 +79,13 @@ pub enum JobFailure<D: Runs> {
     Job(Box<D::Error>),
     /// Ctrl-C, between two jobs.
     Interrupted,
-    /// The wire was found gone between two jobs.
+    /// Loss of the connection, found between two jobs.
     Lost(LinkError),
-    /// The worker itself is gone.
+    /// End of the worker itself.
     Worker,
 }
 
-/// The longest time to leave a state that must not remain: a drive in control, a supply that was switched on.
+/// The longest time for leaving a state that must not remain: a drive in control, a supply that was switched on.
 const LEAVING: Duration = Duration::from_secs(4);
 
 impl<D: Runs> Drop for Runner<D> {
@@ -145,12 +145,12 @@ impl<D: Runs> Runner<D> {
         self.try_run(job).map_err(JobFailure::into_failure)
     }
 
-    /// Runs a job to its end and lets the caller look at an error.
+    /// Runs a job to its end and lets the caller check the error.
     pub(super) fn try_run(&mut self, job: D::Job) -> std::result::Result<D::Output, JobFailure<D>> {
         self.remarks.clear();
         let id = self.worker.submit(job).map_err(|_| JobFailure::Worker)?;
         if self.is_interrupted() {
-            // It came before the job, for which it is meant as well.
+            // Ctrl-C arrived before the job and applies to it as well.
             self.worker.stop();
         }
         let bar = Bar::default();
@@ -184,7 +184,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Returns the next event; `None` when it is time for a check.
+    /// Returns the next event; `None` if it is time for a check.
     fn next_event(&self) -> std::result::Result<Option<Event<D>>, JobFailure<D>> {
         let events = self.worker.events();
         let Some(left) = self.patience.left() else {
@@ -197,7 +197,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Waits between two jobs; ends early when the user wishes, or when the wire is gone.
+    /// Waits between two jobs; ends early if the user cancels or the connection is lost.
     pub(super) fn pause(&self, duration: Duration) -> Result<()> {
         let end = Instant::now() + duration;
         loop {
@@ -214,7 +214,7 @@ impl<D: Runs> Runner<D> {
         }
     }
 
-    /// Ctrl-C was pressed.
+    /// Returns whether Ctrl-C was pressed.
     pub(crate) fn is_interrupted(&self) -> bool {
         self.interrupted.load(Ordering::SeqCst)
     }
@@ -225,7 +225,7 @@ impl<D: Runs> Runner<D> {
 }
 
 impl<D: Runs> JobFailure<D> {
-    /// Returns it as what a command comes to.
+    /// Converts it to the failure of a command.
     pub fn into_failure(self) -> Failure {
         match self {
             JobFailure::Job(error) => {
@@ -238,7 +238,7 @@ impl<D: Runs> JobFailure<D> {
     }
 }
 
-/// Returns at most four lines: of more sentences all but the first and the last share one.
+/// Returns at most four lines: if there are more sentences, all but the first and the last share one line.
 fn lines(mut sentences: Vec<String>) -> Vec<String> {
     if sentences.len() > 4 {
         let last = sentences.split_off(sentences.len() - 1);
@@ -253,8 +253,8 @@ pub fn failed(text: &Text) -> Failure {
     Failure::Failed(vec![text.terminal()])
 }
 
-/// Takes the result of a job apart: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of another
-/// kind ends the function with an error.
+/// Destructures the result of a job: `result_of!(runner.run(job)?, Output::Saved(profile) => *profile)`. A result of
+/// another kind ends the function with an error.
 #[macro_export]
 macro_rules! result_of {
     ($result:expr, $wanted:pat => $value:expr) => {
@@ -265,12 +265,12 @@ macro_rules! result_of {
     };
 }
 
-/// A job gave a result of another kind: a defect of this program, told rather than hidden.
+/// Returns the failure for a job with a result of another kind: a defect of this program, reported and not hidden.
 pub fn unexpected(output: &impl std::fmt::Debug) -> Failure {
     Failure::Failed(vec![format!("Unexpected result: {output:?}.")])
 }
 
-/// Asks whether a drive is on the line, if there is a user to ask who has not confirmed it yet.
+/// Asks whether a drive is on the line, if the program runs on a terminal and the user has not confirmed it yet.
 fn ask_for_other_master(common: &Common) -> Result<()> {
     if common.only_master || !can_ask() {
         return Ok(());
@@ -291,7 +291,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     let name = path.display().to_string();
     let mut works = true;
     session.watch(move |entry| {
-        // Flushed at each frame, so that a trace is complete however the program ends.
+        // Flushed after each frame, so that a trace is complete however the program ends.
         if works && write_entry(&mut file, entry).and_then(|()| file.flush()).is_err() {
             works = false;
             tracing::warn!("{name}: the trace is incomplete because a write to the file failed");
@@ -300,7 +300,7 @@ fn record<D: Device>(session: &mut Session<D>, path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Progress on a terminal; silence elsewhere.
+/// A progress bar on a terminal; prints nothing elsewhere.
 pub(crate) struct Bar(ProgressBar);
 
 impl Default for Bar {
@@ -323,7 +323,7 @@ impl Bar {
 }
 
 impl Bar {
-    /// A line above the bar, or where it will be.
+    /// Prints a line above the bar, or where the bar will be.
     fn print_above(&self, words: &str) {
         match self.0.length() {
             Some(_) => self.0.println(words),

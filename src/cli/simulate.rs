@@ -1,5 +1,5 @@
-//! `simulate`: a virtual device for other programs, on a pseudo-terminal or a TCP port, with UDP beside it for those that
-//! want it. This is the one place that pumps a virtual device with the machine's clock.
+//! `simulate`: a virtual device for other programs, on a pseudo-terminal or a TCP port, with UDP for the devices that use
+//! it. Only this module runs a virtual device by the clock of the computer.
 
 mod datagrams;
 
@@ -16,26 +16,25 @@ use crate::link::{Clock, RealClock};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{Baud, CharacterFormat, Moment};
 
-/// How long to wait for bytes while the device is idle; also the latency of an interrupt.
+/// Time to wait for bytes while the device is idle; also the latency of an interrupt.
 const PATIENCE: Duration = Duration::from_millis(20);
-/// A socket's own time-out comes only with the next tick of the system: what is due sooner is slept for.
+/// A socket's own time-out has the resolution of the system tick: shorter waits are slept.
 const SHORT: Duration = Duration::from_millis(10);
 
 /// A virtual device that can be served.
 pub trait Simulated: ByteDevice {
-    /// Returns the setting of its line at a moment; `None` if there is no serial line, and while the device does not
-    /// listen.
+    /// Returns the line format at a moment; `None` if there is no serial line, or while the device does not receive.
     fn format(&self, _now: Moment) -> Option<CharacterFormat> {
         None
     }
 
-    /// The same device for another client beside this one, at this address; `None` where there is one line to it, and clients come one
-    /// after the other.
+    /// Returns the same device for another simultaneous client at this address; `None` if the device has one line, so that
+    /// clients are served one after the other.
     fn another(&self, _peer: Ipv4Addr) -> Option<Box<dyn Simulated>> {
         None
     }
 
-    /// The same device as it is sent datagrams, to the port at which it is reached over TCP.
+    /// Returns the datagram side of the same device, on the port that also serves TCP.
     fn datagrams(&self) -> Option<Box<dyn DatagramDevice>> {
         None
     }
@@ -43,7 +42,7 @@ pub trait Simulated: ByteDevice {
     /// Sets the address of a device with datagrams.
     fn listens(&self, _at: SocketAddrV4) {}
 
-    /// Returns whether it has closed the connection.
+    /// Returns whether the device has closed the connection.
     fn has_ended(&self) -> bool {
         false
     }
@@ -65,7 +64,7 @@ pub(super) fn simulate(output: &Output, arguments: &Simulate) -> Result {
     Ok(Done::Well)
 }
 
-/// The settings of the virtual device, a key with its value each.
+/// Returns the settings of the virtual device as keys and values.
 pub fn settings(output: &Output, arguments: &Simulate) -> Result<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = Vec::new();
     for setting in &arguments.settings {
@@ -93,7 +92,7 @@ struct Device {
 enum ReadOutcome {
     Bytes(usize),
     Nothing,
-    /// The client has gone.
+    /// The client has disconnected.
     End,
 }
 
@@ -108,8 +107,8 @@ impl Device {
         Some(Device { kind: self.kind, simulated, clock: self.clock.clone() })
     }
 
-    /// Serves one client until it goes or the program is interrupted. `baud` is what the client's side is set to, where
-    /// that can be seen.
+    /// Serves one client until it disconnects or the program is interrupted. `baud` is the speed of the client's side, if
+    /// it can be read.
     fn serve(&mut self, client: &mut impl Client, ended: &AtomicBool) -> std::io::Result<()> {
         self.simulated.connect(self.clock.now());
         let mut buffer = [0; 512];
@@ -135,7 +134,8 @@ impl Device {
         Ok(())
     }
 
-    /// Parity cannot be seen from this end, and over TCP not even the speed: there the client is taken to be right.
+    /// Parity cannot be read from this side, and over TCP not even the speed: there the client's format is assumed to be
+    /// right.
     fn follow_format(&mut self, baud: Option<Baud>) {
         let now = self.clock.now();
         if let Some(own) = self.simulated.format(now) {
@@ -177,7 +177,7 @@ impl Client for TcpStream {
 
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
         match self.write_all(bytes) {
-            // A client that does not fetch what streams loses it.
+            // A client that does not read streamed data loses them.
             Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => Ok(()),
             ended => ended,
         }
@@ -220,7 +220,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
         None => (TcpListener::bind(address).map_err(cannot)?, None),
     };
     listener.set_nonblocking(true).map_err(cannot)?;
-    // Leaves when all clients have been left.
+    // The scope ends when all clients have disconnected.
     std::thread::scope(|scope| {
         let begun = packets
             .iter()
@@ -228,7 +228,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
             .and_then(|()| listener.local_addr())
             .map_err(cannot)
             .and_then(|at| device.ready(&at.to_string()));
-        // No one waits for the end of a program that has not begun.
+        // The program has not started, so no thread waits for its end.
         begun.inspect_err(|_| ended.store(true, Ordering::SeqCst))?;
         while !ended.load(Ordering::SeqCst) {
             let Ok((client, peer)) = listener.accept() else {
@@ -239,7 +239,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
                 None => attend(device, client, ended),
                 Some(mut own) => {
                     let attended = move || attend(&mut own, client, ended);
-                    // Without a thread for it, the client finds its connection closed.
+                    // If no thread can be started, the connection of the client is closed.
                     let _ = std::thread::Builder::new().spawn_scoped(scope, attended);
                 }
             }
@@ -248,7 +248,7 @@ fn listen(address: &str, device: &mut Device, ended: &AtomicBool) -> Result<()> 
     })
 }
 
-/// Serves a client over TCP. One that cannot be served is gone; the next one may come.
+/// Serves a client over TCP. A client that cannot be served is disconnected; the next one may connect.
 fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
     let _ = client
         .set_nonblocking(false)
@@ -259,8 +259,8 @@ fn attend(device: &mut Device, mut client: TcpStream, ended: &AtomicBool) {
 
 #[cfg(unix)]
 mod terminal {
-    //! Pseudo-terminals. The other side is opened by the client alone: when it closes it, that is seen here as a
-    //! hang-up, and the virtual device's power comes back with the next client.
+    //! Pseudo-terminals. Only the client opens the other side: when the client closes it, this side sees a hang-up, and the
+    //! virtual device is powered again with the next client.
 
     use std::io::{ErrorKind, Read, Write};
     use std::os::unix::fs::symlink;
@@ -277,7 +277,7 @@ mod terminal {
         let cannot = |what: String| Failure::Failed(vec![format!("{}: {what}.", path.display())]);
         let (mut master, mut slave) = TTYPort::pair().map_err(|error| cannot(error.description))?;
         let name = slave.name().ok_or_else(|| cannot("the pseudo-terminal has no name".to_owned()))?;
-        // Until a client sets another speed, the terminal has that of the encoder.
+        // Until a client sets another speed, the terminal has the speed of the encoder.
         if let Some(own) = device.simulated.format(device.clock.now()) {
             let _ = slave.set_baud_rate(own.baud.bits_per_second());
         }
@@ -295,14 +295,15 @@ mod terminal {
         Ok(())
     }
 
-    /// A symbolic link that goes with this program.
+    /// A symbolic link that is removed at the end of this program.
     struct Link {
         path: PathBuf,
         target: PathBuf,
     }
 
     impl Link {
-        /// A link that points nowhere is left over from an earlier run and is replaced; anything else is not ours.
+        /// Creates the link. A link that points nowhere is left over from an earlier run and is replaced; anything else
+        /// belongs to another program and is refused.
         fn make(path: &Path, target: &Path) -> std::io::Result<Self> {
             if path.is_symlink() && !path.exists() {
                 std::fs::remove_file(path)?;
@@ -315,7 +316,7 @@ mod terminal {
     impl Drop for Link {
         fn drop(&mut self) {
             if std::fs::read_link(&self.path).is_ok_and(|target| target == self.target) {
-                // It was ours; when it cannot be removed, the next run replaces it.
+                // The program's own link; if it cannot be removed, the next run replaces it.
                 let _ = std::fs::remove_file(&self.path);
             }
         }
@@ -350,7 +351,7 @@ mod terminal {
         }
 
         fn write(&mut self, bytes: &[u8]) -> std::io::Result<()> {
-            // A client that went away in between does not hear the reply, as with a real line.
+            // A client that disconnected in between does not receive the reply, as on a real line.
             let _ = self.write_all(bytes);
             Ok(())
         }
@@ -363,7 +364,7 @@ mod terminal {
 
 #[cfg(not(unix))]
 mod terminal {
-    //! There are no pseudo-terminals here.
+    //! Pseudo-terminals do not exist on this system.
 
     use std::path::Path;
     use std::sync::atomic::AtomicBool;

@@ -21,24 +21,24 @@ pub struct Pace {
     pub(crate) longest: Duration,
 }
 
-/// Looks after a command that takes long; of one that is slow it tells once.
+/// A monitor of a long command; it reports once that the command is slow.
 pub(super) struct SlowReplyNotice {
     pace: Option<Pace>,
     look: Instant,
 }
 
 impl SlowReplyNotice {
-    /// Patience that begins now; a kind of device without a pace is never told slow.
+    /// Starts the time now; a kind of device without a pace is never reported as slow.
     pub(super) fn begin(pace: Option<Pace>) -> Self {
         SlowReplyNotice { pace, look: Instant::now() + WONDERS }
     }
 
-    /// Returns how long to wait for events before the next check; `None` for no limit.
+    /// Returns the time until the next check; `None` for no limit.
     pub(super) fn left(&self) -> Option<Duration> {
         self.pace.as_ref().map(|_| self.look.saturating_duration_since(Instant::now()))
     }
 
-    /// Returns the notice if it is time for one.
+    /// Returns the notice if it is due.
     pub(super) fn words(&mut self) -> Option<String> {
         let now = Instant::now();
         let words = self.pace.as_ref().filter(|_| now >= self.look).and_then(Pace::words);

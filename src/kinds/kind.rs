@@ -1,4 +1,4 @@
-//! Kinds of devices and tools, and the program made of them.
+//! Kinds of devices and tools, and the program built from them.
 
 use crate::app::{DeviceKind, Kinds, ToolKind};
 use crate::buses::bridge::sim::Attachable;
@@ -6,13 +6,13 @@ use crate::cli::{Commands, DeviceCommands, OwnCommand, ProtocolDecoder};
 use crate::profile::{Formats, ProfileFormat};
 use crate::ui::{DeviceView, TabViews, ToolView};
 
-/// A kind of device: its pages, through which its state and its profiles are known, and its commands.
+/// A kind of device: its pages, with its state and its profiles, and its commands.
 #[derive(Clone, Copy)]
 pub struct Kind {
     pub view: &'static dyn DeviceView,
     pub commands: &'static dyn DeviceCommands,
-    /// Virtual device on the virtual adapter; `None` for a kind that is reached without an adapter.
-    /// The adapter uses the program's own list (`kinds::at_adapter`): a kind from outside is not on it.
+    /// Virtual device on the virtual adapter; `None` for a kind that does not use an adapter. The adapter uses the
+    /// program's own list (`kinds::at_adapter`): a kind from outside is not on it.
     pub at_adapter: Option<&'static dyn Attachable>,
 }
 
@@ -31,9 +31,9 @@ pub struct Program {
 }
 
 impl Program {
-    /// A program with these kinds of devices and tools, in the order of the navigation and of the help; `protocols` are
-    /// explained beside theirs, `further` commands stand beside those of devices. The lists are kept as long as the process
-    /// runs.
+    /// Creates a program with these kinds of devices and tools, in the order of the navigation and of the help; `protocols`
+    /// can be decoded too, and `further` commands are added to those of devices. The lists remain in memory as long as the
+    /// process runs.
     pub fn new(
         kinds: &[Kind],
         tools: &[ToolTab],

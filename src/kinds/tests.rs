@@ -1,4 +1,4 @@
-//! What holds of the profiles of every kind: those that ship, those of schema 1, and the names of their entries.
+//! Tests of the profiles of every kind: the ready-made ones, those of schema 1, and the names of their entries.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn profiles_in(folder: &str) -> Vec<(PathBuf, String)> {
     all.map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
 }
 
-/// Names before colons, outside of texts and comments: where each begins and ends.
+/// Returns the names before colons, outside of texts and comments, with the start and end of each.
 fn names(text: &str) -> Vec<(usize, usize)> {
     let bytes = text.as_bytes();
     let (mut at, mut found) = (0, Vec::new());
@@ -44,7 +44,7 @@ fn names(text: &str) -> Vec<(usize, usize)> {
     found
 }
 
-/// Slips of the hand: a letter left out, doubled, exchanged with its neighbour, added.
+/// Returns typing errors of a name: a letter omitted, doubled, exchanged with its neighbour, or added.
 fn slips(name: &str) -> Vec<String> {
     let short = name[..name.len() - 1].to_owned();
     let doubled = format!("{name}{}", &name[name.len() - 1..]);
@@ -56,7 +56,7 @@ fn slips(name: &str) -> Vec<String> {
         .collect()
 }
 
-/// Issue 22.17: of 393 names 153 passed unnoticed.
+/// Issue 22.17: of 393 misspelt names, 153 were accepted.
 #[test]
 fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
     let mut misspelt = 0;
@@ -77,7 +77,7 @@ fn no_name_of_a_ready_made_profile_is_misspelt_without_a_word() {
     assert!(misspelt >= 393, "{misspelt}");
 }
 
-/// Issue 22.17: profiles that were ready-made with schema 1, and one of each kind as it was saved then.
+/// Issue 22.17: the ready-made profiles of schema 1 open, and one saved profile of each kind from that time.
 #[test]
 fn profiles_of_schema_1_open() {
     let files = profiles_in("tests/fixtures/schema-1");
@@ -104,7 +104,7 @@ fn the_profiles_that_ship_are_read() {
             assert_eq!((document.device(), document.emit()), (kind, text), "as the program writes it");
             count += 1;
         }
-        // Of SSI, each family as delivered and one more.
+        // For SSI, each family with factory settings, and one more.
         let expected = match kind {
             "ssi" => 12,
             "interbus" => 2,

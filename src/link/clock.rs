@@ -1,4 +1,4 @@
-//! Clocks: the real one for hardware and for the virtual devices of the window, a virtual one for tests.
+//! Clocks: the real one for hardware and for the virtual devices of the window, and a virtual one for tests.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use crate::units::Moment;
 
 /// A source of time that can wait.
 pub trait Clock: Send + Sync {
-    /// Now.
+    /// Returns the current time.
     fn now(&self) -> Moment;
 
     /// Returns when `moment` has come.
@@ -19,7 +19,7 @@ pub trait Clock: Send + Sync {
 pub struct RealClock(Instant);
 
 impl RealClock {
-    /// A clock that starts now.
+    /// Creates a clock that starts now.
     pub fn start() -> Self {
         RealClock(Instant::now())
     }
@@ -38,7 +38,7 @@ impl Clock for RealClock {
     }
 }
 
-/// A clock that advances only while it is waited on: an hour passes in no time.
+/// A clock that advances only while a thread waits on it, so that an hour takes no real time.
 #[derive(Debug, Default)]
 pub struct VirtualClock {
     nanoseconds: AtomicU64,

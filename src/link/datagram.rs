@@ -1,4 +1,5 @@
-//! Packets beside a stream of bytes: cyclic data that are old with the next ones, and are not sent again when one is lost.
+//! Packets in addition to a stream of bytes: cyclic data, which the next packet makes outdated, and which are not sent
+//! again if lost.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 
@@ -7,17 +8,16 @@ use crate::units::Moment;
 
 /// Packets to and from one target.
 pub trait Datagrams: Send {
-    /// The port of ours to which the target has to send.
+    /// Returns the port of ours to which the target has to send.
     fn port(&self) -> u16;
 
     /// Sends further packets to this port of the target.
     fn aim(&mut self, port: u16);
 
-    /// Packets of the target also go to all who listen there, and are taken from there as well. In this process there is only
-    /// one who listens.
+    /// Also receives the packets that the target sends to a multicast group. In this process there is only one receiver.
     ///
     /// # Errors
-    /// When there is no way to listen.
+    /// Returns an error if the group cannot be joined.
     fn join(&mut self, _group: SocketAddrV4) -> Result<(), LinkError> {
         Ok(())
     }
@@ -25,14 +25,14 @@ pub trait Datagrams: Send {
     /// Sends one packet. Delivery is not confirmed.
     ///
     /// # Errors
-    /// When there is no way to the target.
+    /// Returns an error if the target cannot be reached.
     fn send(&mut self, packet: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits until a packet of the target arrives, at most until `until`, and puts it into `into` instead of what was there.
-    /// False: the time is up. What others send is dropped.
+    /// Waits for a packet of the target until `until`, and replaces the content of `into` with it. Returns false when the
+    /// time is up. Packets of other senders are dropped.
     ///
     /// # Errors
-    /// When there is no way to the target.
+    /// Returns an error if the target cannot be reached.
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<bool, LinkError>;
 }
 
@@ -41,11 +41,11 @@ pub trait DatagramPort: Send {
     /// Opens a local port.
     ///
     /// # Errors
-    /// There is none, or no way to the target.
+    /// Returns an error if there is none, or the target cannot be reached.
     fn open(&mut self) -> Result<Box<dyn Datagrams>, LinkError>;
 }
 
-/// A question to all who listen, and what any of them answers.
+/// A request to all devices of a network, with their answers.
 pub trait Broadcast: Send {
     /// Asks all.
     ///
@@ -53,10 +53,10 @@ pub trait Broadcast: Send {
     /// Returns an error if no request can be sent at all.
     fn broadcast(&mut self, packet: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits for a packet until `until` and puts it into `into`, replacing the content. Returns the sender, or `None`
-    /// when the time is up.
+    /// Waits for a packet until `until` and replaces the content of `into` with it. Returns the sender, or `None` when the
+    /// time is up.
     ///
     /// # Errors
-    /// When the network is gone.
+    /// Returns an error if the network is lost.
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<Option<Ipv4Addr>, LinkError>;
 }

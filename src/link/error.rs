@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// A wire that cannot be opened or is gone.
+/// An error of a connection that cannot be opened or is lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{target}: {kind}")]
 pub struct LinkError {
@@ -21,25 +21,25 @@ pub enum LinkErrorKind {
     /// The user may not open it.
     #[error("permission denied")]
     Permission {
-        /// The group that may, where the system tells.
+        /// The group with permission, if the system names one.
         group: Option<String>,
     },
     /// Another program has it.
     #[error("in use by another program")]
     Busy,
-    /// It exists and is no serial port.
+    /// The path exists and is not a serial port.
     #[error("not a serial port")]
     NotAPort,
     /// Nothing listens at that address, or it cannot be reached.
     #[error("cannot be reached: {0}")]
     Unreachable(String),
-    /// It was there and is gone: unplugged, or the connection was closed.
+    /// The connection was lost: unplugged, or closed by the other side.
     #[error("connection lost")]
     Lost,
-    /// The port cannot be set to this speed or parity.
+    /// A recording has no answer to the request.
     #[error("cannot be set to {0}")]
     Format(String),
-    /// A recording has no answer to what was sent.
+    /// Any other error of the system.
     #[error("the recording has no answer to {0}")]
     NotRecorded(String),
     /// Anything else the system says.
@@ -48,13 +48,13 @@ pub enum LinkErrorKind {
 }
 
 impl LinkError {
-    /// An error at `target`.
+    /// Creates an error at `target`.
     pub fn new(target: impl Into<String>, kind: LinkErrorKind) -> Self {
         LinkError { target: target.into(), kind }
     }
 
-    /// An error while reading or writing an open wire: whatever the system calls it, an error there means that the
-    /// other end is gone, except for what is plainly something else.
+    /// Converts an error of reading or writing an open connection: whatever the system calls it, it means that the
+    /// connection is lost, except for errors that clearly mean something else.
     pub(super) fn during_use(target: &str, error: &io::Error) -> Self {
         let kind = match error.kind() {
             io::ErrorKind::InvalidInput | io::ErrorKind::OutOfMemory => LinkErrorKind::Other(error.to_string()),
@@ -63,7 +63,7 @@ impl LinkError {
         LinkError::new(target, kind)
     }
 
-    /// The wire was open and is gone.
+    /// Returns whether the connection was open and is lost.
     pub fn is_lost(&self) -> bool {
         self.kind == LinkErrorKind::Lost
     }

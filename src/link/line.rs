@@ -1,5 +1,5 @@
-//! The common behaviour of lines with frames: silence, echoes, late replies, repetition and time-outs. The devices' own
-//! folders decode the frames; no byte is interpreted here, except for the echo.
+//! The common behaviour of lines with frames: silence, echoes, late replies, repetition and time-outs. The folders of the
+//! devices decode the frames; no byte is interpreted here, except for the echo.
 
 mod echo;
 mod quality;
@@ -20,21 +20,21 @@ use crate::units::Moment;
 
 /// Tries before a reading command fails.
 pub(crate) const TRIES: u32 = 5;
-/// No new try when nothing sensible came back for so long: a command has to end within ten seconds.
+/// No further try after this time without a valid reply: a command has to end within ten seconds.
 const PATIENCE: Duration = Duration::from_secs(8);
-/// A wish to end is heard at least so often.
+/// Longest interval between two checks for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// A line on which bytes keep coming for so long has no silence.
+/// A line on which bytes arrive for this time has no silence.
 const NEVER_SILENT: Duration = Duration::from_secs(2);
-/// Bytes that are kept at most of what is no frame: a socket brings more noise than anybody can read.
+/// Largest number of bytes kept that belong to no frame; noise from a socket is unlimited.
 pub(crate) const MOST_KEPT: usize = 4096;
 
-/// Why an exchange on a line ends early.
+/// The reason why an exchange on a line ends early.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LineError {
-    /// The user wished it.
+    /// The user cancelled it.
     Cancelled,
-    /// Bytes keep arriving where there should be silence.
+    /// Bytes arrive during the required silence.
     NeverSilent,
     /// The wire.
     Link(LinkError),
@@ -48,9 +48,9 @@ impl From<LinkError> for LineError {
 
 /// The host's side of a line, for one job.
 pub(crate) struct SerialLine<'a> {
-    /// All that the job got.
+    /// The context of the job.
     pub(crate) ctx: Ctx<'a>,
-    /// How long to keep asking without an answer, if not the default.
+    /// Time to repeat requests without an answer, if not the default.
     pub(crate) patience: Option<Duration>,
     shielded: bool,
     /// The skipped bytes, if they are kept.
@@ -58,28 +58,28 @@ pub(crate) struct SerialLine<'a> {
 }
 
 impl<'a> SerialLine<'a> {
-    /// The line of a job.
+    /// Creates the line of a job.
     pub(crate) fn new(ctx: Ctx<'a>) -> Self {
         SerialLine { ctx, patience: None, shielded: false, passed: None }
     }
 
-    /// Now.
+    /// Returns the current time.
     pub(crate) fn now(&self) -> Moment {
         self.ctx.clock.now()
     }
 
-    /// Sets whether a request to end is ignored; returns the previous setting.
+    /// Sets whether cancellation is ignored; returns the previous setting.
     pub(crate) fn shield(&mut self, shielded: bool) -> bool {
         std::mem::replace(&mut self.shielded, shielded)
     }
 
     /// # Errors
-    /// [`LineError::Cancelled`] where the user wished an end.
+    /// [`LineError::Cancelled`] if the user cancelled.
     pub(crate) fn check_cancel(&self) -> Result<(), LineError> {
         if !self.shielded && self.ctx.cancel.is_requested() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Waits; ends early when the user wishes.
+    /// Waits; ends early if the user cancels.
     ///
     /// # Errors
     /// [`LineError::Cancelled`].
@@ -93,10 +93,10 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Listens without sending; gives back what it heard, of noise without an end the first bytes.
+    /// Receives without sending, and returns the bytes received; of continuous noise, only the first.
     ///
     /// # Errors
-    /// The wire, or [`LineError::Cancelled`].
+    /// Errors of the connection, or [`LineError::Cancelled`].
     pub(crate) fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, LineError> {
         let end = self.now() + duration;
         let mut heard = Vec::new();
@@ -118,15 +118,15 @@ impl<'a> SerialLine<'a> {
         if !self.shielded && self.ctx.cancel.stops_transaction() { Err(LineError::Cancelled) } else { Ok(()) }
     }
 
-    /// Prepares an exchange on a line without packets: checks for cancellation and waits for silence. On a busy line,
-    /// the silence has to last for `quiet`.
+    /// Prepares an exchange on a line without packets: checks for cancellation and waits for silence. On a busy line, the
+    /// silence has to last for `quiet`.
     ///
     /// # Errors
     /// See [`LineError`].
     pub(crate) fn begin(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         self.start()?;
         let mut stray = Vec::new();
-        // Looks at least once: bytes that arrived while no one listened do not belong to the next reply.
+        // Checks at least once: bytes that arrived before the request do not belong to its reply.
         loop {
             self.ctx.wire.receive(state.quiet_until.max(self.now()), &mut stray)?;
             if stray.is_empty() {
@@ -139,10 +139,10 @@ impl<'a> SerialLine<'a> {
         }
     }
 
-    /// Sends a frame, and shows of it what may be shown: also where a recording does not know it.
+    /// Sends a frame and traces its visible bytes, even if a recording does not contain the frame.
     ///
     /// # Errors
-    /// The wire.
+    /// Errors of the connection.
     pub(crate) fn send(&mut self, bytes: &[u8], shown: MaskedBytes, at: Moment) -> Result<(), LinkError> {
         let text = shown.to_string();
         self.ctx.trace.record(at, Direction::Sent, shown);
@@ -157,7 +157,7 @@ impl<'a> SerialLine<'a> {
     /// Receives bytes, at most until `until`.
     ///
     /// # Errors
-    /// The wire.
+    /// Errors of the connection.
     pub(crate) fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         self.ctx.wire.receive(until, into)
     }
@@ -167,12 +167,12 @@ impl<'a> SerialLine<'a> {
         self.passed = Some(Vec::new());
     }
 
-    /// Takes the bytes that came too late or after a reply since they are kept, and stops keeping them.
+    /// Returns the bytes that arrived too late or after a reply since recording of them began, and ends the recording.
     pub(crate) fn take_passed(&mut self) -> Vec<u8> {
         self.passed.take().unwrap_or_default()
     }
 
-    /// Lets bytes pass that are no reply to what was asked. Of noise without an end only the first are kept.
+    /// Skips bytes that are not the reply. Of continuous noise, only the first bytes are kept.
     pub(crate) fn pass(&mut self, bytes: &[u8]) {
         if let Some(passed) = &mut self.passed {
             passed.extend(bytes.iter().take(MOST_KEPT.saturating_sub(passed.len())));
@@ -188,7 +188,7 @@ impl<'a> SerialLine<'a> {
         self.show(at, MaskedBytes::hidden(count));
     }
 
-    /// Counts a try that gave no answer; true when there may be another. `longest` is the time that a try takes at most.
+    /// Counts a try without an answer; returns whether another is allowed. `longest` is the maximum duration of a try.
     pub(crate) fn may_ask_again(&mut self, state: &mut LineState, tries: u32, longest: Duration) -> bool {
         let now = self.now();
         state.damaged += 1;
@@ -203,13 +203,13 @@ impl<'a> SerialLine<'a> {
         again
     }
 
-    /// Listens on after a silence, longer each time: what comes now is the reply to a request before, on a wire that is
-    /// slower than its margin says, and would be taken for the reply to the next.
+    /// Continues to receive after a time-out, longer each time: bytes that arrive now are the reply to an earlier request,
+    /// on a connection slower than its margin, and would be taken for the reply to the next one.
     ///
     /// # Errors
     /// See [`LineError`].
     pub(crate) fn hear_late(&mut self, state: &mut LineState, tries: u32, quiet: Duration) -> Result<(), LineError> {
-        // A device known to be silent for long is asked often.
+        // A device known to be silent for a long time is requested often.
         let doublings = tries.min(if self.patience.is_some() { 1 } else { 8 });
         let patience = state.margin.saturating_mul(1 << doublings).min(LONGEST_MARGIN);
         let end = self.now() + patience;
@@ -218,7 +218,7 @@ impl<'a> SerialLine<'a> {
             if self.now() >= end {
                 return Ok(());
             }
-            // On a slow wire this takes seconds: a wish to end is heard in them.
+            // On a slow connection this takes seconds: cancellation is checked meanwhile.
             self.check_cancel()?;
             let slice = (self.now() + SLICE).min(end);
             self.ctx.wire.receive(slice, &mut late)?;
@@ -228,8 +228,8 @@ impl<'a> SerialLine<'a> {
         self.let_late_ones_pass(state, quiet)
     }
 
-    /// Lets late bytes pass: every request without a reply may still get one. The first of them shows the maximum delay
-    /// of the wire, and for that long after the last of them nothing is sent.
+    /// Skips late bytes: every request without a reply may still get one. The first of them shows the maximum delay of the
+    /// connection, and for that time after the last of them nothing is sent.
     ///
     /// # Errors
     /// See [`LineError`].
@@ -248,10 +248,10 @@ impl<'a> SerialLine<'a> {
         Ok(())
     }
 
-    /// Listens until nothing came for `quiet`.
+    /// Receives until nothing arrives for `quiet`.
     ///
     /// # Errors
-    /// The wire, or [`LineError::NeverSilent`].
+    /// Errors of the connection, or [`LineError::NeverSilent`].
     pub(crate) fn wait_for_silence(&mut self, state: &mut LineState, quiet: Duration) -> Result<(), LineError> {
         let give_up = self.now() + NEVER_SILENT;
         let mut stray = Vec::new();

@@ -1,7 +1,7 @@
-//! The world at the other end of a cable: wires, clocks and the context in which a procedure runs.
+//! Connections, clocks, and the context in which a procedure runs.
 //!
-//! Most devices need one kind of wire, a stream of bytes ([`ByteLink`]); cyclic data are packets beside it ([`Datagrams`]).
-//! What else a protocol makes of them (registers, process data, explicit messages) takes the same [`Ctx`].
+//! Most devices need one kind of connection, a stream of bytes ([`ByteLink`]); some also exchange cyclic data as packets
+//! ([`Datagrams`]). Protocols with registers, process data or explicit messages use the same [`Ctx`].
 
 #![warn(missing_docs)]
 
@@ -42,23 +42,23 @@ use crate::units::{CharacterFormat, Moment};
 
 /// A wire on which bytes come and go.
 pub trait ByteLink: Send {
-    /// Hands bytes to the line, all in one call, so that no gap arises inside a frame. It may return before the last
-    /// bit has left.
+    /// Writes bytes to the line in one call, so that no gap arises inside a frame. It may return before the last bit is
+    /// sent.
     ///
     /// # Errors
-    /// When the line is gone.
+    /// Returns an error if the line is lost.
     fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
 
-    /// Waits until something arrives, at most until `until`, and appends it to `into`. Nothing appended: the time is up.
+    /// Waits for bytes until `until` and appends them to `into`. Appends nothing when the time is up.
     ///
     /// # Errors
-    /// When the line is gone.
+    /// Returns an error if the line is lost.
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError>;
 
     /// Sets baud rate and parity from now on.
     ///
     /// # Errors
-    /// When the line is gone or cannot be set so.
+    /// Returns an error if the line is lost or the format cannot be set.
     fn set_format(&mut self, format: CharacterFormat) -> Result<(), LinkError>;
 
     /// Returns whether [`set_format`](Self::set_format) has an effect. A device server has its own settings, which are
@@ -67,21 +67,21 @@ pub trait ByteLink: Send {
         true
     }
 
-    /// Looks whether the line is still there, without sending or taking anything.
+    /// Checks that the line still exists, without sending or receiving.
     ///
     /// # Errors
-    /// When the line is gone.
+    /// Returns an error if the line is lost.
     fn check(&mut self) -> Result<(), LinkError>;
 }
 
-/// The wish to end what is going on. Clones share it.
+/// A request to cancel the running work. Clones share it.
 #[derive(Clone, Debug, Default)]
 pub struct Cancel(Arc<CancelState>);
 
 #[derive(Debug)]
 struct CancelState {
     requested: AtomicBool,
-    /// Transactions left until the wish comes by itself.
+    /// Number of transactions left until the automatic cancellation.
     fuse: AtomicU64,
 }
 
@@ -92,14 +92,14 @@ impl Default for CancelState {
 }
 
 impl Cancel {
-    /// A wish that comes by itself when `transactions` transactions have been carried out.
+    /// Creates a cancellation that takes effect by itself after `transactions` transactions.
     pub fn after(transactions: u64) -> Self {
         let cancel = Cancel::default();
         cancel.0.fuse.store(transactions, Ordering::SeqCst);
         cancel
     }
 
-    /// Wishes an end at the next possible point.
+    /// Requests cancellation at the next possible point.
     pub fn request(&self) {
         self.0.requested.store(true, Ordering::SeqCst);
     }
@@ -109,12 +109,12 @@ impl Cancel {
         self.0.requested.store(false, Ordering::SeqCst);
     }
 
-    /// The end is wished.
+    /// Returns whether cancellation is requested.
     pub fn is_requested(&self) -> bool {
         self.0.requested.load(Ordering::SeqCst)
     }
 
-    /// Called before each transaction: whether it may not begin any more.
+    /// Returns whether the next transaction must not begin; called before each.
     pub fn stops_transaction(&self) -> bool {
         let left = self.0.fuse.load(Ordering::SeqCst);
         if left == 0 {
@@ -126,13 +126,13 @@ impl Cancel {
     }
 }
 
-/// All that a procedure gets: a wire, a clock, the wish to end and the trace.
+/// The context of a procedure: connection, clock, cancellation and trace.
 pub struct Ctx<'a, W: ?Sized = dyn ByteLink> {
     /// The wire.
     pub wire: &'a mut W,
     /// The time.
     pub clock: &'a dyn Clock,
-    /// The wish to end.
+    /// The cancellation.
     pub cancel: &'a Cancel,
     /// The trace of the line.
     pub trace: &'a mut Trace,

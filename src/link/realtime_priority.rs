@@ -1,10 +1,10 @@
-//! Threads that have to wake up at their moment. Packets of a cyclic connection are due every few milliseconds, and a computer
-//! that draws or compiles lets ordinary threads wait for longer than that.
+//! Threads that have to wake up at an exact time. Packets of a cyclic connection are due every few milliseconds, and on a
+//! busy computer ordinary threads wait for longer than that.
 
 use thread_priority::{Error, ThreadPriority};
 
-/// Asks the system to wake the thread that calls this before all ordinary ones, for as long as it lives. Whether it will:
-/// Linux does it for those who may have it (`rtprio` among their limits), and for others not.
+/// Requests from the system that the calling thread is woken before all ordinary ones, until it ends. Returns whether the
+/// system agreed: Linux does for users with the permission (`rtprio` among their limits).
 pub fn wake_before_others() -> bool {
     let asked = ask();
     if let Err(error) = &asked {

@@ -6,14 +6,14 @@ use super::{ByteLink, Clock, Direction, LinkError, LinkErrorKind, TraceEntry};
 use crate::bits::{MaskedBytes, hex};
 use crate::units::{CharacterFormat, Moment};
 
-/// One request of the recording and what came back.
+/// One request of the recording and its reply.
 struct Exchange {
     request: MaskedBytes,
-    /// `None` where nothing came, or where what came was masked.
+    /// `None` if no reply came, or the reply was masked.
     reply: Option<Vec<u8>>,
 }
 
-/// A recording played back. Each request is looked up from where the last one was found, once around; masked bytes match
+/// A recording played back. Each request is searched from the position of the last one, once around; masked bytes match
 /// anything.
 pub struct ReplayLink {
     target: String,

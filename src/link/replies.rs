@@ -1,4 +1,4 @@
-//! The reply times of a device, seen from outside the thread of its session.
+//! The reply times of a device, readable outside the thread of its session.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,7 +18,7 @@ struct Measured {
 }
 
 impl Replies {
-    /// A reply came so long after its request, in time or too late.
+    /// Records the time between a request and its reply, in time or too late.
     pub(crate) fn note(&self, took: Duration) {
         let took = u64::try_from(took.as_micros()).unwrap_or(u64::MAX);
         self.0.sum.fetch_add(took, Ordering::Relaxed);

@@ -1,5 +1,5 @@
 //! `serial:PATH` — a serial port, usually a USB–RS-485 converter; and `bridge:PATH`, the port of an adapter. DTR and RTS
-//! are left as opening makes them.
+//! remain as they are after opening.
 
 use std::io::{ErrorKind, Read, Write};
 use std::sync::Arc;
@@ -21,10 +21,10 @@ pub struct PortInfo {
     pub serial_number: Option<String>,
 }
 
-/// Returns the serial ports of this machine, by name. Pseudo-terminals are never listed but can be opened.
+/// Returns the serial ports of this computer, by name. Pseudo-terminals are never listed but can be opened.
 ///
 /// # Errors
-/// When the system does not tell.
+/// Returns an error if the system has no list of ports.
 pub fn ports() -> Result<Vec<PortInfo>, LinkError> {
     if !platform::lists_ports() {
         return Ok(Vec::new());
@@ -60,16 +60,16 @@ impl SerialLink {
     ///
     /// # Errors
     /// [`LinkErrorKind::NotFound`], [`Permission`](LinkErrorKind::Permission), [`Busy`](LinkErrorKind::Busy),
-    /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or what the system says.
+    /// [`NotAPort`](LinkErrorKind::NotAPort), [`Format`](LinkErrorKind::Format) or another error of the system.
     pub fn open(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_as(path, format, clock, |builder| builder)
     }
 
-    /// Opens the port of an adapter, with DTR asserted: to many a microcontroller an edge of DTR is a reset. Linux asserts
-    /// it by itself, other systems have to be asked.
+    /// Opens the port of an adapter, with DTR asserted: for many microcontrollers an edge of DTR is a reset. Linux asserts
+    /// it automatically, other systems on request.
     ///
     /// # Errors
-    /// As [`open`](Self::open).
+    /// Errors as for [`open`](Self::open).
     pub fn open_adapter(path: &str, format: CharacterFormat, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         Self::open_as(path, format, clock, |builder| builder.dtr_on_open(true))
     }
@@ -187,7 +187,7 @@ mod platform {
 
     use super::LinkErrorKind;
 
-    /// serialport looks into this folder without checking that it is there.
+    /// Returns whether serialport can list ports: it looks into this folder without checking that it exists.
     pub(super) fn lists_ports() -> bool {
         !cfg!(target_os = "linux") || Path::new("/sys/class/tty").is_dir()
     }
@@ -205,7 +205,7 @@ mod platform {
         LinkErrorKind::Permission { group }
     }
 
-    /// Name of a group other than root's: joining that would be no advice.
+    /// Returns the name of a group other than root's, which must not be recommended.
     fn group_name(gid: u32) -> Option<String> {
         let groups = std::fs::read_to_string("/etc/group").ok()?;
         let id = gid.to_string();
@@ -220,7 +220,7 @@ mod platform {
 
 #[cfg(not(unix))]
 mod platform {
-    //! Ports have names (`COM3`) and no owner; a port in use answers "access denied".
+    //! Ports have names (`COM3`) and no owner; a port in use causes "access denied".
 
     use super::LinkErrorKind;
 

@@ -1,4 +1,4 @@
-//! `sim:` — a virtual device in this process. In virtual time, waiting for an answer takes no time at all.
+//! `sim:` — a virtual device in this process. In virtual time, waiting for an answer takes no time.
 
 use std::collections::VecDeque;
 use std::net::{Ipv4Addr, SocketAddrV4};
@@ -8,8 +8,7 @@ use super::{ByteLink, Clock, DatagramPort, Datagrams, LinkError};
 use crate::sim::{ByteDevice, DatagramDevice};
 use crate::units::{CharacterFormat, Moment};
 
-/// A wire to a virtual device. The device can be shared: with a test that looks into it, or with the link that comes
-/// after this one.
+/// A connection to a virtual device. The device can be shared with a test that inspects it, or with the next link.
 pub struct SimLink {
     device: Arc<Mutex<dyn ByteDevice>>,
     clock: Arc<dyn Clock>,
@@ -25,7 +24,7 @@ impl SimLink {
     }
 
     fn with_device<T>(&self, work: impl FnOnce(&mut dyn ByteDevice) -> T) -> T {
-        // A virtual device left behind by a panicking test is still a device.
+        // A virtual device after the panic of a test is still valid.
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut *device)
     }
@@ -71,7 +70,7 @@ pub struct SimPort {
     next: u16,
 }
 
-/// The first port that is given away; any will do.
+/// The first port that is assigned; any will do.
 const FIRST_PORT: u16 = 50_000;
 
 impl SimPort {
@@ -111,7 +110,7 @@ impl Datagrams for SimPackets {
     }
 
     fn aim(&mut self, _port: u16) {
-        // The device is all that listens.
+        // The virtual device is the only receiver.
     }
 
     fn send(&mut self, packet: &[u8]) -> Result<(), LinkError> {

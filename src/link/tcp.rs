@@ -17,7 +17,7 @@ pub struct TcpLink {
 
 impl TcpLink {
     const CONNECT_TIME: Duration = Duration::from_secs(3);
-    /// A socket's own time-out comes only with the next tick of the system: what ends sooner is waited for in glances.
+    /// A socket's own time-out has the resolution of the system tick: shorter waits are polled.
     const SHORT: Duration = Duration::from_millis(10);
     const GLANCE: Duration = Duration::from_micros(500);
 
@@ -32,7 +32,7 @@ impl TcpLink {
         for address in addresses {
             match TcpStream::connect_timeout(&address, Self::CONNECT_TIME) {
                 Ok(stream) => {
-                    // A frame must not wait for more bytes; where that cannot be asked for, it is only slower.
+                    // A frame must not wait for more bytes; if this option cannot be set, the connection is only slower.
                     let _ = stream.set_nodelay(true);
                     return Ok(TcpLink { stream, target: target.to_owned(), clock });
                 }
@@ -42,7 +42,7 @@ impl TcpLink {
         Err(reason)
     }
 
-    /// Waits for bytes, but not where the wait is a short one.
+    /// Reads bytes, without waiting if the wait is short.
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> std::io::Result<usize> {
         if wait >= Self::SHORT {
             self.stream.set_read_timeout(Some(wait))?;
@@ -116,7 +116,7 @@ mod tests {
     use crate::link::RealClock;
     use std::net::TcpListener;
 
-    /// A tick of the system may be ten milliseconds: a hundred looks would take a second.
+    /// A tick of the system may be ten milliseconds: a hundred checks would take a second.
     #[test]
     fn a_look_does_not_wait_and_a_short_wait_is_short() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();

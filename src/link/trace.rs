@@ -1,4 +1,4 @@
-//! The trace tap: all frames on a wire, with secrets masked; and its text form, which `replay:` reads.
+//! The trace: all frames on a connection, with secrets masked; and its text form, which `replay:` reads.
 //!
 //! ```text
 //! # encoder-studio trace 1
@@ -17,16 +17,16 @@ use crate::units::Moment;
 /// The direction of bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From us.
+    /// From the computer.
     Sent,
-    /// To us.
+    /// To the computer.
     Received,
 }
 
 /// One frame on the wire.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TraceEntry {
-    /// When its first byte was sent or received.
+    /// Time at which its first byte was sent or received.
     pub at: Moment,
     /// The direction.
     pub direction: Direction,
@@ -72,7 +72,7 @@ pub const HEADER: &str = "# encoder-studio trace 1";
 /// Begins a trace file.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub fn write_header(file: &mut impl Write) -> io::Result<()> {
     writeln!(file, "{HEADER}")
 }
@@ -80,7 +80,7 @@ pub fn write_header(file: &mut impl Write) -> io::Result<()> {
 /// Adds a line to a trace file.
 ///
 /// # Errors
-/// What the writer says.
+/// Errors of the writer.
 pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> {
     let sign = match entry.direction {
         Direction::Sent => '>',
@@ -89,7 +89,7 @@ pub fn write_entry(file: &mut impl Write, entry: &TraceEntry) -> io::Result<()> 
     writeln!(file, "{:.6} {sign} {}", entry.at.since_start().as_secs_f64(), entry.bytes)
 }
 
-/// Why a text is not a trace.
+/// The reason why a text is not a trace.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TraceFileError {
     /// The first line is not that of a trace file.
@@ -114,7 +114,7 @@ pub enum TraceFileError {
 /// Reads a trace file.
 ///
 /// # Errors
-/// With the line's number when it is not one.
+/// Returns the number of the first invalid line.
 pub fn read_trace(text: &str) -> Result<Vec<TraceEntry>, TraceFileError> {
     let mut lines = text.lines().zip(1..);
     if lines.next().map(|(line, _)| line.trim_end()) != Some(HEADER) {

@@ -11,11 +11,11 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, bounded};
 use super::{Broadcast, Clock, DatagramPort, Datagrams, LinkError, LinkErrorKind, wake_before_others};
 use crate::units::Moment;
 
-/// The longest packet that is looked at; process data are far shorter.
+/// The longest packet that is accepted; process data are much shorter.
 const LONGEST: usize = 1500;
-/// Packets that wait to be taken. In a flood the rest is dropped.
+/// Largest number of received packets that wait to be read. Further packets are dropped.
 const WAITING: usize = 64;
-/// The longest time until a receiver notices that its owner is gone.
+/// The longest time until a receiver notices that its owner has been dropped.
 const GLANCE: Duration = Duration::from_millis(100);
 
 /// Opens channels for packets to and from the target of a TCP connection, at the local address that leads to it.
@@ -64,10 +64,10 @@ impl DatagramPort for UdpPort {
     }
 }
 
-/// The address of ours from which packets to a target leave.
+/// Returns the address of ours from which packets to a target leave.
 fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
-    // Sends nothing, and chooses the way.
+    // Sends nothing, and selects the network interface.
     socket.connect(target)?;
     match socket.local_addr()? {
         SocketAddr::V4(address) => Ok(*address.ip()),
@@ -75,7 +75,7 @@ fn leads_to(target: SocketAddrV4) -> io::Result<Ipv4Addr> {
     }
 }
 
-/// Packets to and from one target. A thread listens, so that one waits exactly, and for no longer than a packet takes.
+/// Packets to and from one target. A thread receives, so that a wait ends exactly with the packet or the time.
 struct Packets {
     name: String,
     target: SocketAddrV4,
@@ -120,9 +120,9 @@ impl Packets {
                         let _ = sender.try_send(buffer.iter().take(count).copied().collect());
                     }
                     Ok(_) => {}
-                    // A port that is closed at the other end is told here; it may be opened again.
+                    // A closed port of the target is reported here; it may be opened again.
                     Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-                    // However often that comes, others have to be let run.
+                    // This may repeat without limit, so other threads are given time to run.
                     Err(error) if is_passing(&error) => std::thread::sleep(Duration::from_millis(1)),
                     Err(_) => return,
                 }
@@ -157,7 +157,7 @@ impl Datagrams for Packets {
     fn send(&mut self, packet: &[u8]) -> Result<(), LinkError> {
         match self.socket.send_to(packet, self.target) {
             Ok(_) => Ok(()),
-            // Of a packet before.
+            // The error belongs to an earlier packet.
             Err(error) if is_passing(&error) => Ok(()),
             Err(error) => Err(LinkError::during_use(&self.name, &error)),
         }
@@ -175,7 +175,7 @@ impl Datagrams for Packets {
     }
 }
 
-/// A question to all who listen at a port, in all networks that this computer is part of.
+/// A request to all devices at a port, in all networks of this computer.
 pub struct UdpBroadcast {
     socket: UdpSocket,
     to: Vec<SocketAddrV4>,
@@ -186,7 +186,7 @@ impl UdpBroadcast {
     /// Creates a link that broadcasts in every network.
     ///
     /// # Errors
-    /// The system has no socket left.
+    /// Returns an error if the system has no free socket.
     pub fn to_all(port: u16, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let mut networks = vec![Ipv4Addr::BROADCAST];
         networks.extend(networks_of_ours());
@@ -197,7 +197,7 @@ impl UdpBroadcast {
     /// Creates a link to these addresses.
     ///
     /// # Errors
-    /// The system has no socket left.
+    /// Returns an error if the system has no free socket.
     pub fn to(to: Vec<SocketAddrV4>, clock: Arc<dyn Clock>) -> Result<Self, LinkError> {
         let open = || {
             let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0))?;
@@ -214,7 +214,7 @@ impl UdpBroadcast {
     }
 }
 
-/// Addresses of all in the networks that are reached without a gateway, where the system tells them.
+/// Returns the broadcast addresses of the networks that are reached without a gateway, if the system lists them.
 fn networks_of_ours() -> Vec<Ipv4Addr> {
     std::fs::read_to_string("/proc/net/route").map(|table| broadcasts(&table)).unwrap_or_default()
 }
@@ -228,7 +228,7 @@ fn broadcasts(table: &str) -> Vec<Ipv4Addr> {
         let fields: Vec<&str> = line.split_whitespace().collect();
         let &[_, network, "00000000", _, _, _, _, mask, ..] = fields.as_slice() else { continue };
         let (Some(network), Some(mask)) = (address(network), address(mask)) else { continue };
-        // A network of one has no other members, and the network of all is asked anyway.
+        // A network of one address has no other members, and the network of all is asked anyway.
         if mask != 0 && mask != u32::MAX {
             found.push(Ipv4Addr::from(network | !mask));
         }

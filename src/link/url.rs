@@ -1,4 +1,4 @@
-//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; whoever opens the link interprets
+//! Link URLs: `serial:/dev/ttyUSB0?baud=9600&parity=even`. This module splits them; the code that opens the link interprets
 //! the parameters.
 
 use std::fmt;
@@ -37,12 +37,12 @@ impl Scheme {
         (Scheme::Enip, "enip"),
     ];
 
-    /// The word before the colon.
+    /// Returns the word before the colon.
     pub fn word(self) -> &'static str {
         Self::ALL.iter().find(|(scheme, _)| *scheme == self).map_or("", |(_, word)| word)
     }
 
-    /// Returns what follows the colon.
+    /// Returns the part that is required after the colon.
     fn needs(self) -> &'static str {
         match self {
             Scheme::Tcp => "host and port, as in tcp:192.168.0.7:4001",
@@ -60,14 +60,14 @@ impl Scheme {
 pub struct LinkUrl {
     /// Kind of wire.
     pub scheme: Scheme,
-    /// Path, host and port, or file; empty for `sim:`. Of `bridge:` a path, or host and port behind `tcp:`; of `modbus:`
-    /// and `enip:` always with its port, which is 502 or 44818 where none is written.
+    /// Path, host and port, or file; empty for `sim:`. For `bridge:`, a path, or host and port after `tcp:`; for `modbus:`
+    /// and `enip:`, always with the port, which is 502 or 44818 by default.
     pub target: String,
     /// The parameters after the question mark.
     pub query: Query,
 }
 
-/// The resource of the machine that a link needs; two links may need the same.
+/// The resource of the computer that a link uses; two links may use the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wire<'a> {
     /// The device is in this process.
@@ -80,22 +80,22 @@ pub enum Wire<'a> {
     File(&'a str),
 }
 
-/// Parameters in the order written. Names are lower case; each stands once.
+/// Parameters in the order written. Names are lower case, and unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Query(Vec<(String, String)>);
 
-/// Why a text is not a link.
+/// The reason why a text is not a link.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum UrlError {
-    /// No colon, or a word before it that names no kind of link.
+    /// The colon is missing, or the word before it is not a kind of link.
     #[error("{0:?} is not a link: a link begins with sim:, serial:, tcp:, modbus:, enip:, replay: or bridge:")]
     Scheme(String),
-    /// A link that cannot lead to the device that is meant.
+    /// A kind of link that cannot reach this device.
     #[error("{scheme}: links cannot be used for this device; valid links begin with {known}")]
     Device {
         /// The word before the colon.
         scheme: &'static str,
-        /// Words that could stand there.
+        /// The words that are allowed.
         known: &'static str,
     },
     /// The port, host or file is missing.
@@ -125,7 +125,7 @@ pub enum UrlError {
         name: String,
         /// The word before the colon.
         scheme: &'static str,
-        /// The names that are known.
+        /// The known names.
         known: String,
     },
     /// A value that cannot be used.
@@ -172,7 +172,7 @@ impl FromStr for LinkUrl {
 }
 
 impl LinkUrl {
-    /// The virtual device as delivered.
+    /// Creates the virtual device as delivered.
     pub fn sim() -> Self {
         LinkUrl { scheme: Scheme::Sim, target: String::new(), query: Query::default() }
     }
@@ -214,7 +214,7 @@ const MODBUS_PORT: &str = ":502";
 /// Default port of EtherNet/IP explicit messages.
 const ENIP_PORT: &str = ":44818";
 
-/// A host alone, which may be an IPv6 address in brackets.
+/// Returns whether a text is a host alone, which may be an IPv6 address in brackets.
 fn has_no_port(target: &str) -> bool {
     !target.is_empty() && (!target.contains(':') || target.ends_with(']'))
 }
@@ -248,12 +248,12 @@ impl FromStr for Query {
 }
 
 impl Query {
-    /// The value of a parameter.
+    /// Returns the value of a parameter.
     pub fn get(&self, name: &str) -> Option<&str> {
         self.0.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
     }
 
-    /// Gives a parameter a value, in its place where it is there already.
+    /// Sets a parameter; an existing one keeps its place.
     pub fn set(&mut self, name: &str, value: &str) {
         match self.0.iter_mut().find(|(own, _)| own == name) {
             Some((_, own)) => value.clone_into(own),
@@ -261,7 +261,7 @@ impl Query {
         }
     }
 
-    /// All parameters in the order written.
+    /// Returns all parameters in the order written.
     pub fn pairs(&self) -> &[(String, String)] {
         &self.0
     }
@@ -271,10 +271,10 @@ impl Query {
         self.0.iter().filter(|(name, _)| !names.contains(&name.as_str())).cloned().collect()
     }
 
-    /// Reads a parameter; `None` when it was left out.
+    /// Reads a parameter; `None` if it is missing.
     ///
     /// # Errors
-    /// A value that it does not take.
+    /// Returns an error if the value is not allowed.
     pub fn read<V: Values>(&self, name: &str, values: &V) -> Result<Option<V::Value>, UrlError> {
         Ok(self.get(name).map(|value| values.take(name, value)).transpose()?)
     }

@@ -10,18 +10,18 @@ use crate::expected::{Expected, Limit, Quantity};
 pub trait Values {
     type Value;
 
-    /// The meaning of a value as it is written.
+    /// Parses a value.
     fn read(&self, text: &str) -> Option<Self::Value>;
 
     /// Returns the allowed values.
     fn allowed(&self) -> Expected;
 
-    /// A value as it is written, where it is short enough for an example.
+    /// Prints a value, if it is short enough for an example.
     fn print(&self, _value: &Self::Value) -> String {
         String::new()
     }
 
-    /// The sign of their unit; empty where they have none.
+    /// Returns the symbol of the unit; empty if there is none.
     fn unit(&self) -> &'static str {
         ""
     }
@@ -31,20 +31,20 @@ pub trait Values {
         false
     }
 
-    /// The meaning of the value of a key.
+    /// Returns the meaning of the value of a key.
     ///
     /// # Errors
-    /// With what is allowed.
+    /// Returns the allowed values.
     fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
         self.read(value).ok_or_else(|| Refused::new(key, value, self.allowed()))
     }
 }
 
-/// Whole numbers: what they count, and their range.
+/// Whole numbers: their quantity and range.
 #[derive(Clone, Debug)]
 pub struct Whole<T>(pub Quantity, pub RangeInclusive<T>);
 
-/// Numbers that may have a decimal point: what they count, and their range, exact to a thousandth.
+/// Numbers that may have a decimal point: their quantity and range, exact to a thousandth.
 #[derive(Clone, Debug)]
 pub struct Decimal(pub Quantity, pub RangeInclusive<f64>);
 
@@ -63,16 +63,16 @@ pub struct Words<T: 'static>(pub &'static [(&'static str, T)]);
 #[derive(Clone, Debug)]
 pub struct Checked<T>(pub Expected, pub fn(&str) -> Option<T>);
 
-/// Values of a parameter that has none where it is left out.
+/// Values of an optional parameter.
 #[derive(Clone, Debug)]
 pub struct Maybe<V>(pub V);
 
 pub const SWITCH: Words<bool> = Words(&[("on", true), ("off", false)]);
 
-/// Any text: what it means depends on other parameters. None is refused here.
+/// Any text, whose meaning depends on other parameters. No text is refused here.
 pub const ANY: Checked<String> = Checked(Expected::words(&[]), |text| Some(text.to_owned()));
 
-/// A whole number that fits into its type: decimal, or hexadecimal behind `0x`.
+/// Parses a whole number that fits into its type: decimal, or hexadecimal after `0x`.
 pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
     let number = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u64::from_str_radix(digits, 16).ok()?.into(),
@@ -81,7 +81,7 @@ pub fn number<T: TryFrom<i128>>(text: &str) -> Option<T> {
     T::try_from(number).ok()
 }
 
-/// The sign of a unit, where values stand in a form with it.
+/// Returns the symbol of a unit, for values shown with it in a form.
 const fn sign(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Milliseconds => "ms",

@@ -1,5 +1,5 @@
-//! The content of a profile, for any kind of device. A device implements [`Profile`] for its own type; this module
-//! makes of it the untyped traits that documents carry.
+//! The content of a profile, for any kind of device. A device implements [`Profile`] for its own type; this module derives
+//! the untyped traits that documents use.
 
 use std::any::Any;
 use std::fmt;
@@ -13,19 +13,19 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
     /// The word for the kind of device, as on the command line and in profiles.
     const KIND: &'static str;
 
-    /// Its format, for the list of [`Formats`].
+    /// The format, for the list of [`Formats`].
     const FORMAT: &'static dyn ProfileFormat = &FormatOf::<Self>(PhantomData);
 
-    /// Formats with nothing but its own: where no other kind can be meant.
+    /// The formats with only this one: for places where no other kind is possible.
     const FORMATS: Formats = Formats::new(&[Self::FORMAT]);
 
-    /// Reads it: takes its entries out of those of the document.
+    /// Reads the profile: takes its entries from those of the document.
     ///
     /// # Errors
-    /// With the entry that is wrong.
+    /// Returns an error that names the invalid entry.
     fn read(entries: &mut Entries) -> Result<Self, ProfileError>;
 
-    /// Writes its entries into the document.
+    /// Writes the entries into the document.
     fn write(&self, writer: &mut Writer);
 
     /// Compares it with another one.
@@ -34,22 +34,22 @@ pub trait Profile: Clone + fmt::Debug + PartialEq + Send + Sync + 'static {
 
 /// The parser for the profiles of one kind of device.
 pub trait ProfileFormat: fmt::Debug + Sync {
-    /// The word for the kind of device.
+    /// Returns the word for the kind of device.
     fn kind(&self) -> &'static str;
 
     /// Reads a profile.
     ///
     /// # Errors
-    /// With the entry that is wrong.
+    /// Returns an error that names the invalid entry.
     fn parse(&self, entries: &mut Entries) -> Result<Body, ProfileError>;
 }
 
 /// The saved content of a device. Implemented for every [`Profile`].
 pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
-    /// The word for the kind of device.
+    /// Returns the word for the kind of device.
     fn kind(&self) -> &'static str;
 
-    /// Writes its entries into the document.
+    /// Writes the entries into the document.
     fn emit(&self, writer: &mut Writer);
 
     /// Returns a copy.
@@ -58,7 +58,7 @@ pub trait ProfileBody: Any + fmt::Debug + Send + Sync {
     /// Returns whether it equals another body.
     fn equals(&self, other: &dyn ProfileBody) -> bool;
 
-    /// Compares it with another one; `None` where that is of another kind of device.
+    /// Compares it with another one; `None` if that is of another kind of device.
     fn compared(&self, other: &dyn ProfileBody) -> Option<Comparison>;
 }
 
@@ -109,17 +109,17 @@ impl<P: Profile> ProfileFormat for FormatOf<P> {
 pub struct Body(Box<dyn ProfileBody>);
 
 impl Body {
-    /// A profile of a kind of device.
+    /// Creates a profile of a kind of device.
     pub fn new<P: Profile>(profile: P) -> Self {
         Body(Box::new(profile))
     }
 
-    /// The word for the kind of device.
+    /// Returns the word for the kind of device.
     pub fn kind(&self) -> &'static str {
         self.0.kind()
     }
 
-    /// Writes its entries into the document.
+    /// Writes the entries into the document.
     pub(super) fn emit(&self, writer: &mut Writer) {
         self.0.emit(writer);
     }
@@ -137,19 +137,19 @@ impl Body {
         ProfileError::OtherKind { found: self.kind(), wanted }
     }
 
-    /// The profile of a kind of device; `None`: it is of another one.
+    /// Returns the profile as that of a kind of device; `None` if it is of another kind.
     pub fn get<P: Profile>(&self) -> Option<&P> {
         let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()
     }
 
-    /// The same, to be changed.
+    /// Returns the same, to be changed.
     pub fn get_mut<P: Profile>(&mut self) -> Option<&mut P> {
         let any: &mut dyn Any = self.0.as_mut();
         any.downcast_mut()
     }
 
-    /// The profile of a kind of device.
+    /// Returns the profile of a kind of device.
     ///
     /// # Errors
     /// [`ProfileError::OtherKind`].
@@ -183,17 +183,17 @@ impl PartialEq for Body {
 pub struct Formats(&'static [&'static dyn ProfileFormat]);
 
 impl Formats {
-    /// These.
+    /// Creates a list of these.
     pub const fn new(formats: &'static [&'static dyn ProfileFormat]) -> Self {
         Formats(formats)
     }
 
-    /// The words for the kinds of devices.
+    /// Returns the words for the kinds of devices.
     pub fn kinds(self) -> impl Iterator<Item = &'static str> {
         self.0.iter().map(|format| format.kind())
     }
 
-    /// Reads what is saved of a device of the kind that a document names.
+    /// Reads the content for the kind of device that a document names.
     pub(super) fn parse(self, kind: String, entries: &mut Entries) -> Result<Body, ProfileError> {
         match self.0.iter().find(|format| format.kind() == kind) {
             Some(format) => format.parse(entries),

@@ -1,10 +1,10 @@
-//! An error of a device's own type, on its way through code that knows no device.
+//! An error of a device's own type, passed through code that knows no device.
 
 use std::any::Any;
 use std::error::Error;
 use std::fmt;
 
-/// Why a text is refused, as the device's own error type. It displays like that error and compares equal to it.
+/// The reason why a text is refused, as the device's own error type. It displays like that error and compares equal to it.
 pub struct Cause(Box<dyn Fact>);
 
 trait Fact: Any + Error + Send + Sync {
@@ -24,12 +24,12 @@ impl<E: Error + Clone + Eq + Send + Sync + 'static> Fact for E {
 }
 
 impl Cause {
-    /// An error of a device.
+    /// Creates an error of a device.
     pub fn new<E: Error + Clone + Eq + Send + Sync + 'static>(error: E) -> Self {
         Cause(Box::new(error))
     }
 
-    /// The error, where it is of this type.
+    /// Returns the error if it is of this type.
     pub fn get<E: Error + 'static>(&self) -> Option<&E> {
         let any: &dyn Any = self.0.as_ref();
         any.downcast_ref()

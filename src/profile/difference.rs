@@ -5,20 +5,20 @@ use std::ops::Range;
 /// One thing that is not the same on both sides.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Difference {
-    /// Its name, as `read` takes it: `field:1@3+2`.
+    /// The name, as `read` takes it: `field:1@3+2`.
     pub item: String,
-    /// Its value on the left; bytes as upper-case hex.
+    /// The value on the left; bytes as upper-case hex.
     pub left: String,
-    /// Its value on the right.
+    /// The value on the right.
     pub right: String,
 }
 
 /// The result of a comparison.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Comparison {
-    /// Only what differs, in the order of the device's memory.
+    /// Only the differences, in the order of the device's memory.
     pub differences: Vec<Difference>,
-    /// Number of things compared: a byte of a data field counts one, and so does its status byte.
+    /// Number of values compared: a byte of a data field counts one, and so does its status byte.
     pub compared: u64,
     /// Items that only the left side has, or that the right side cannot read.
     pub only_left: Vec<String>,
@@ -42,7 +42,7 @@ impl Comparison {
         }
     }
 
-    /// Items that only one side has.
+    /// Returns the items that only one side has.
     pub fn missing(&self) -> Vec<String> {
         self.only_left.iter().chain(&self.only_right).cloned().collect()
     }

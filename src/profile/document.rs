@@ -1,4 +1,4 @@
-//! A profile document: schema version, kind of device, and what is saved of it.
+//! A profile document: schema version, kind of device, and the saved content.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -17,10 +17,10 @@ use crate::expected::Expected;
 /// The version of the profile's form that this program writes.
 pub const SCHEMA: u32 = 1;
 
-/// A profile as it stands in a file.
+/// A profile as written in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Document {
-    /// When it was read from a device, RFC 3339.
+    /// Time at which it was read from a device, RFC 3339.
     pub saved: Option<String>,
     /// The user's note.
     pub note: Option<String>,
@@ -28,23 +28,22 @@ pub struct Document {
     pub body: Body,
     /// Entries that this program does not know.
     pub unknown: Unknown,
-    /// The version of its form. One that is newer than [`SCHEMA`] is only looked at: what this program does not know of it
-    /// would be lost with a save.
+    /// The version of its form. A profile newer than [`SCHEMA`] can only be viewed: a save would lose its unknown parts.
     pub schema: u32,
-    /// Places of entries that the schema does not have: of an older file they are taken into `extra`.
+    /// Paths of entries that the schema does not have: those of an older file are moved into `extra`.
     pub beyond: Vec<String>,
 }
 
 impl Document {
-    /// A document of now.
+    /// Creates a document with the current time.
     pub fn new(saved: String, body: Body) -> Self {
         Document { saved: Some(saved), note: None, body, unknown: Unknown::new(), schema: SCHEMA, beyond: Vec::new() }
     }
 
-    /// Reads a profile of a kind of device whose format is among these.
+    /// Reads a profile whose kind of device has a format in `formats`.
     ///
     /// # Errors
-    /// With line and column where the text is not RON, else with the entry that is wrong.
+    /// Returns line and column if the text is not RON, otherwise the invalid entry.
     pub fn parse(text: &str, formats: Formats) -> Result<Self, ProfileError> {
         let twice = RefCell::default();
         let syntax = |error: SpannedError| ProfileError::Syntax {
@@ -52,7 +51,7 @@ impl Document {
             column: error.span.start.col,
             what: match (error.code, twice.take()) {
                 (_, Some(name)) => SyntaxProblem::Twice(name),
-                // The crate's own words are for programmers.
+                // The messages of the crate are written for programmers.
                 (ron::Error::ExceededRecursionLimit, None) => SyntaxProblem::TooDeep,
                 (code, None) => SyntaxProblem::Parser(code.to_string()),
             },
@@ -86,13 +85,12 @@ impl Document {
         Ok(Document { saved, note, body, unknown, schema, beyond: reading.beyond() })
     }
 
-    /// Returns whether it has a newer schema: it can be viewed and compared, but neither saved nor written into a
-    /// device.
+    /// Returns whether it has a newer schema: it can be viewed and compared, but neither saved nor written into a device.
     pub fn is_newer(&self) -> bool {
         self.schema > SCHEMA
     }
 
-    /// The same, where all of it is known.
+    /// Returns the document if all of it is known.
     ///
     /// # Errors
     /// [`ProfileError::Schema`] of a newer schema.
@@ -100,7 +98,7 @@ impl Document {
         if self.is_newer() { Err(ProfileError::Schema { found: self.schema, known: SCHEMA }) } else { Ok(self) }
     }
 
-    /// The profile's text.
+    /// Returns the profile's text.
     pub fn emit(&self) -> String {
         let mut writer = Writer::default();
         writer.open("", '(');
@@ -118,7 +116,7 @@ impl Document {
         writer.finish()
     }
 
-    /// The word for the kind of device, as on the command line.
+    /// Returns the word for the kind of device, as on the command line.
     pub fn device(&self) -> &'static str {
         self.body.kind()
     }

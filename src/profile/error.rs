@@ -1,13 +1,13 @@
-//! Why a text is not a profile.
+//! The reasons why a text is not a profile.
 
 use super::Cause;
 use crate::bits::HexError;
 use crate::expected::Expected;
 
-/// Why a text is not a profile.
+/// The reason why a text is not a profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ProfileError {
-    /// Not RON.
+    /// The text is not RON.
     #[error("line {line}, column {column}: {what}")]
     Syntax {
         /// Counted from 1.
@@ -17,7 +17,7 @@ pub enum ProfileError {
         /// The problem.
         what: SyntaxProblem,
     },
-    /// The name of an entry is not known, and one like it is missing.
+    /// The name of an entry is not known, and a similar one is missing.
     #[error("line {line}, column {column}: {path} is unknown, and {meant} is missing")]
     Misspelt {
         /// Counted from 1.
@@ -29,20 +29,20 @@ pub enum ProfileError {
         /// The name that is missing.
         meant: String,
     },
-    /// No version of a profile's form, or a later one where it has to be known as a whole.
+    /// The version of the form is missing, or newer than known where the whole profile has to be known.
     #[error("schema {found}; this program knows schema 1 to {known}")]
     Schema {
         /// The value in the file.
         found: u32,
-        /// The newest that is known.
+        /// The newest known version.
         known: u32,
     },
-    /// Not a kind of device that this program saves.
+    /// The kind of device has no profiles in this program.
     #[error("device {found:?}; this program knows {}", quoted(known))]
     Device {
         /// The value in the file.
         found: String,
-        /// The kinds that are known.
+        /// The known kinds.
         known: Vec<&'static str>,
     },
     /// A kind of device that this program saves, and not the one that is asked for.
@@ -75,7 +75,7 @@ pub enum ProfileError {
         /// The problem.
         problem: HexError,
     },
-    /// A value that cannot be, or values that cannot be together, as the device tells it.
+    /// An invalid value, or an invalid combination of values, with the error of the device.
     #[error("{path}: {cause}")]
     Refused {
         /// Path of the entry.
@@ -85,7 +85,7 @@ pub enum ProfileError {
     },
 }
 
-/// Why a text is not RON, or not RON of a profile.
+/// The reason why a text is not RON, or not RON of a profile.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SyntaxProblem {
     /// Structures in structures in structures.
@@ -94,13 +94,13 @@ pub enum SyntaxProblem {
     /// A name that a structure has twice.
     #[error("{0} appears twice")]
     Twice(String),
-    /// As the parser says it.
+    /// The message of the parser.
     #[error("{0}")]
     Parser(String),
 }
 
 impl ProfileError {
-    /// A device refuses what stands at `path`.
+    /// Creates the error for a device that refuses the entry at `path`.
     pub fn refused<E: std::error::Error + Clone + Eq + Send + Sync + 'static>(path: String, error: E) -> Self {
         ProfileError::Refused { path, cause: Cause::new(error) }
     }

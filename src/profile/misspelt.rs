@@ -1,4 +1,4 @@
-//! Misspelt names of entries, and entries that the schema does not have, as they are found while a profile is read.
+//! Misspelt names of entries, and entries that the schema does not have, found while a profile is read.
 
 use std::cell::{Cell, RefCell};
 
@@ -7,26 +7,26 @@ use super::{ProfileError, SCHEMA};
 /// State shared by the structures of a file while it is read.
 #[derive(Default)]
 pub(super) struct Reading {
-    /// The newer schema that the file is of: its entries that are not known are kept.
+    /// The newer schema of the file, whose unknown entries are kept.
     newer: Cell<Option<u32>>,
     /// Places of entries beyond the schema.
     beyond: RefCell<Vec<String>>,
-    /// The misspelt name of an entry that was not found: what an error about the entry comes from.
+    /// The misspelt name of an entry that was not found, and the cause of an error about that entry.
     slip: RefCell<Option<Misspelling>>,
 }
 
-/// A name that is another one but for a slip of the hand. The one with the fewest letters to change is the least.
+/// A name that differs from another one by a typing error. The one with the fewest different letters is the least.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Misspelling {
     /// Number of differing letters.
     pub(super) letters: usize,
     pub(super) path: String,
-    /// The name that is meant.
+    /// The intended name.
     pub(super) meant: String,
 }
 
 impl Misspelling {
-    /// The error that tells it, without its line yet.
+    /// Returns the error without its line, which is added later.
     pub(super) fn error(self) -> ProfileError {
         let Misspelling { path, meant, .. } = self;
         ProfileError::Misspelt { line: 0, column: 0, path, meant }
@@ -34,7 +34,7 @@ impl Misspelling {
 }
 
 impl Reading {
-    /// The file is of this newer schema.
+    /// Notes that the file is of this newer schema.
     pub(super) fn set_newer(&self, schema: u32) {
         self.newer.set(Some(schema));
     }
@@ -53,13 +53,14 @@ impl Reading {
         self.beyond.borrow().clone()
     }
 
-    /// Reading ended early, and a name is misspelt where it ended. The innermost structure counts.
+    /// Records a misspelt name where reading ended early. The innermost structure counts.
     pub(super) fn is_misspelt(&self, slip: Misspelling) {
         self.slip.borrow_mut().get_or_insert(slip);
     }
 
-    /// The error as it has to be told: about the misspelt name, where that is what is wrong. What is said of another entry
-    /// comes from a misspelt one only where no more than a letter differs. A newer schema is what is wrong with its files.
+    /// Returns the error to report: about the misspelt name if that is the cause. An error about another entry is
+    /// attributed to a misspelt name only if no more than one letter differs. For a file with a newer schema, the schema is
+    /// the error.
     pub(super) fn reported_error(&self, error: ProfileError) -> ProfileError {
         if let Some(found) = self.newer.get() {
             return ProfileError::Schema { found, known: SCHEMA };

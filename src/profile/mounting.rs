@@ -9,9 +9,9 @@ use crate::expected::Expected;
 /// Something that is right for one device on one machine and no other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MountingMark<Item> {
-    /// The item; it can be written.
+    /// The item, which can be written.
     pub item: Item,
-    /// Its meaning.
+    /// The meaning of the item.
     pub meaning: String,
     /// Entries that this program does not know.
     pub unknown: Unknown,
@@ -21,7 +21,8 @@ pub struct MountingMark<Item> {
 const ENTRY: &str = "mounting";
 
 impl<Item> MountingMark<Item> {
-    /// Reads all marks of a profile. `item` reads what is marked, or says why it cannot; `expected` is what stands there.
+    /// Reads all marks of a profile. `item` parses a marked item or returns why it cannot; `expected` is the form of an
+    /// item.
     pub(crate) fn read_all<E: Error + Clone + Eq + Send + Sync + 'static>(
         entries: &mut Entries,
         expected: Expected,
@@ -44,7 +45,7 @@ impl<Item> MountingMark<Item> {
 }
 
 impl<Item: ToString> MountingMark<Item> {
-    /// Writes all marks of a profile, with a comment on what they are good for; nothing where there are none.
+    /// Writes all marks of a profile, with a comment on their purpose; writes nothing if there are none.
     pub(crate) fn write_all(marks: &[Self], comment: &str, writer: &mut Writer) {
         if marks.is_empty() {
             return;
@@ -60,5 +61,5 @@ impl<Item: ToString> MountingMark<Item> {
     }
 }
 
-/// Said beside them where they never go onto another encoder by themselves.
+/// Text for items that are copied onto another encoder only on request.
 pub(crate) const NEVER_BY_ITSELF: &str = "belongs to the mounting: never restored onto another encoder by itself";

@@ -5,14 +5,14 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Line and column of an entry's name, counted from 1; `None` where there is none at that path (`fields[2].status`).
+/// Returns line and column of an entry's name, counted from 1; `None` if there is none at that path (`fields[2].status`).
 pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     let sought = EntrySearch { path: String::new(), wanted: path };
     let found = ron::Options::default().from_str_seed(text, sought).err()?;
     if found.code != ron::Error::Message(FOUND.to_owned()) {
         return None;
     }
-    // The parser stands behind the name, or behind what follows it.
+    // The parser is after the name, or after the text that follows it.
     let name = path.rsplit('.').next()?;
     let line = found.span.end.line;
     let before: String = text.lines().nth(line.checked_sub(1)?)?.chars().take(found.span.end.col).collect();
@@ -20,7 +20,7 @@ pub(super) fn place_of(text: &str, path: &str) -> Option<(usize, usize)> {
     Some((line, at.unwrap_or(found.span.end.col)))
 }
 
-/// Said when the entry is found; it ends the walk.
+/// Error text that ends the search when the entry is found.
 const FOUND: &str = "found";
 
 /// A walk through the structures of a text to an entry.

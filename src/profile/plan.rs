@@ -13,7 +13,7 @@ pub struct Plan<Base, Op> {
 
 /// One operation of a plan.
 pub trait Operation {
-    /// Persistent writes that it costs when nothing has to be repeated.
+    /// Returns the number of persistent writes that it costs when nothing has to be repeated.
     fn write_cycles(&self) -> u64;
 }
 
@@ -38,23 +38,23 @@ impl<Base, Op> Plan<Base, Op> {
 }
 
 impl<Base, Op: Operation> Plan<Base, Op> {
-    /// Persistent writes it costs when nothing has to be repeated.
+    /// Returns the number of persistent writes it costs when nothing has to be repeated.
     pub fn write_cycles(&self) -> u64 {
         self.ops.iter().map(Operation::write_cycles).sum()
     }
 }
 
-/// A person's consent to one plan. Only the window and the command line make one.
+/// The user's consent to one plan. Only the window and the command line create one.
 #[derive(Clone, Copy, Debug)]
 pub struct Consent(PlanId);
 
 impl Consent {
-    /// The person has seen the plan with this id and wants it.
+    /// Creates the consent of a user who has seen the plan with this id and agreed.
     pub fn to(plan: PlanId) -> Self {
         Consent(plan)
     }
 
-    /// The consent is for this plan.
+    /// Returns whether the consent is for this plan.
     pub fn covers(self, plan: PlanId) -> bool {
         self.0 == plan
     }

@@ -1,4 +1,4 @@
-//! Restoring a profile: its options and its outcome, for any kind of device.
+//! The options and the outcome of restoring a profile, for any kind of device.
 
 /// The options of a restore.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,12 +16,12 @@ pub struct RestoreOptions {
 pub struct Restore<Plan, Item, Missing = String> {
     /// The operations.
     pub plan: Plan,
-    /// Things that are already as the profile says, counted as a comparison counts them.
+    /// Number of values that are already as in the profile, counted as by a comparison.
     pub unchanged: u64,
     /// Items left unchanged because one side does not have them or cannot read them.
     pub missing: Vec<Missing>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
-    /// Values of another device's mounting that are written: they have to be set up again.
+    /// Values of another device's mounting that are written: they have to be adjusted again.
     pub mounting_written: Vec<Item>,
 }

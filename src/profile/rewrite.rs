@@ -1,10 +1,10 @@
-//! A profile written over a text that a person keeps, and profiles of two people brought together.
+//! A profile saved over a text edited by a user, and profiles of two users merged.
 
 use super::source::{Carried, Change, applied, carry, changes, lost};
 use super::{Document, Formats, ProfileError};
 
 impl Document {
-    /// Returns the document in place of `text`: what is equal stays as it is written, with comments, order and line
+    /// Returns `text` with the content of the document: equal entries remain as written, with comments, order and line
     /// ends.
     pub fn emit_over(&self, text: &str, formats: Formats) -> Carried {
         let own = self.emit();
@@ -29,7 +29,7 @@ impl Document {
     /// Returns the document with these changes.
     ///
     /// # Errors
-    /// The result is not a profile; `None`: a change has no place in it.
+    /// Returns the error if the result is not a profile; `None` if a change has no place in it.
     pub fn changed(&self, changes: &[Change], formats: Formats) -> Result<Document, Option<ProfileError>> {
         Document::parse(&applied(&self.emit(), changes).ok_or(None)?, formats).map_err(Some)
     }

@@ -1,5 +1,5 @@
-//! RON for profiles. The `ron` crate reads; what this program does not know is kept as it was read. Writing is done
-//! here, because a profile is for people: hexadecimal numbers, sixteen bytes a line, comments.
+//! RON for profiles. The `ron` crate reads; unknown entries are kept as read. Writing is done here, because a profile is
+//! for people: hexadecimal numbers, sixteen bytes per line, comments.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -13,13 +13,13 @@ use super::misspelt::{Misspelling, Reading, letters_apart};
 use crate::bits::{HexError, parse_hex};
 use crate::expected::Expected;
 
-/// Entries that this program does not know, by name: a person's own, or those of a newer schema.
+/// Unknown entries by name: the user's own, or those of a newer schema.
 pub type Unknown = BTreeMap<String, Value>;
 
 /// Name of the structure that holds the user's own entries.
 const EXTRA: &str = "extra";
 
-/// The entries of a structure, taken out one by one; what is left at the end is a person's own, or misspelt.
+/// The entries of a structure, taken out one by one; the remaining ones are the user's own, or misspelt.
 pub struct Entries {
     path: String,
     entries: BTreeMap<String, Value>,
@@ -29,11 +29,11 @@ pub struct Entries {
 }
 
 impl Entries {
-    /// Opens the structure `value`, which stands at `path`.
+    /// Opens the structure `value` at `path`.
     pub(super) fn open(path: &str, value: Value, reading: &Rc<Reading>) -> Result<Self, ProfileError> {
         let map = match unwrapped(value) {
             Value::Map(map) => map,
-            // How the crate reads an empty structure: `()` and `( )`.
+            // The crate reads an empty structure, `()` or `( )`, like this.
             Value::Unit => ron::Map::new(),
             Value::Seq(values) if values.is_empty() => ron::Map::new(),
             _ => {
@@ -50,7 +50,7 @@ impl Entries {
         Ok(Entries { path: path.to_owned(), entries, missed: Vec::new(), reading: reading.clone() })
     }
 
-    /// Takes an entry as it stands; that it is missing is remembered.
+    /// Takes an entry as read, and records it if it is missing.
     fn take(&mut self, name: &str) -> Option<Value> {
         let value = self.entries.remove(name);
         if value.is_none() {
@@ -59,7 +59,7 @@ impl Entries {
         value
     }
 
-    /// The entry that is left over and most like a missing name, where no more than so many letters differ.
+    /// Returns the remaining entry that is most like a missing name, if no more than `most` letters differ.
     fn misspelt(&self, most: usize) -> Option<Misspelling> {
         if self.reading.is_newer() {
             return None;
@@ -83,7 +83,7 @@ impl Entries {
         if self.path.is_empty() { name.to_owned() } else { format!("{}.{name}", self.path) }
     }
 
-    /// Takes a plain value; `None` when it is not there.
+    /// Takes a plain value; `None` if it is missing.
     pub fn optional<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<Option<T>, ProfileError> {
         let Some(value) = self.take(name) else { return Ok(None) };
         if matches!(value, Value::Option(None)) {
@@ -92,19 +92,19 @@ impl Entries {
         unwrapped(value).into_rust().map(Some).map_err(|_| ProfileError::Shape { path: self.path_of(name), expected })
     }
 
-    /// Takes a plain value that has to be there.
+    /// Takes a plain value that is required.
     pub fn required<T: DeserializeOwned>(&mut self, name: &str, expected: Expected) -> Result<T, ProfileError> {
         self.optional(name, expected)?.ok_or_else(|| ProfileError::Missing { path: self.path_of(name) })
     }
 
-    /// Takes a structure that has to be there.
+    /// Takes a structure that is required.
     pub fn structure(&mut self, name: &str) -> Result<Entries, ProfileError> {
         let path = self.path_of(name);
         let value = self.take(name).ok_or_else(|| ProfileError::Missing { path: path.clone() })?;
         Entries::open(&path, value, &self.reading)
     }
 
-    /// Takes a structure; `None` when it is not there.
+    /// Takes a structure; `None` if it is missing.
     pub fn optional_structure(&mut self, name: &str) -> Result<Option<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name) {
@@ -127,7 +127,7 @@ impl Entries {
         bytes.map(|rows| Some(rows.concat())).map_err(|problem| ProfileError::Bytes { path, problem })
     }
 
-    /// Takes a list of structures that has to be there.
+    /// Takes a list of structures that is required.
     pub fn required_structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         if !self.entries.contains_key(name) {
             self.missed.push(name.to_owned());
@@ -136,7 +136,7 @@ impl Entries {
         self.structures(name)
     }
 
-    /// Takes a list of structures; empty when it is not there.
+    /// Takes a list of structures; empty if it is missing.
     pub fn structures(&mut self, name: &str) -> Result<Vec<Entries>, ProfileError> {
         let path = self.path_of(name);
         match self.take(name).map(unwrapped) {
@@ -150,7 +150,7 @@ impl Entries {
         }
     }
 
-    /// Takes a map with whatever stands before its colons, in their order; empty when it is not there.
+    /// Takes a map with any keys, in their order; empty if it is missing.
     pub fn map(&mut self, name: &str) -> Result<Vec<(Value, Value)>, ProfileError> {
         match self.take(name).map(unwrapped) {
             None | Some(Value::Unit) => Ok(Vec::new()),
@@ -159,11 +159,11 @@ impl Entries {
         }
     }
 
-    /// Returns the entries that were not read: the user's own, which belong in `extra`, or unknown ones of a newer
-    /// schema. Entries beside `extra` are moved into it, since older files have them there.
+    /// Returns the entries that were not read: the user's own, which belong in `extra`, or unknown ones of a newer schema.
+    /// Entries outside `extra` are moved into it, because older files have them there.
     ///
     /// # Errors
-    /// [`ProfileError::Misspelt`] where one is the misspelt name of an entry that is not there.
+    /// [`ProfileError::Misspelt`] if one is the misspelt name of a missing entry.
     pub fn rest(mut self) -> Result<Unknown, ProfileError> {
         let left = std::mem::take(&mut self.entries);
         if self.reading.is_newer() {
@@ -197,7 +197,7 @@ impl Entries {
 }
 
 impl Drop for Entries {
-    /// Reading ended early: the entry that is missing may be there under a misspelt name. Not all names were asked for.
+    /// Reading ended early, before all names were requested: the missing entry may exist under a misspelt name.
     fn drop(&mut self) {
         if let Some(slip) = self.misspelt(2) {
             self.reading.is_misspelt(slip);
@@ -205,7 +205,7 @@ impl Drop for Entries {
     }
 }
 
-/// Bytes of two digits each: a digit that got lost in an editor is not taken for a byte of its own.
+/// Parses bytes of two digits each, so that a digit lost in an editor does not result in another byte.
 fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     match line.split_whitespace().find(|group| group.len() == 1) {
         Some(digit) => Err(HexError::Odd(digit.to_owned())),
@@ -213,7 +213,7 @@ fn parse_pairs(line: &str) -> Result<Vec<u8>, HexError> {
     }
 }
 
-/// `Some(x)` may be written where `x` is meant.
+/// Returns `x` for `Some(x)`, which is also allowed.
 fn unwrapped(value: Value) -> Value {
     match value {
         Value::Option(Some(inner)) => *inner,
@@ -229,28 +229,28 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// A comment on a line of its own.
+    /// Writes a comment on a line of its own.
     pub fn comment(&mut self, text: &str) {
         self.line(&format!("// {text}"));
     }
 
-    /// `name: value,` with the value as it stands, and a comment behind it.
+    /// Writes `name: value,` with the value as given, and a comment after it.
     pub fn entry(&mut self, name: &str, value: &str, comment: &str) {
         let behind = if comment.is_empty() { String::new() } else { format!(" // {comment}") };
         self.line(&format!("{name}: {value},{behind}"));
     }
 
-    /// An element of a list, as it stands.
+    /// Writes an element of a list as given.
     pub fn entry_in_list(&mut self, value: &str) {
         self.line(&format!("{value},"));
     }
 
-    /// `name: "text",`.
+    /// Writes `name: "text",`.
     pub fn text(&mut self, name: &str, text: &str) {
         self.entry(name, &quoted(text), "");
     }
 
-    /// Bytes as a list of lines of sixteen, with what they are as text behind them.
+    /// Writes bytes as a list of lines of sixteen, each followed by its text.
     pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.open(name, '[');
         for row in bytes.chunks(16) {
@@ -261,14 +261,14 @@ impl Writer {
         self.close(']');
     }
 
-    /// A person's own entries, as they were read.
+    /// Writes the user's own entries as read.
     pub fn unknown(&mut self, unknown: &Unknown) {
         if !unknown.is_empty() {
             self.entry(EXTRA, &extra_text(unknown), "");
         }
     }
 
-    /// Begins a structure or list; without name inside a list and at the top.
+    /// Begins a structure or list; without a name inside a list and at the top.
     pub fn open(&mut self, name: &str, bracket: char) {
         let head = if name.is_empty() { bracket.to_string() } else { format!("{name}: {bracket}") };
         self.line(&head);
@@ -282,7 +282,7 @@ impl Writer {
         self.line(&format!("{bracket}{comma}"));
     }
 
-    /// The text.
+    /// Returns the text.
     pub(super) fn finish(self) -> String {
         self.out
     }
@@ -293,12 +293,12 @@ impl Writer {
     }
 }
 
-/// A RON string.
+/// Returns a RON string.
 pub(crate) fn quoted(text: &str) -> String {
     ron::to_string(text).unwrap_or_else(|_| "\"\"".to_owned())
 }
 
-/// A person's own entries behind the known ones of a structure on one line: `, extra: {…}`.
+/// Returns the user's own entries, to follow the known ones of a structure on one line: `, extra: {…}`.
 pub(crate) fn entries_text(unknown: &Unknown) -> String {
     if unknown.is_empty() { String::new() } else { format!(", {EXTRA}: {}", extra_text(unknown)) }
 }
@@ -309,7 +309,7 @@ fn extra_text(unknown: &Unknown) -> String {
     format!("{{{}}}", entries.join(", "))
 }
 
-/// A value that was read, as RON; structures as `(name: value)` wherever their names allow it.
+/// Formats a value as RON; structures as `(name: value)` if their names allow it.
 pub(crate) fn value_text(value: &Value) -> String {
     let is_name = |text: &str| {
         text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')

@@ -2,7 +2,7 @@
 
 use super::{Carried, Document, Profile};
 
-/// A profile with its note, changed and put over the text that it was read from.
+/// Changes a profile with its note, and saves it over the text from which it was read.
 pub(crate) fn edited<P: Profile>(text: &str, edit: impl FnOnce(&mut Option<String>, &mut P)) -> (Document, Carried) {
     let mut document = Document::parse(text, P::FORMATS).unwrap();
     edit(&mut document.note, document.body.get_mut().unwrap());
@@ -11,12 +11,12 @@ pub(crate) fn edited<P: Profile>(text: &str, edit: impl FnOnce(&mut Option<Strin
     (document, carried)
 }
 
-/// A change touches nothing of the text but `from`, which becomes `to`; without one it touches nothing.
+/// Checks that a change replaces only `from` by `to` in the text, or nothing if there is none.
 pub(crate) fn changed_in_place<P: Profile>(text: &str, edit: impl FnOnce(&mut P), from: &str, to: &str) {
     let (_, same) = edited(text, |_, _: &mut P| {});
     assert_eq!(same, Carried { text: text.to_owned(), lost: Vec::new() });
     let (_, carried) = edited(text, |_, own| edit(own));
-    // An entry that is new is written as this program writes it, in its place.
+    // A new entry is written in the form and at the place that this program chooses.
     let squeezed = |text: &str| text.split_whitespace().collect::<String>().replace(",)", ")");
     assert_eq!(squeezed(&carried.text), squeezed(&text.replace(from, to)));
     assert_eq!(carried.lost, Vec::<String>::new());

@@ -1,10 +1,10 @@
-//! Documents of kinds that are invented here: a lamp with its steps, and a fan.
+//! Tests of documents of invented kinds: a light with its steps, and a fan.
 
 use super::testing::{changed_in_place, edited};
 use super::*;
 use crate::expected::Expected;
 
-/// A lamp that is lit in steps.
+/// A light that is switched in steps.
 #[derive(Clone, Debug, PartialEq)]
 struct Lamp {
     colour: String,
@@ -42,7 +42,7 @@ impl Profile for Lamp {
     }
 }
 
-/// A fan, of which nothing is known but that it is one.
+/// A fan without any known entries.
 #[derive(Clone, Debug, PartialEq)]
 struct Fan;
 
@@ -129,7 +129,7 @@ fn entries_of_ones_own_and_of_a_newer_schema_are_kept() {
     assert_eq!(error, "line 7, column 5: color is unknown, and colour is missing");
 }
 
-/// Issues 22.25 and 22.26: over a person's text, and with what another person changed.
+/// Issues 22.25 and 22.26: a document is saved over a user's text, and merged with the changes of another user.
 #[test]
 fn a_document_is_written_over_a_text_and_brought_together_with_another() {
     changed_in_place(TEXT, |own: &mut Lamp| own.colour = "blue".to_owned(), "\"red\"", "\"blue\"");

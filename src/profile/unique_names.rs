@@ -8,7 +8,7 @@ use std::fmt;
 use ron::Value;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 
-/// Any RON in which no structure has a name twice; the content itself is not kept.
+/// Any RON without duplicate names in a structure; the content itself is not kept.
 #[derive(Clone, Copy)]
 pub(super) struct UniqueNames<'t> {
     /// The name that appears twice, if any.

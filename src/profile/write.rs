@@ -1,44 +1,44 @@
-//! Carries out a plan, the same way for every kind of device: reads its base again, carries out the operations in
-//! order, and leads the device back. A kind supplies a [`Write`]. Only `worker::commit` calls this, because it saves
-//! the before-image in between.
+//! Carries out a plan in the same way for every kind of device: reads its base again, carries out the operations in order,
+//! and restores the mode of the device. A kind supplies a [`Write`]. Only `worker::commit` calls this, because it saves the
+//! before-image in between.
 
 use std::fmt;
 use std::hash::Hash;
 
 use super::{Consent, Operation, Plan, WriteRecord};
 
-/// A device into which a plan is written: what differs from kind to kind.
+/// The device that a plan is written into: the parts that differ between kinds.
 pub trait Write {
     /// The values that a plan is based on.
     type Base: Hash;
     /// An operation of a plan.
     type Op: Operation + Clone + Hash;
-    /// Why an operation ended early.
+    /// The reason why an operation ended early.
     type Error: OperationError;
-    /// What was written.
+    /// The record of the write.
     type Written: WriteRecord;
-    /// In which state a write that ended early has left the device.
+    /// The state in which an interrupted write left the device.
     type Left;
 
-    /// Reads again what the plan rests upon, and writes nothing: first of all, whether it is the device for which the plan
-    /// was made.
+    /// Reads the base of the plan again, and writes nothing: first it checks that it is the device for which the plan was
+    /// made.
     ///
     /// # Errors
-    /// When anything is no longer as it was.
+    /// Returns an error if anything has changed.
     fn confirm(&mut self, plan: &Plan<Self::Base, Self::Op>) -> Result<(), <Self::Error as OperationError>::Device>;
 
     /// Prepares the device for the first operation.
     ///
     /// # Errors
-    /// No operation is begun then.
+    /// Returns an error before any operation begins.
     fn begin(&mut self) -> Result<(), Self::Error> {
         Ok(())
     }
 
-    /// Carries an operation out, reads it back where that is possible, and counts it.
+    /// Carries an operation out, reads it back if possible, and counts it.
     ///
     /// # Errors
-    /// The operations after it are not begun then.
+    /// Returns an error; the operations after it do not begin.
     fn apply(
         &mut self,
         op: &Self::Op,
@@ -46,10 +46,10 @@ pub trait Write {
         done: &mut Self::Written,
     ) -> Result<(), Self::Error>;
 
-    /// Reads back what can only be read when all operations are carried out.
+    /// Reads back the values that can only be read after all operations.
     ///
     /// # Errors
-    /// When it is not as it should be.
+    /// Returns an error if a value is not as planned.
     fn finish(
         &mut self,
         _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
@@ -61,7 +61,7 @@ pub trait Write {
     /// Leads the device back to a safe state, however the operations ended.
     ///
     /// # Errors
-    /// Why the operations ended early, or why the device cannot be led back.
+    /// The reason why the operations ended early, or why the mode of the device cannot be restored.
     fn lead_back(
         &mut self,
         _confirmed: &Confirmed<'_, Self::Base, Self::Op>,
@@ -75,24 +75,24 @@ pub trait Write {
     fn left(&mut self, cause: &Self::Error) -> Self::Left;
 }
 
-/// Why an operation of a plan ended early.
+/// The reason why an operation of a plan ended early.
 pub trait OperationError: fmt::Display {
-    /// The error of the device or its link.
+    /// The error of the device or its connection.
     type Device;
 
-    /// Returns what went wrong with the device or on the way to it; `None` where it was neither.
+    /// Returns the error of the device or its connection; `None` if the cause was another one.
     fn device(&self) -> Option<&Self::Device>;
 
-    /// The user cancelled it, and nothing else went wrong.
+    /// Returns whether the user cancelled and no other error occurred.
     fn is_only_cancelled(&self) -> bool;
 }
 
-/// An error of a device or its link.
+/// An error of a device or its connection.
 pub trait DeviceError: fmt::Display {
-    /// The user cancelled it, and nothing else went wrong.
+    /// Returns whether the user cancelled and no other error occurred.
     fn is_only_cancelled(&self) -> bool;
 
-    /// The user cancelled it, whatever went wrong after that.
+    /// Returns whether the user cancelled, whatever failed after that.
     fn is_cancelled(&self) -> bool {
         self.is_only_cancelled()
     }
@@ -110,21 +110,21 @@ impl<E: DeviceError> OperationError for E {
     }
 }
 
-/// A plan that a person consented to and whose base still holds. Without one no operation can be carried out.
+/// A plan that a user consented to and whose base is unchanged. Without it no operation can be carried out.
 pub struct Confirmed<'p, Base, Op> {
     plan: &'p Plan<Base, Op>,
 }
 
-/// How far an interrupted write came, and why it ended.
+/// The progress of an interrupted write, and its cause.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interrupted<Op, E, Done, Left> {
-    /// What was written until then.
+    /// The changes written before.
     pub done: Done,
-    /// The operation that was not finished, and may have begun; `None` where all were carried out.
+    /// The operation that was not finished, and may have begun; `None` if all were carried out.
     pub unfinished: Option<Op>,
-    /// Why it ended.
+    /// The cause of the interruption.
     pub cause: E,
-    /// In which state the device was left.
+    /// The state in which the device was left.
     pub left: Left,
 }
 
@@ -133,8 +133,7 @@ pub(crate) type InterruptedWrite<W> =
     Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::Left>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
-    /// Checks the consent, and has the device read again what the plan rests upon; `None` where the consent is for another
-    /// plan.
+    /// Checks the consent, and lets the device read the base of the plan again; `None` if the consent is for another plan.
     pub(crate) fn confirm<W: Write<Base = Base, Op = Op>>(
         plan: &'p Plan<Base, Op>,
         consent: Consent,
@@ -148,10 +147,10 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         self.plan
     }
 
-    /// Carries the plan out; each operation is told before it begins, with its number from 0.
+    /// Carries the plan out; each operation is reported before it begins, with its number from 0.
     ///
     /// # Errors
-    /// How far it came.
+    /// Returns the progress of an interrupted write.
     pub(crate) fn carry_out<W: Write<Base = Base, Op = Op>>(
         &self,
         write: &mut W,
@@ -175,7 +174,7 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
 }
 
 impl<Op, E: OperationError, Done: WriteRecord, Left> Interrupted<Op, E, Done, Left> {
-    /// Returns for the logbook why it ended; `None` where the user cancelled it.
+    /// Returns the cause for the logbook; `None` if the user cancelled.
     pub(crate) fn reason(&self) -> Option<String> {
         (!self.cause.is_only_cancelled()).then(|| self.cause.to_string())
     }

@@ -1,23 +1,23 @@
-//! The result of a write whose operations are each done or not.
+//! The result of a write whose operations are complete or not started, never partial.
 
-/// What was written.
+/// The changes that were written.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Written {
     /// Operations carried out, of the plan's.
     pub ops: usize,
-    /// Things changed, counted as a comparison counts them; else one an operation.
+    /// Number of values changed, counted as by a comparison; otherwise one per operation.
     pub written: u64,
-    /// Those of them that were read back and found as they should be.
+    /// Number of values that were read back and found correct.
     pub verified: u64,
-    /// Persistent writes spent, or that may have been; repeated ones included.
+    /// Number of persistent writes spent, or possibly spent; repeated ones included.
     pub write_cycles: u64,
 }
 
 /// The record of a write that a kind of device keeps.
 pub trait WriteRecord: Default {
-    /// Operations carried out, of the plan's.
+    /// Returns the number of operations of the plan that were carried out.
     fn ops(&self) -> usize;
-    /// Persistent writes spent, or that may have been.
+    /// Returns the number of persistent writes spent, or that may have been.
     fn write_cycles(&self) -> u64;
 }
 
@@ -32,7 +32,7 @@ impl WriteRecord for Written {
 }
 
 impl Written {
-    /// Counts an operation that was carried out, and so many things that it has changed.
+    /// Counts an operation that was carried out, and the number of values that it changed.
     pub fn carried_out(&mut self, changed: u64) {
         self.ops += 1;
         self.written += changed;

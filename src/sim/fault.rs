@@ -25,10 +25,10 @@ pub const FAULTS: FaultList = FaultList;
 pub struct FaultList;
 
 impl FaultList {
-    /// The faults that a setting names.
+    /// Returns the faults that a setting names.
     ///
     /// # Errors
-    /// The first of them that is none.
+    /// Returns the first invalid one.
     pub fn take(&self, _key: &str, value: &str) -> Result<Faults, FaultError> {
         value.parse()
     }
@@ -44,7 +44,7 @@ impl FaultList {
     }
 }
 
-/// Why a fault specification cannot be used.
+/// The reason why a fault specification is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FaultError {
     /// A name that is none, or a name without value.
@@ -79,16 +79,16 @@ pub enum FaultError {
 pub struct Passage {
     /// A byte of noise before it.
     pub inserted: Option<u8>,
-    /// The byte itself; `None` when it got lost.
+    /// The byte itself; `None` if it was lost.
     pub carried: Option<Carried>,
 }
 
-/// A byte that came through.
+/// A byte that arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Carried {
-    /// Its data bits.
+    /// The data bits.
     pub byte: u8,
-    /// One of them was inverted on the way: a parity bit does not fit any more.
+    /// Whether one bit was inverted on the way, so that a parity bit is wrong.
     pub flipped: bool,
 }
 
@@ -96,17 +96,17 @@ impl Faults {
     /// Longest delay in milliseconds.
     const MAX_DELAY_MS: u32 = 60_000;
 
-    /// Added before each reply.
+    /// Returns the delay added before each reply.
     pub fn delay(&self) -> Duration {
         self.delay
     }
 
-    /// After so many frames the device neither answers nor acts any more.
+    /// Returns the number of frames after which the device neither answers nor acts.
     pub fn silent_after(&self) -> Option<u32> {
         self.silent_after
     }
 
-    /// Power is lost in the middle of this store, counted from 1.
+    /// Returns the store, counted from 1, in the middle of which power is lost.
     pub fn die_in_store(&self) -> Option<u32> {
         self.die_in_store
     }
@@ -123,14 +123,14 @@ impl Faults {
 }
 
 fn happens(probability: f64, rng: &mut Rng) -> bool {
-    // f64() is below 1, so that 1 always happens and 0 never does.
+    // f64() is below 1, so that a probability of 1 always happens and 0 never does.
     rng.f64() < probability
 }
 
 impl FromStr for Faults {
     type Err = FaultError;
 
-    /// Reads `drop:0.01,delay:5`; of an item given twice the last counts, an empty text is no fault.
+    /// Parses `drop:0.01,delay:5`; of an item given twice the last one counts, and an empty text means no fault.
     fn from_str(text: &str) -> Result<Self, FaultError> {
         let mut faults = Faults::default();
         for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {

@@ -1,5 +1,5 @@
-//! A half-duplex line between the host's UART and virtual devices: characters travel one after the other, some of them
-//! damaged, and are heard in the order of time. What a character means and who hears it is each device's matter.
+//! A half-duplex line between the host's UART and virtual devices: characters are transmitted one after the other, some of
+//! them damaged, and received in the order of time. Each device defines which characters it receives and what they mean.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -54,7 +54,7 @@ pub(crate) struct Character {
     pub(crate) start: Moment,
     pub(crate) end: Moment,
     pub(crate) byte: u8,
-    /// One of its bits was inverted on the way: a parity bit does not fit any more.
+    /// Whether one bit was inverted on the way, so that a parity bit is wrong.
     pub(crate) flipped: bool,
 }
 
@@ -68,7 +68,7 @@ pub(crate) struct Sent {
     pub(crate) end: Moment,
 }
 
-/// The parts that every line has. Created with a device's settings.
+/// The common parts of every line. Created with a device's settings.
 #[derive(Clone)]
 pub(crate) struct Wires {
     pub(crate) faults: Faults,
@@ -78,7 +78,7 @@ pub(crate) struct Wires {
     pub(crate) now: Moment,
     /// The host's UART has sent everything then.
     host_done: Moment,
-    /// Bytes that the host's UART still sends, with when the last of them is through.
+    /// Numbers of bytes that the host's UART still sends, with the time at which the last of them is sent.
     sending: VecDeque<(Moment, usize)>,
     /// Bytes that have arrived at the host.
     pub(crate) inbox: Vec<u8>,
@@ -97,8 +97,8 @@ impl Wires {
         }
     }
 
-    /// Bytes that a UART holds until they are sent, as in a device server; what comes beyond is lost. No request of these
-    /// protocols is longer, and at 9600 bit/s it takes half a second.
+    /// Number of bytes that a UART buffers, as in a device server; further bytes are lost. No request of these protocols is
+    /// longer, and at 9600 bit/s it takes half a second.
     const BUFFER: usize = 512;
 
     /// Returns how many bytes the host's UART can still accept.
@@ -128,7 +128,7 @@ impl Wires {
     }
 }
 
-/// A line with what is on it. It is a [`ByteDevice`] by that.
+/// A line and its devices. Implementing this makes it a [`ByteDevice`].
 pub(crate) trait VirtualLine: Send {
     /// The next event; of events at the same moment the least comes first.
     type Event;
@@ -141,13 +141,13 @@ pub(crate) trait VirtualLine: Send {
 
     fn happen(&mut self, at: Moment, event: Self::Event);
 
-    /// Puts what the host sends on the line, from `start` on, and gives the moment when the last one is through.
+    /// Sends bytes of the host on the line from `start` on, and returns the time at which the last one is sent.
     fn host_sends(&mut self, start: Moment, bytes: &[u8]) -> Moment;
 
     /// Restores the power of every device that has lost it.
     fn give_power(&mut self, now: Moment);
 
-    /// Lets happen what is due by `to`.
+    /// Processes the events that are due by `to`.
     fn advance(&mut self, to: Moment) {
         while let Some((at, event)) = self.next_event().filter(|(at, _)| *at <= to) {
             self.wires_mut().now = self.wires().now.max(at);

@@ -9,19 +9,19 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct Motor(Arc<AtomicU64>);
 
 impl Motor {
-    /// Revolutions a minute at most, either way.
+    /// The maximum speed in revolutions per minute, in either direction.
     pub const MAX_RPM: f64 = 12_000.0;
 
     pub(crate) fn at(rpm: f64) -> Self {
         Motor(Arc::new(AtomicU64::new(rpm.to_bits())))
     }
 
-    /// Revolutions a minute; above 0 it turns clockwise, and the position rises.
+    /// Returns the speed in revolutions per minute; above 0 the motor turns clockwise, and the position rises.
     pub fn rpm(&self) -> f64 {
         f64::from_bits(self.0.load(Ordering::SeqCst))
     }
 
-    /// Turns at another speed, at most [`MAX_RPM`](Self::MAX_RPM); what is no number changes nothing.
+    /// Sets the speed, limited to [`MAX_RPM`](Self::MAX_RPM); a value that is not a number is ignored.
     pub fn set_rpm(&self, rpm: f64) {
         if !rpm.is_nan() {
             self.0.store(rpm.clamp(-Self::MAX_RPM, Self::MAX_RPM).to_bits(), Ordering::SeqCst);

@@ -1,24 +1,24 @@
-//! Settings of a virtual device, as the query of a `sim:` link gives them, a key with its value each: what can be written
-//! for a value, and what is wrong with one. Which keys there are is each device's matter.
+//! Settings of a virtual device, as the query of a `sim:` link: keys with their values, the allowed values, and the errors.
+//! Each device defines its keys.
 
 use super::FaultError;
 use crate::expected::Expected;
 use crate::parameter::{Checked, Parameters, Refused, Values, number};
 
-/// Why settings cannot be used.
+/// The reason why settings are invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConfigError {
-    /// No such key.
+    /// The key does not exist.
     #[error("{device} has no setting `{key}`; valid settings are {known}")]
     Key {
         /// The device without such a key.
         device: VirtualDevice,
         /// The key as written.
         key: String,
-        /// The keys that it has.
+        /// The existing keys.
         known: String,
     },
-    /// A value that its key does not take.
+    /// The value is not allowed for its key.
     #[error("`{key}={value}` is not valid (allowed: {allowed})")]
     Value {
         /// The key.
@@ -33,7 +33,7 @@ pub enum ConfigError {
     Fault(#[from] FaultError),
 }
 
-/// A virtual device, as it is called where it has no such setting.
+/// The name of a virtual device in an error about an unknown setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum VirtualDevice {
     /// An encoder.
@@ -51,7 +51,7 @@ pub enum VirtualDevice {
 }
 
 impl ConfigError {
-    /// `device` has no setting `key`; those that it has are `known`.
+    /// Creates the error that `device` has no setting `key`; `known` are the existing ones.
     pub fn unknown(device: VirtualDevice, key: &str, known: &[&str]) -> Self {
         ConfigError::Key { device, key: key.to_owned(), known: known.join(", ") }
     }
@@ -63,10 +63,10 @@ impl From<Refused> for ConfigError {
     }
 }
 
-/// Reads the settings of `device`, already percent-decoded. Of a key given twice the last counts.
+/// Parses the settings of `device`, already percent-decoded. Of a key given twice the last one counts.
 ///
 /// # Errors
-/// With a sentence that names the key and what is allowed.
+/// A sentence that names the key and the allowed values.
 pub fn read<P: Parameters<Error = ConfigError>>(
     device: VirtualDevice,
     pairs: &[(String, String)],
@@ -80,10 +80,10 @@ pub fn read<P: Parameters<Error = ConfigError>>(
     Ok(own)
 }
 
-/// Any number: where noise begins.
+/// Any number: the seed of noise.
 pub const SEED: Checked<u64> = Checked(Expected::Whole, number);
 
-/// Revolutions a minute, either way.
+/// Revolutions per minute, in either direction.
 pub const RPM: Rpm = Rpm;
 
 /// See [`RPM`].
@@ -115,7 +115,7 @@ impl Values for Rpm {
     }
 }
 
-/// The keys and values of a query, for a test.
+/// Returns the keys and values of a query, for a test.
 #[cfg(test)]
 pub(crate) fn pairs(query: &str) -> Vec<(String, String)> {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));

@@ -1,5 +1,5 @@
-//! Backups: what was in a device before it was written, one file each, sorted by device and serial number. None is ever
-//! overwritten or removed. What the text says is the caller's; access codes are not to be in it.
+//! Backups: the content of a device before a write, one file each, sorted by device and serial number. None is ever
+//! overwritten or removed. The caller supplies the text; access codes must not be in it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,11 +12,11 @@ use super::file_error::{FileError, FileProblem, FileTask};
 use super::file_names::{Case, safe_name};
 use super::files::{create_folder, write_new};
 
-/// A file name's time: UTC, and without the colons that Windows forbids.
+/// The time in a file name: UTC, and without the colons that Windows forbids.
 const TIME: &str = "%Y-%m-%dT%H-%M-%SZ";
 const EXTENSION: &str = "ron";
 
-/// Most backups of one device in the same second. More are the sign of a runaway loop.
+/// Largest number of backups of one device in the same second. More are the sign of a runaway loop.
 const MOST_IN_A_SECOND: u32 = 1000;
 
 /// The folder of backups.
@@ -27,7 +27,7 @@ pub struct Backups(PathBuf);
 pub struct Backup {
     /// The file.
     pub path: PathBuf,
-    /// When it was taken, to the second.
+    /// Time of the backup, to the second.
     pub taken: Timestamp,
 }
 
@@ -36,11 +36,11 @@ impl Backups {
         Backups(folder)
     }
 
-    /// Writes a backup, `<device>/<serial number>/2026-11-21T12-14-47Z.ron`, and returns its path. Where there is one of
-    /// the same second, `-2`, `-3` … follows the time.
+    /// Writes a backup, `<device>/<serial number>/2026-11-21T12-14-47Z.ron`, and returns its path. If there is one of the
+    /// same second, `-2`, `-3` … follows the time.
     ///
     /// # Errors
-    /// Where the folder cannot be made or the file cannot be written; then there is no file.
+    /// Returns an error if the folder cannot be created or the file cannot be written; then there is no file.
     pub fn save(&self, device: &str, serial_number: &str, taken: Timestamp, text: &str) -> Result<PathBuf, FileError> {
         let folder = self.folder_of(device, serial_number);
         create_folder(&folder)?;
@@ -55,10 +55,10 @@ impl Backups {
         Err(FileProblem::Exists.of(FileTask::Write, &folder.join(file_name(&time, MOST_IN_A_SECOND))))
     }
 
-    /// The backups of a device, newest first; files of any other name are not backups.
+    /// Returns the backups of a device, newest first; files with any other name are not backups.
     ///
     /// # Errors
-    /// Where the folder exists but cannot be read.
+    /// Returns an error if the folder exists but cannot be read.
     pub fn list(&self, device: &str, serial_number: &str) -> Result<Vec<Backup>, FileError> {
         let folder = self.folder_of(device, serial_number);
         let failed = |error: std::io::Error| FileProblem::from(error).of(FileTask::List, &folder);
@@ -92,7 +92,7 @@ fn file_name(time: &str, number: u32) -> String {
     }
 }
 
-/// Time and number of a backup's file; `None` for any name that [`file_name`] does not make.
+/// Parses time and number of a backup's file; `None` for any name that [`file_name`] does not create.
 fn parse_file_name(path: &Path) -> Option<(Timestamp, u32)> {
     let name = path.file_name()?.to_str()?;
     let (time, number) = name.strip_suffix(EXTENSION)?.strip_suffix('.')?.split_once('Z')?;

@@ -1,4 +1,4 @@
-//! Captures from files: read in pieces, with progress, and given up when that is wished.
+//! Captures from files: read in pieces, with progress and cancellation.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -8,30 +8,30 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::file_error::{FileError, FileProblem, FileTask};
 use crate::analysis::capture::{Capture, CaptureError, HEAD, Import, Layout, TableHints};
 
-/// Why a capture could not be read.
+/// The reason why a capture could not be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadCaptureError {
     /// The file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It holds no capture.
+    /// The file contains no capture.
     #[error(transparent)]
     Capture(#[from] CaptureError),
-    /// It was wished to give up.
+    /// Reading was cancelled.
     #[error("given up")]
     Cancelled,
 }
 
-/// Bytes read and bytes in all; what has no length (a pipe) tells 0 in all.
+/// Reports bytes read and bytes in all; 0 in all for a file without a length (a pipe).
 pub type OnProgress<'a> = &'a mut dyn FnMut(u64, u64);
 
-/// Bytes of a piece. Between two, progress is told and the wish to give up is heard.
+/// Bytes per piece. Between two pieces, progress is reported and cancellation is checked.
 const PIECE: usize = 1 << 20;
 
-/// Reads a capture and says how its table was understood.
+/// Reads a capture and returns how its table was interpreted.
 ///
 /// # Errors
-/// [`ReadCaptureError`]: the file is missing, is no capture, or `cancel` was set.
+/// [`ReadCaptureError`]: the file is missing, is not a capture, or `cancel` was set.
 pub fn read_capture(
     path: &Path,
     hints: &TableHints,
@@ -53,7 +53,7 @@ pub fn read_capture(
             return Err(ReadCaptureError::Cancelled);
         }
         piece.clear();
-        // A pipe gives what it has; the first piece has to hold the head.
+        // A pipe returns the available bytes; the first piece has to contain the head.
         let read = (&mut file).take(PIECE.max(HEAD) as u64).read_to_end(&mut piece).map_err(failed)?;
         let importing = match &mut import {
             Some(importing) => importing,
@@ -72,11 +72,11 @@ pub fn read_capture(
     }
 }
 
-/// The first bytes of a file, [`HEAD`] of them or all there are. What is no file (a pipe) gives its bytes once: nothing
-/// is taken from it here.
+/// Returns the first bytes of a file, [`HEAD`] of them or all if it is shorter. A pipe can be read only once, so nothing is
+/// read from it here.
 ///
 /// # Errors
-/// [`FileError`] where it cannot be read.
+/// [`FileError`] if it cannot be read.
 pub fn capture_head(path: &Path) -> Result<Vec<u8>, FileError> {
     let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Read, path);
     let mut head = Vec::new();

@@ -1,5 +1,5 @@
-//! The user's own descriptions of devices: the files of a folder, each for itself. One that cannot be read does not keep
-//! the others from being read.
+//! The user's own descriptions of devices: the files of a folder, read independently. An unreadable file does not prevent
+//! reading the others.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::read_file;
 
-/// The texts of a folder's files with this ending, with their paths as errors call them, by name; and those that cannot
-/// be read. A folder that does not exist has none.
+/// Returns the texts of a folder's files with this ending, by name, with their paths as used in errors; and the errors of
+/// those that cannot be read. A folder that does not exist has none.
 pub fn read_folder(folder: &Path, ending: &str) -> (Vec<(String, String)>, Vec<FileError>) {
     let (mut texts, mut errors) = (Vec::new(), Vec::new());
     match list(folder, ending) {

@@ -1,5 +1,5 @@
-//! Drafts: what a user has begun and not yet written into a device, so that neither a crash nor a pulled cable takes it.
-//! One file each; what the text says is the caller's, and access codes are not to be in it.
+//! Drafts: edits of a user that are not yet written into a device, kept so that neither a crash nor a pulled cable loses
+//! them. One file each; the caller supplies the text, and access codes must not be in it.
 
 use std::fs;
 use std::path::PathBuf;
@@ -29,16 +29,17 @@ impl Drafts {
     /// Writes a draft, `<device>/<key>.ron`, over the one before.
     ///
     /// # Errors
-    /// Where the folder cannot be made or the file cannot be written; then the one before is still there.
+    /// Returns an error if the folder cannot be created or the file cannot be written; then the previous draft still
+    /// exists.
     pub fn save(&self, device: &str, key: &str, text: &str) -> Result<(), FileError> {
         create_folder(&self.folder_of(device))?;
         write_atomically(&self.path_of(device, key), text.as_bytes())
     }
 
-    /// Reads a draft; `None` where there is none.
+    /// Reads a draft; `None` if there is none.
     ///
     /// # Errors
-    /// Where there is one that cannot be read.
+    /// Returns an error if a draft exists but cannot be read.
     pub fn load(&self, device: &str, key: &str) -> Result<Option<String>, FileError> {
         match read_text(&self.path_of(device, key)) {
             Ok(text) => Ok(Some(text)),
@@ -52,22 +53,22 @@ impl Drafts {
         fs::read_dir(self.folder_of(device)).is_ok_and(|mut files| files.next().is_some())
     }
 
-    /// Claims a draft; `None` where it is claimed already, in this program or another.
+    /// Claims a draft; `None` if it is already claimed, in this program or another.
     ///
     /// # Errors
-    /// Where no file can be made to lock.
+    /// Returns an error if no file can be created for the lock.
     pub fn claim(&self, device: &str, key: &str) -> Result<Option<Claim>, FileError> {
-        // Beside the drafts, so that listing those finds nothing else.
+        // Outside the folder of the drafts, so that listing those finds nothing else.
         let folder = self.0.with_file_name("locks").join(safe_name(device, Case::Kept));
         create_folder(&folder)?;
         let path = folder.join(format!("{}.lock", safe_name(key, Case::Told)));
         Ok(FileLock::try_at(&path)?.map(|lock| Claim { _lock: lock }))
     }
 
-    /// Removes a draft; there need not be one.
+    /// Removes a draft, if it exists.
     ///
     /// # Errors
-    /// Where it cannot be removed.
+    /// Returns an error if it cannot be removed.
     pub fn remove(&self, device: &str, key: &str) -> Result<(), FileError> {
         let path = self.path_of(device, key);
         match fs::remove_file(&path).map_err(FileProblem::from) {

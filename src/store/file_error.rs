@@ -1,4 +1,4 @@
-//! Why a file could not be read or written: the system's reasons, sorted by what a user can do about them.
+//! The reasons why a file could not be read or written: the system's errors, sorted by what a user can do about them.
 
 use std::fmt;
 use std::io;
@@ -41,31 +41,31 @@ impl fmt::Display for FileTask {
     }
 }
 
-/// What prevents reading or writing a file.
+/// The obstacle to reading or writing a file.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FileProblem {
-    /// There is no such file.
+    /// The file does not exist.
     #[error("it does not exist")]
     NotFound,
     /// The folder in which the file is to be written does not exist.
     #[error("its folder does not exist")]
     NoFolder,
-    /// A file stands where the path needs a folder.
+    /// A file is in a place where the path needs a folder.
     #[error("a part of the path is a file, not a folder")]
     NotFolder,
-    /// A folder stands where the file should be.
+    /// The path is that of a folder.
     #[error("it is a folder")]
     IsFolder,
-    /// It is a pipe or a device.
+    /// The path is that of a pipe or a device.
     #[error("it is no file but a pipe or a device")]
     NotAFile,
-    /// There is such a file, and it was not to be replaced.
+    /// The file exists, and replacing it was not allowed.
     #[error("it exists already")]
     Exists,
     /// This user may not do this.
     #[error("permission denied")]
     PermissionDenied,
-    /// The file, or the disk it lies on, is marked as read-only.
+    /// The file, or its disk, is marked as read-only.
     #[error("it is write-protected")]
     WriteProtected,
     /// The disk is full, or this user's share of it.
@@ -86,7 +86,7 @@ pub enum FileProblem {
         /// The first byte that does not fit, counted from 0.
         offset: usize,
     },
-    /// Anything else, as the system calls it.
+    /// Any other error, as named by the system.
     #[error("{what}")]
     Other {
         /// The system's kind of error.
@@ -117,7 +117,7 @@ impl FileProblem {
         FileError { path: path.to_owned(), task, problem: self }
     }
 
-    /// Returns the problem of making a new file: the file itself cannot be the one that is missing.
+    /// Returns the problem of creating a new file, where the file itself cannot be the missing one.
     pub(super) fn while_making(error: io::Error) -> Self {
         match error.into() {
             FileProblem::NotFound => FileProblem::NoFolder,

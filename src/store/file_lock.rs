@@ -1,4 +1,4 @@
-//! Locks among programs that use the same files. The system takes a lock back from a program that ends, however it ends.
+//! Locks among programs that use the same files. The system releases the lock of a program that ends for any reason.
 
 use std::fs::{File, TryLockError};
 use std::io;
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::file_error::{FileError, FileProblem, FileTask};
 use super::files::{create_folder, read_text, write_atomically};
 
-/// How long another program may take to read and write a file.
+/// The longest time for another program to read and write a file.
 const PATIENCE: Duration = Duration::from_secs(2);
 const RETRY: Duration = Duration::from_millis(5);
 
@@ -20,14 +20,15 @@ pub(super) struct FileLock {
 }
 
 impl FileLock {
-    /// Locks by a file, which is made where it is missing; `None` where another one has it, in this program or another.
+    /// Locks with a file, which is created if it is missing; `None` if the lock is held elsewhere, in this program or
+    /// another.
     pub(super) fn try_at(path: &Path) -> Result<Option<Self>, FileError> {
         let failed = |error: io::Error| FileProblem::from(error).of(FileTask::Write, path);
         let file = open(path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => Ok(Some(FileLock { _locked: file })),
             Err(TryLockError::WouldBlock) => Ok(None),
-            // A disk that knows no locks.
+            // A disk without support for locks.
             Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => {
                 Ok(Some(FileLock { _locked: file }))
             }
@@ -38,18 +39,18 @@ impl FileLock {
 
 fn open(path: &Path) -> io::Result<File> {
     match File::options().create(true).truncate(false).write(true).open(path) {
-        // Made by another user: a lock needs no right to write.
+        // Created by another user: a lock needs no right to write.
         Err(error) if error.kind() == io::ErrorKind::PermissionDenied => File::open(path),
         result => result,
     }
 }
 
-/// Replaces a text by what `make` makes of the one that is there, and of why it cannot be read. No other program that
-/// writes by this function does so in between. The text is written as by [`write_atomically`], in a folder that is made
-/// where it is missing; `None`: it stays as it is.
+/// Replaces a text by the result of `make`, which receives the current text or the error of reading it. No other program
+/// that uses this function writes in between. The text is written as by [`write_atomically`], in a folder that is created
+/// if it is missing; `None` leaves it unchanged.
 ///
 /// # Errors
-/// [`FileProblem::InUse`] where another program keeps the lock, and as [`write_atomically`]; or what `make` gives.
+/// [`FileProblem::InUse`] if another program keeps the lock, and those of [`write_atomically`] and of `make`.
 pub fn update_text<T>(
     path: &Path,
     make: impl FnOnce(Result<String, FileError>) -> Result<(Option<String>, T), FileError>,
@@ -69,7 +70,7 @@ fn wait_for(path: &Path) -> Result<FileLock, FileError> {
     let beside = lock_of(path);
     let began = Instant::now();
     loop {
-        // The message names the file that the user knows, not the one beside it.
+        // The message names the file that the user knows, not the lock file.
         let tried = FileLock::try_at(&beside).map_err(|error| FileError { path: path.to_owned(), ..error })?;
         match tried {
             Some(lock) => return Ok(lock),

@@ -1,17 +1,17 @@
-//! Names of folders and files made from texts that are not ours: serial numbers, names of items.
+//! Names of folders and files made from external texts: serial numbers, names of items.
 
 /// Whether names that differ only in case are distinct; on Windows and macOS they are not.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Case {
-    /// They are told apart by more than their case.
+    /// The names differ in more than their case.
     Kept,
-    /// Nothing else need tell them apart.
+    /// The names may differ only in their case.
     Told,
 }
 
-/// A name of a folder, or of a file without its extension, for any text, different for different texts, on every system: letters, digits, `.`, `_` and `-` stand
-/// for themselves, every other byte is `%XX`. With [`Case::Told`], lower-case letters add `%` and an `l` or a `u` for each
-/// letter.
+/// Returns the name of a folder, or of a file without its extension, for any text, different for different texts, on every
+/// system: letters, digits, `.`, `_` and `-` are unchanged, every other byte is `%XX`. With [`Case::Told`], lower-case
+/// letters add `%` and an `l` or a `u` for each letter.
 pub(super) fn safe_name(text: &str, case: Case) -> String {
     if text.is_empty() {
         return "%none".to_owned();
@@ -21,7 +21,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
     let mut name = String::new();
     let mut cases = String::new();
     for (at, byte) in text.bytes().enumerate() {
-        // A dot in front hides the folder, one at the end is lost on Windows, and `.` and `..` are no names at all.
+        // A leading dot hides the folder, a final one is lost on Windows, and `.` and `..` are not valid names.
         let plain = match byte {
             b'.' => at != 0 && at != last,
             b'_' | b'-' => true,
@@ -43,7 +43,7 @@ pub(super) fn safe_name(text: &str, case: Case) -> String {
     name
 }
 
-/// Names that are devices on Windows, with any extension.
+/// Returns whether it is the name of a device on Windows, with any extension.
 fn is_reserved(text: &str) -> bool {
     let stem = text.split('.').next().unwrap_or(text).to_ascii_uppercase();
     match stem.as_str() {
@@ -60,7 +60,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The text of a name, read without regard to case.
+    /// Returns the text of a name, read without regard to case.
     fn read_back(name: &str) -> Vec<u8> {
         let name = name.to_ascii_uppercase();
         if name == "%NONE" {

@@ -1,5 +1,5 @@
-//! Whole files, read and written at once. A file is either the old one or the new one, never a part of it: it is
-//! written to a temporary neighbour, flushed and renamed.
+//! Whole files, read and written at once. A file is either the old one or the new one, never a part of it: it is written to
+//! a temporary neighbour, flushed and renamed.
 
 use std::fs::{self, File, OpenOptions, Permissions};
 use std::io::{self, Read, Write};
@@ -20,11 +20,12 @@ const MARK: &str = "\u{FEFF}";
 
 /// Writes a file so that a crash or a full disk leaves either the old content or the new one.
 ///
-/// A file that exists keeps its permissions; a link stays a link, and the file behind it is replaced. A device or a pipe
+/// A file that exists keeps its permissions; a link stays a link, and its target is replaced. A device or a pipe
 /// (`/dev/stdout`) has no content to protect and is written to directly.
 ///
 /// # Errors
-/// With the old content in place: the folder is missing, the target is a folder or write-protected, the disk is full.
+/// Returns an error, with the old content unchanged: the folder is missing, the target is a folder or write-protected, the
+/// disk is full.
 pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if fs::metadata(path).is_ok_and(|target| !target.is_dir() && !target.is_file()) {
         return write_directly(path, content).map_err(|error| FileProblem::from(error).of(FileTask::Write, path));
@@ -32,10 +33,10 @@ pub fn write_atomically(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_by(path, |file| file.write_all(content))
 }
 
-/// Writes a text as [`write_atomically`] does. A byte order mark that the file has stays: its editor put it there.
+/// Writes a text as [`write_atomically`] does. If the file has a byte order mark from an editor, the mark remains.
 ///
 /// # Errors
-/// As [`write_atomically`].
+/// Errors as for [`write_atomically`].
 pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
     let is_file = fs::metadata(path).is_ok_and(|target| target.is_file());
     let has_mark = is_file && read_at_most(path, 3).is_ok_and(|head| head == MARK.as_bytes());
@@ -43,11 +44,11 @@ pub fn write_text_over(path: &Path, text: &str) -> Result<(), FileError> {
     write_atomically(path, [mark, text].concat().as_bytes())
 }
 
-/// Writes a file as [`write_atomically`] does, with content that comes bit by bit. When `write` fails, there is the old
-/// file as before.
+/// Writes a file as [`write_atomically`] does, with content that `write` produces in parts. When `write` fails, the old
+/// file remains.
 ///
 /// # Errors
-/// As [`write_atomically`], or what `write` gives; a device or a pipe is not written to.
+/// Errors as for [`write_atomically`], and those of `write`; a device or a pipe is refused.
 pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let permissions = match fs::metadata(path) {
@@ -66,10 +67,10 @@ pub fn write_by(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()
     platform::flush_folder(folder).map_err(|e| failed(e.into()))
 }
 
-/// Writes a new file as [`write_atomically`] does, but never replaces one, whoever else writes at the same time.
+/// Writes a new file as [`write_atomically`] does, but never replaces one, even if another program writes at the same time.
 ///
 /// # Errors
-/// [`FileProblem::Exists`] where there is one.
+/// [`FileProblem::Exists`] if the file exists.
 pub(super) fn write_new(path: &Path, content: &[u8]) -> Result<(), FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Write, path);
     let folder = folder_of(path).map_err(failed)?;
@@ -88,10 +89,10 @@ pub(super) fn create_folder(path: &Path) -> Result<(), FileError> {
     })
 }
 
-/// Writes a file of the program's own as [`write_atomically`] does, in a folder that is made where it is missing.
+/// Writes a file of the program's own as [`write_atomically`] does, in a folder that is created if it is missing.
 ///
 /// # Errors
-/// Where the folder cannot be made, or as [`write_atomically`].
+/// Returns an error if the folder cannot be created; otherwise as for [`write_atomically`].
 pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     if let Some(folder) = path.parent() {
         create_folder(folder)?;
@@ -99,10 +100,10 @@ pub fn write_in_folder(path: &Path, content: &[u8]) -> Result<(), FileError> {
     write_atomically(path, content)
 }
 
-/// Reads a text as [`read_text`] does, but only from a file: reading a pipe could block for ever.
+/// Reads a text as [`read_text`] does, but only from a file: reading a pipe could block forever.
 ///
 /// # Errors
-/// As [`read_text`]; or it is a pipe or a device.
+/// Errors as for [`read_text`]; also if it is a pipe or a device.
 pub fn read_file(path: &Path) -> Result<String, FileError> {
     match fs::metadata(path) {
         Ok(found) if !found.is_file() && !found.is_dir() => Err(FileProblem::NotAFile.of(FileTask::Read, path)),
@@ -110,10 +111,10 @@ pub fn read_file(path: &Path) -> Result<String, FileError> {
     }
 }
 
-/// Reads a text of at most [`MAX_TEXT`] bytes. A byte order mark, as some editors leave it, is no part of it.
+/// Reads a text of at most [`MAX_TEXT`] bytes, without the byte order mark that some editors write.
 ///
 /// # Errors
-/// Where the file is missing, a folder, too large or not UTF-8.
+/// Returns an error if the file is missing, a folder, too large or not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     let failed = |problem: FileProblem| problem.of(FileTask::Read, path);
     let bytes = match read_at_most(path, MAX_TEXT + 1) {
@@ -136,34 +137,35 @@ fn read_at_most(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Writes directly. A pipe that is not read would block for ever: it is given up, with the thread that waits for it.
+/// Writes directly. A pipe without a reader would block forever: after a time it is abandoned, with the thread that waits
+/// for it.
 fn write_directly(path: &Path, content: &[u8]) -> io::Result<()> {
     const PATIENCE: Duration = Duration::from_secs(8);
     let (sender, written) = mpsc::channel();
     let (path, content) = (path.to_owned(), content.to_vec());
     thread::spawn(move || {
         let result = OpenOptions::new().write(true).open(path).and_then(|mut file| file.write_all(&content));
-        // The receiver may be gone.
+        // The receiver may no longer exist.
         let _ = sender.send(result);
     });
     written.recv_timeout(PATIENCE).unwrap_or_else(|_| Err(io::Error::new(io::ErrorKind::TimedOut, "nobody reads it")))
 }
 
-/// The file at the end of a chain of links; it need not exist.
+/// Returns the file at the end of a chain of links; it need not exist.
 fn through_links(path: &Path) -> io::Result<PathBuf> {
-    /// As many as Linux follows.
+    /// Largest number of links, as in Linux.
     const MOST: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST {
-        // A target that cannot be read as a link is not one; other errors show when it is written.
+        // A target that cannot be read as a link is not one; other errors occur again when it is written.
         let Ok(next) = fs::read_link(&target) else { return Ok(target) };
         target = target.parent().unwrap_or(Path::new("")).join(next);
     }
-    // Links in a ring: the system has its own words for that.
+    // Links in a ring: the system reports its own error for that.
     fs::metadata(path).map(|_| target)
 }
 
-/// The folder a file lies in.
+/// Returns the folder that contains a file.
 fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
     match (path.parent(), path.file_name()) {
         (Some(folder), Some(_)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
@@ -173,7 +175,7 @@ fn folder_of(path: &Path) -> Result<&Path, FileProblem> {
     }
 }
 
-/// A flushed temporary file beside the target; it is gone when dropped.
+/// Writes and flushes a temporary file in the folder of the target; it is removed when dropped.
 fn stage(
     folder: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -200,7 +202,7 @@ mod platform {
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;
 
-    /// The permissions of any new file; a temporary file is otherwise private to its owner. The umask applies.
+    /// Sets the permissions of any new file; a temporary file is otherwise private to its owner. The umask applies.
     pub(super) fn with_usual_permissions(builder: &mut tempfile::Builder<'_, '_>) {
         builder.permissions(Permissions::from_mode(0o666));
     }
@@ -345,7 +347,7 @@ mod tests {
             fs::create_dir(folder.path().join("sub")).unwrap();
             symlink("second", &link).unwrap();
             symlink(&target, &second).unwrap();
-            // The first time, the link leads to a file yet to be made.
+            // The first time, the link leads to a file that does not exist yet.
             for content in ["made", "replaced"] {
                 write_atomically(&link, content.as_bytes()).unwrap();
                 assert_eq!(read_text(&target).unwrap(), content);

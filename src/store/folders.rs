@@ -1,11 +1,11 @@
-//! The folders that relative paths start from: one rule for the command line, for typed and for dropped paths.
+//! The folders that relative paths start from: one rule for the command line, and for typed and dropped paths.
 
 use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
 use directories::UserDirs;
 
-/// The folders from which a path counts that does not say where it begins.
+/// The folders from which relative paths start.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Folders {
     working: Option<PathBuf>,
@@ -13,7 +13,7 @@ pub struct Folders {
 }
 
 impl Folders {
-    /// The folder in which the program was started, and the user's home.
+    /// Returns the folder in which the program was started, and the user's home.
     pub fn of_user() -> Self {
         let home = UserDirs::new().map(|own| own.home_dir().to_owned());
         Folders { working: std::env::current_dir().ok(), home }
@@ -24,24 +24,24 @@ impl Folders {
         Folders { working: Some(working.to_owned()), home: Some(home.to_owned()) }
     }
 
-    /// The folder from which relative paths count; `None` where the system does not tell.
+    /// Returns the folder from which relative paths start; `None` if the system does not name one.
     pub fn working(&self) -> Option<&Path> {
         self.working.as_deref()
     }
 
-    /// The user's home; `None` where the system names none.
+    /// Returns the user's home; `None` if the system names none.
     pub fn home(&self) -> Option<&Path> {
         self.home.as_deref()
     }
 
-    /// A path that leads to the same file from everywhere: `~` in front is the user's home, and what else begins nowhere
-    /// begins in the folder in which the program was started.
+    /// Returns an absolute path to the same file: a leading `~` is the user's home, and any other relative path starts from
+    /// the folder in which the program was started.
     pub fn absolute(&self, path: &Path) -> PathBuf {
         let mut parts = path.components();
         let from_home = parts.next() == Some(Component::Normal(OsStr::new("~")));
         match (&self.home, &self.working) {
             (Some(home), _) if from_home => home.join(parts.as_path()),
-            // Nothing is named, so that there is nothing to begin.
+            // An empty path names no file and remains empty.
             (_, Some(working)) if !path.as_os_str().is_empty() => working.join(path.strip_prefix(".").unwrap_or(path)),
             _ => path.to_owned(),
         }
@@ -52,7 +52,7 @@ impl Folders {
 mod tests {
     use super::*;
 
-    /// Issue 22.24: one rule for every path that a person gives.
+    /// Issue 22.24: one rule applies to every path from the user.
     #[test]
     fn a_path_leads_to_the_same_file_from_everywhere() {
         let root = std::env::temp_dir();
@@ -65,7 +65,7 @@ mod tests {
             ("sub/a.ron", working.join("sub").join("a.ron")),
             ("~/a.ron", home.join("a.ron")),
             ("~", home.clone()),
-            // A name of its own, and no home.
+            // A file name that begins with `~`, which is not the home.
             ("~a.ron", working.join("~a.ron")),
             ("sub/~/a.ron", working.join("sub/~/a.ron")),
         ];

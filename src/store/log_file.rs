@@ -1,6 +1,6 @@
-//! The log file: the content of the log panel, kept beyond the window. A thread of its own writes it, so that a disk
-//! that hangs blocks nothing: lines that do not fit into the queue are dropped and counted, and the count is written
-//! when the disk responds again. A file that has grown large is renamed and a new one begun.
+//! The log file: the content of the log panel, kept after the window closes. A separate thread writes it, so that a disk
+//! that hangs blocks nothing: lines that do not fit into the queue are dropped and counted, and the count is written when
+//! the disk responds again. A file that has grown large is renamed and a new one begun.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
@@ -22,10 +22,10 @@ const LARGE: u64 = 1 << 20;
 /// Lines that wait for the disk, at most.
 const QUEUE: usize = 1024;
 
-/// How long the end of the program waits for the last lines.
+/// Time that the end of the program waits for the last lines.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// Takes lines for the log file without ever waiting. Clones write into the same file.
+/// A handle that accepts lines for the log file without ever waiting. Clones write into the same file.
 #[derive(Clone, Debug)]
 pub struct LogFile {
     queue: Sender<Order>,
@@ -40,11 +40,11 @@ enum Order {
 }
 
 impl LogFile {
-    /// Writes what this program tells (from the level "info") and what its libraries warn of into this file from now on,
-    /// making it and its folder where there is none. Where it cannot be opened, the program works without.
+    /// Starts writing the messages of this program (from the level "info") and the warnings of its libraries into this
+    /// file, creating it and its folder if they are missing. If it cannot be opened, the program works without.
     ///
     /// # Errors
-    /// When the system has no thread left.
+    /// Returns an error if the system has no free thread.
     pub fn begin(path: &Path) -> io::Result<Self> {
         let own = path.to_owned();
         let log = Self::writing_into(move || Rotating::open(&own, LARGE), QUEUE)?;
@@ -61,7 +61,7 @@ impl LogFile {
         let dropped = Arc::new(AtomicU64::new(0));
         let counted = dropped.clone();
         thread::Builder::new().name("log".to_owned()).spawn(move || {
-            // Opening waits for the disk, too.
+            // Opening may wait for the disk, too.
             if let Ok(file) = open() {
                 write_all(file, &orders, &counted);
             }
@@ -148,7 +148,7 @@ impl Write for Rotating {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let full = self.length > 0 && self.length.saturating_add(bytes.len() as u64) > self.large;
         if full && self.begin_anew().is_err() {
-            // Another window may have it open where that forbids renaming: it grows until the next try.
+            // On some systems renaming fails while another window has it open: it grows until the next try.
             self.length = 0;
         }
         let written = self.file.write(bytes)?;
@@ -199,7 +199,7 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), "four\n");
     }
 
-    /// A disk that hangs until it is let go.
+    /// A disk that hangs until it is released.
     struct Hanging {
         lock: Receiver<()>,
         written: Arc<Mutex<Vec<u8>>>,
@@ -232,7 +232,7 @@ mod tests {
         for number in 0..10 {
             log.add(format!("line {number}\n").as_bytes());
         }
-        // Dropped, the lock blocks no one.
+        // Dropped, the lock blocks no thread.
         drop(release);
         log.wait();
         let text = String::from_utf8(written.lock().unwrap().clone()).unwrap();

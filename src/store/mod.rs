@@ -1,6 +1,5 @@
-//! The program's own folders: backups, drafts, the logbook and the log (data), settings and device tables of the user's own
-//! (configuration).
-//! No folder is made before something is written into it, and no access code is ever written.
+//! The program's own folders: backups, drafts, the logbook and the log (data), settings and the user's own device tables
+//! (configuration). No folder is created before a file is written into it, and no access code is ever written.
 
 mod backups;
 mod captures;
@@ -38,7 +37,7 @@ pub struct Store {
     config: PathBuf,
 }
 
-/// Why the store cannot be used.
+/// The reason why the store cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StoreError {
     /// The system names no home folder for this user.
@@ -47,30 +46,30 @@ pub enum StoreError {
     /// A file cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A file of the user's own about a kind of device is broken: why, in the type of that device.
+    /// One of the user's own files about a kind of device is invalid, with the error of that device.
     #[error("{0}")]
     Refused(Cause),
 }
 
 impl Store {
-    /// The folders that the system keeps for this user and this program.
+    /// Creates the folders that the system keeps for this user and this program.
     ///
     /// # Errors
-    /// [`StoreError::NoHome`] where there are none.
+    /// [`StoreError::NoHome`] if there are none.
     pub fn for_user() -> Result<Self, StoreError> {
         let folders = ProjectDirs::from("", "", "encoder-studio")
-            // A relative home would scatter backups over wherever the program is started.
+            // With a relative home, backups would depend on the folder in which the program is started.
             .filter(|folders| folders.data_dir().is_absolute() && folders.config_dir().is_absolute())
             .ok_or(StoreError::NoHome)?;
         Ok(Store { data: folders.data_dir().to_owned(), config: folders.config_dir().to_owned() })
     }
 
-    /// The folders `data` and `config` under `root`: a store of its own for a test or a portable copy.
+    /// Returns a store in the folders `data` and `config` under `root`, for a test or a portable copy.
     pub fn at(root: &Path) -> Self {
         Store { data: root.join("data"), config: root.join("config") }
     }
 
-    /// The backups taken before devices were written.
+    /// Returns the backups taken before devices were written.
     pub fn backups(&self) -> Backups {
         Backups::in_folder(self.data.join("backups"))
     }
@@ -80,32 +79,32 @@ impl Store {
         Drafts::in_folder(self.data.join("drafts"))
     }
 
-    /// Modes in which devices were found that a job has sent into others: a text each, until they are led back.
+    /// Returns the modes that devices had before a job changed them: a text each, until the mode is restored.
     pub fn excursions(&self) -> Drafts {
         Drafts::in_folder(self.data.join("excursions"))
     }
 
-    /// The file of the program's settings; it need not exist.
+    /// Returns the file of the program's settings; it need not exist.
     pub fn settings_path(&self) -> PathBuf {
         self.config.join("settings.ron")
     }
 
-    /// The file for the program's own messages; it need not exist.
+    /// Returns the file for the program's own messages; it need not exist.
     pub fn log_path(&self) -> PathBuf {
         self.data.join("encoder-studio.log")
     }
 
-    /// The file for [`Logbook::open`].
+    /// Returns the file for [`Logbook::open`].
     pub fn logbook_path(&self) -> PathBuf {
         self.data.join("logbook.sqlite")
     }
 
-    /// The file in which a user may describe devices of this kind; it need not exist.
+    /// Returns the file in which a user may describe devices of this kind; it need not exist.
     pub fn device_file(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind).with_extension("ron")
     }
 
-    /// The folder in which a user may describe devices of this kind, a file each (`*.ron`); it need not exist.
+    /// Returns the folder in which a user may describe devices of this kind, a file each (`*.ron`); it need not exist.
     pub fn device_folder(&self, kind: &str) -> PathBuf {
         self.config.join("devices").join(kind)
     }

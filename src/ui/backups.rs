@@ -1,4 +1,4 @@
-//! Profiles, backups, and what was written into a device, whatever its kind.
+//! Profiles, backups, and the writes recorded in the logbook, for any kind of device.
 
 use egui::{RichText, Ui};
 use jiff::Timestamp;
@@ -98,7 +98,7 @@ fn writes(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     });
 }
 
-/// Status codes that were read: the device does not tell them again.
+/// Draws the status codes that were read: the device does not report them again.
 fn statuses(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     card(ui, theme, "statuses_card.title", |ui| {
         for status in device.statuses() {

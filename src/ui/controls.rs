@@ -1,5 +1,5 @@
-//! The small things that every view is made of: cards, rows of label and value, buttons with icons, badges, empty states.
-//! Each says to a screen reader what it says to the eye, without its icon.
+//! The small widgets of every view: cards, rows of label and value, buttons with icons, badges, empty states. Each has the
+//! same text for a screen reader as on the screen, without its icon.
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 use egui::{Button, Response, RichText, Sense, Stroke, Ui, WidgetInfo, vec2};
@@ -15,17 +15,17 @@ const MODAL: f32 = 240.0;
 /// Width of the column of labels.
 pub(crate) const LABELS: f32 = 132.0;
 
-/// Takes the whole width; in a window that is too small for anything there may be less than none.
+/// Takes the whole width; in a very small window it may be negative.
 pub(crate) fn fill(ui: &mut Ui) {
     ui.set_width(ui.available_width().max(0.0));
 }
 
-/// A card with a heading.
+/// Draws a card with a heading.
 pub fn card<R>(ui: &mut Ui, theme: &Theme, title: impl Into<Text>, content: impl FnOnce(&mut Ui) -> R) -> R {
     card_with(ui, theme, title, |_| {}, content)
 }
 
-/// A card with a heading; what stands at the right of the heading comes from `aside`.
+/// Draws a card with a heading; `aside` draws the part at the right of the heading.
 pub(crate) fn card_with<R>(
     ui: &mut Ui,
     theme: &Theme,
@@ -48,10 +48,10 @@ pub(crate) fn card_with<R>(
         .inner
 }
 
-/// A label and a value that can be selected, on one line.
+/// Draws a label and a value that can be selected, on one line.
 pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) {
     ui.scope(|ui| {
-        // Values are read, not touched: they stand closer than what has to be hit with a pointer.
+        // Values are only read: they are closer together than controls.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.horizontal_top(|ui| {
@@ -61,7 +61,7 @@ pub fn row(ui: &mut Ui, theme: &Theme, label: &str, value: impl Into<RichText>) 
     });
 }
 
-/// A label and something else, on one line.
+/// Draws a label and another widget on one line.
 pub fn entry<R>(ui: &mut Ui, theme: &Theme, label: &str, content: impl FnOnce(&mut Ui) -> R) -> R {
     ui.horizontal(|ui| {
         label_ui(ui, theme, label);
@@ -78,7 +78,7 @@ fn label_ui(ui: &mut Ui, theme: &Theme, label: &str) {
     });
 }
 
-/// Words over several lines, beginning at the left.
+/// Draws words over several lines, beginning at the left.
 pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
     ui.add(egui::Label::new(text).wrap().halign(egui::Align::Min));
 }
@@ -87,12 +87,12 @@ pub(crate) fn paragraph(ui: &mut Ui, text: impl Into<egui::WidgetText>) {
 pub(crate) fn problem(ui: &mut Ui, theme: &Theme, problem: Option<&crate::app::Text>) {
     match problem {
         Some(problem) => paragraph(ui, RichText::new(theme.words(problem)).color(theme.palette.bad)),
-        // Entries below it keep their ids without it, so that typing continues.
+        // The ids of entries below it do not depend on it, so that typing continues.
         None => ui.skip_ahead_auto_ids(1),
     }
 }
 
-/// A dialog over the window: what lies below waits.
+/// Draws a dialog over the window, which is blocked meanwhile.
 pub(super) fn modal<R>(
     ctx: &egui::Context,
     theme: &Theme,
@@ -106,7 +106,7 @@ pub(super) fn modal<R>(
         ui.set_width(width.max(MODAL));
         content(ui)
     });
-    // It stands in the middle only once its size is known, which nothing else would draw.
+    // It can be centred only once its size is known, which requires another frame.
     let place = shown.response.rect;
     if ctx.data(|data| data.get_temp(id)) != Some(place) {
         ctx.data_mut(|data| data.insert_temp(id, place));
@@ -115,8 +115,8 @@ pub(super) fn modal<R>(
     shown.inner
 }
 
-/// The buttons at the end of a dialog, the first at the right, in a line as high as a button: centred in all the room that is left
-/// they would keep a dialog as high as it once was.
+/// Draws the buttons at the end of a dialog, the first at the right, in a line as high as a button: centred in the
+/// remaining space they would keep the dialog at its former height.
 pub(super) fn at_the_right(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     let size = vec2(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, egui::Layout::right_to_left(egui::Align::Center), content);
@@ -126,13 +126,13 @@ pub(crate) fn button(ui: &mut Ui, icon: &str, word: &str) -> Response {
     enabled_button(ui, true, icon, word)
 }
 
-/// A button that may not be pressed now.
+/// Draws a button that may not be pressed now.
 pub(crate) fn enabled_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     name(ui.add_enabled(enabled, Button::new(shown)), enabled, word)
 }
 
-/// A button that says why it may not be pressed.
+/// Draws a button with the reason why it is disabled.
 pub(crate) fn allowed_button(
     ui: &mut Ui,
     theme: &Theme,
@@ -147,7 +147,7 @@ pub(crate) fn allowed_button(
     }
 }
 
-/// The one button of a screen that the eye ends at.
+/// Draws the main button of a screen.
 pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, word: &str) -> Response {
     let shown = if icon.is_empty() { word.to_owned() } else { format!("{icon}  {word}") };
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
@@ -158,7 +158,7 @@ pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, wor
     name(ui.add_enabled(enabled, button), enabled, word)
 }
 
-/// An icon alone; its word is the tooltip.
+/// Draws an icon button; its text is the tooltip.
 pub(crate) fn icon_button(ui: &mut Ui, enabled: bool, icon: &str, word: &str) -> Response {
     let response = ui.add_enabled(enabled, Button::new(icon).min_size(vec2(28.0, 28.0)));
     name(response, enabled, word).on_hover_text(word).on_disabled_hover_text(word)
@@ -170,7 +170,7 @@ pub(crate) fn name(response: Response, enabled: bool, word: &str) -> Response {
     response
 }
 
-/// A short word in a frame of its colour.
+/// Draws a short text in a frame of its colour.
 pub(crate) fn badge(ui: &mut Ui, theme: &Theme, word: &str, colour: impl Into<egui::Color32>) {
     let colour = colour.into();
     let font = egui::FontId::proportional(theme.sizes.caption);
@@ -196,19 +196,19 @@ pub(crate) fn empty(ui: &mut Ui, theme: &Theme, words: &str, action: Option<(&st
     pressed
 }
 
-/// An icon that opens a small panel below itself. What is ticked and typed there does not close it.
+/// Draws an icon that opens a small panel below itself. Clicks and typing there do not close it.
 pub(crate) fn icon_menu(ui: &mut Ui, icon: &str, word: &str, content: impl FnOnce(&mut Ui)) {
     let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
     let button = Button::new(icon).min_size(vec2(28.0, 28.0));
     let (response, _) = MenuButton::from_button(button).config(config).ui(ui, |ui| {
-        // A menu is drawn without borders, in which an unticked box would be invisible.
+        // A menu is drawn without borders, in which an unchecked box would be invisible.
         ui.set_style(ui.ctx().global_style());
         content(ui);
     });
     name(response, true, word).on_hover_text(word);
 }
 
-/// A choice from a list, with a name for screen readers.
+/// Draws a choice from a list, with a name for screen readers.
 pub(crate) fn choice<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -218,7 +218,7 @@ pub(crate) fn choice<T: PartialEq + Copy>(
     let options: Vec<(T, String)> = options.into_iter().collect();
     let shown = options.iter().find(|(own, _)| own == value).map(|(_, word)| word.clone()).unwrap_or_default();
     let before = *value;
-    // A long list is as high as there is room for it.
+    // A long list uses the available height.
     let height = ui.ctx().content_rect().height() * 0.6;
     let list = egui::ComboBox::from_id_salt(label).selected_text(shown.clone()).height(height);
     let response = list.show_ui(ui, |ui| {
@@ -236,8 +236,8 @@ pub(crate) fn choice<T: PartialEq + Copy>(
     *value != before
 }
 
-/// A choice whose options all stand there, as many in a row as fit: also where a list could not open, in a panel that a
-/// click beside it closes.
+/// Draws a choice with all options visible, as many per row as fit: also where a list could not open, in a panel that a
+/// click outside closes.
 pub(crate) fn options<T: PartialEq + Copy>(
     ui: &mut Ui,
     label: &str,
@@ -277,7 +277,7 @@ pub(crate) fn spinner(ui: &mut Ui, theme: &Theme) {
     ui.ctx().request_repaint_after(std::time::Duration::from_millis(125));
 }
 
-/// A verdict on a signal: icon and colour.
+/// Returns icon and colour of a verdict on a signal.
 pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::app::Rgb) {
     let palette = theme.palette;
     match verdict {
@@ -287,7 +287,7 @@ pub(crate) fn verdict(theme: &Theme, verdict: Verdict) -> (&'static str, crate::
     }
 }
 
-/// A verdict with its words, in its colour.
+/// Draws a verdict with its text, in its colour.
 pub(crate) fn verdict_ui(ui: &mut Ui, theme: &Theme, own: Verdict, words: &crate::app::Text) {
     let (icon, colour) = verdict(theme, own);
     ui.horizontal_top(|ui| {
@@ -308,7 +308,7 @@ pub(crate) fn severity(theme: &Theme, severity: crate::app::Severity) -> (&'stat
     }
 }
 
-/// Two columns of cards where there is room, else one below the other.
+/// Draws two columns of cards if they fit, else one below the other.
 pub(crate) fn two_columns<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -319,7 +319,7 @@ pub(crate) fn two_columns<C>(
     split(ui, theme, (0.5, 640.0), context, left, right);
 }
 
-/// Two columns of cards, the left one with this share of the width, where there is this much; else one below the other.
+/// Draws two columns of cards, the left one with this share of the width, from this width on; else one below the other.
 pub(crate) fn split<C>(
     ui: &mut Ui,
     theme: &Theme,
@@ -348,7 +348,7 @@ pub(crate) fn split<C>(
     });
 }
 
-/// A dot: filled for a connection, hollow for none.
+/// Draws a dot: filled for a connection, hollow for none.
 pub(crate) fn dot(ui: &mut Ui, filled: bool, colour: impl Into<egui::Color32>) {
     let (rect, _) = ui.allocate_exact_size(vec2(12.0, 16.0), Sense::hover());
     let colour = colour.into();

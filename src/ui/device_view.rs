@@ -1,4 +1,4 @@
-//! The view of a device: typed in the device's folder, object-safe for the window. One adapter stands between the two.
+//! The view of a device: typed in the device's folder, object-safe for the window. One adapter connects the two.
 
 #![warn(missing_docs)]
 
@@ -9,7 +9,7 @@ use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
 use super::{Theme, workspace};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
-/// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
+/// Page of a tab, for the navigation and the help. `word` and `help` are text ids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PageInfo {
     /// The icon before the word.
@@ -21,7 +21,7 @@ pub struct PageInfo {
 }
 
 impl PageInfo {
-    /// A page with its icon, and its name and help as the table of texts calls them.
+    /// Creates a page with its icon, and the text ids of its name and help.
     pub const fn new(icon: &'static str, word: &'static str, help: &'static str) -> Self {
         PageInfo { icon, word, help }
     }
@@ -32,7 +32,7 @@ pub trait TabPage: Copy + PartialEq + Default + 'static {
     /// All pages, in the order of the navigation.
     const PAGES: &'static [(Self, PageInfo)];
 
-    /// Returns its place among all of its tab.
+    /// Returns its index among the pages of its tab.
     fn place(self) -> usize {
         Self::PAGES.iter().position(|(own, _)| *own == self).unwrap_or_default()
     }
@@ -43,7 +43,7 @@ pub(crate) fn infos<P: TabPage>() -> Vec<PageInfo> {
     P::PAGES.iter().map(|(_, info)| *info).collect()
 }
 
-/// Returns the page at a place; `None`: the tab has not so many.
+/// Returns the page at an index; `None` if the tab has fewer.
 pub(crate) fn page_at<P: TabPage>(place: usize) -> Option<P> {
     P::PAGES.get(place).map(|(page, _)| *page)
 }
@@ -54,15 +54,15 @@ pub trait TypedDeviceView: Sync + 'static {
     type Device: DeviceType;
     /// The pages of the tab.
     type Page: TabPage;
-    /// The text buffers and selections of one session; they are dropped when another device answers.
+    /// The text buffers and selections of one session; they are dropped when another device replies.
     type Memory: Default + 'static;
     /// The form in the connection dialog.
     type ConnectForm: TypedConnectForm;
 
-    /// Whether the keys of undo and redo act on the edits of the device; false where an editor has its own.
+    /// Whether the keys of undo and redo act on the edits of the device; false if an editor has its own.
     const HAS_UNDO_KEYS: bool;
 
-    /// Returns what tells one device from another of its kind; `None` where that is unknown or makes no difference.
+    /// Returns what distinguishes one device from another of its kind; `None` if that is unknown or makes no difference.
     fn serial_number(_device: &Self::Device) -> Option<&str> {
         None
     }
@@ -94,10 +94,10 @@ pub trait TypedDeviceView: Sync + 'static {
         workspace::running_ui(ui, theme, any, None, actions);
     }
 
-    /// Draws the position large, in this ink, and the numbers beside it.
+    /// Draws the position large, in this colour, and the numbers beside it.
     fn value_ui(ui: &mut Ui, theme: &Theme, device: &Self::Device, ink: Rgb);
 
-    /// Draws the menu of the values that are read beside the position, where the device has any.
+    /// Draws the menu of the values that are read with the position, if the device has any.
     fn watch_menu(
         _ui: &mut Ui,
         _skin: &Theme,
@@ -107,7 +107,7 @@ pub trait TypedDeviceView: Sync + 'static {
     ) {
     }
 
-    /// Returns what the header says while the device moves; `None` while it does not.
+    /// Returns the text of the header while the device moves; `None` while it does not.
     fn motion(_device: &Self::Device) -> Option<Text> {
         None
     }
@@ -121,7 +121,7 @@ pub trait TypedDeviceView: Sync + 'static {
     fn empty_ui(_ui: &mut Ui, _skin: &Theme, _actions: &mut Vec<Action>) {}
 }
 
-/// The view of a kind of device, as the window uses it. A device of another kind is not drawn, and has no edits here.
+/// View of a kind of device, as used by the window. A device of another kind is not drawn, and has no edits here.
 pub trait DeviceView: Sync {
     /// Returns the kind of device.
     fn kind(&self) -> &'static dyn DeviceKind;
@@ -132,13 +132,13 @@ pub trait DeviceView: Sync {
     /// Returns whether the keys of undo and redo act on the edits of the device.
     fn has_undo_keys(&self) -> bool;
 
-    /// Returns what the header says while the device moves; `None` while it does not.
+    /// Returns the text of the header while the device moves; `None` while it does not.
     fn motion(&self, device: &AnyDevice) -> Option<Text>;
 
     /// Returns the actions of this kind for the command palette. None of them moves anything.
     fn named_actions(&self, theme: &Theme, device: &AnyDevice) -> Vec<NamedAction>;
 
-    /// Draws the position large, in this ink, and the numbers beside it.
+    /// Draws the position large, in this colour, and the numbers beside it.
     fn value_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, ink: Rgb);
 
     /// Begins the form in the connection dialog.
@@ -151,7 +151,7 @@ pub trait DeviceView: Sync {
     fn empty_ui(&self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>);
 }
 
-/// The view of one session: its open page, text buffers and selections.
+/// View of one session: its open page, text buffers and selections.
 pub trait SessionView {
     /// Returns the place of the open page.
     fn page(&self) -> usize;
@@ -168,7 +168,7 @@ pub trait SessionView {
     /// Draws the progress of the running job, apart from the page.
     fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
-    /// Draws the menu of the values that are read beside the position, where the device has any.
+    /// Draws the menu of the values that are read with the position, if the device has any.
     fn watch_menu(&mut self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 }
 
@@ -218,7 +218,7 @@ struct Session<V: TypedDeviceView> {
     memory: Memory<V::Memory>,
 }
 
-/// The memory of a session's view, and the device that it is about.
+/// Memory of a session's view, and the device that it belongs to.
 #[derive(Default)]
 struct Memory<M> {
     serial_number: Option<String>,
@@ -226,7 +226,7 @@ struct Memory<M> {
 }
 
 impl<M: Default> Memory<M> {
-    /// Returns the memory for this device, without what was typed and selected for another.
+    /// Returns the memory for this device, without text and selections for another one.
     fn of(&mut self, serial_number: Option<&str>) -> &mut M {
         if let Some(own) = serial_number
             && self.serial_number.as_deref() != Some(own)
@@ -284,7 +284,7 @@ pub trait ToolView: Sync {
     fn begin(&self) -> Box<dyn ToolPages>;
 }
 
-/// The view of a tab without devices in one window: its open page, text buffers and selections.
+/// View of a tab without devices in one window: its open page, text buffers and selections.
 pub trait ToolPages {
     /// Returns the place of the open page.
     fn page(&self) -> usize;
@@ -296,7 +296,7 @@ pub trait ToolPages {
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>);
 }
 
-/// The views of all tabs, in the order of the navigation: devices first.
+/// Views of all tabs, in the order of the navigation: devices first.
 #[derive(Clone, Copy)]
 pub struct TabViews {
     devices: &'static [&'static dyn DeviceView],
@@ -304,7 +304,7 @@ pub struct TabViews {
 }
 
 impl TabViews {
-    /// A list of views, each for a tab of its own.
+    /// Creates the list of views, one per tab.
     pub const fn new(devices: &'static [&'static dyn DeviceView], tools: &'static [&'static dyn ToolView]) -> Self {
         TabViews { devices, tools }
     }

@@ -1,5 +1,5 @@
-//! The panels around the workspace: they dock, resize and come back as they were. A layout that does not load is
-//! replaced by the one to begin with.
+//! The panels around the workspace: they can be docked and resized, and are restored. A layout that does not load is
+//! replaced by the default.
 
 use egui_tiles::{Container, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
@@ -31,13 +31,13 @@ pub(super) struct Docks {
 }
 
 impl Docks {
-    /// The arrangement that is remembered, or else the one to begin with.
+    /// Loads the stored arrangement, or else the default.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
         Docks { tree: tree.unwrap_or_else(first_layout), edited: false }
     }
 
-    /// The arrangement as text, when it has changed since the last time.
+    /// Returns the arrangement as text, if it has changed since the last call.
     pub(super) fn changed(&mut self) -> Option<String> {
         std::mem::take(&mut self.edited).then(|| ron::to_string(&self.tree).ok()).flatten()
     }
@@ -61,7 +61,7 @@ impl Docks {
     }
 }
 
-/// Each panel stands in it once.
+/// Returns whether each panel is in it once.
 fn is_complete(tree: &Tree<Pane>) -> bool {
     Pane::ALL.iter().all(|pane| {
         let same = |tile: &egui_tiles::Tile<Pane>| matches!(tile, egui_tiles::Tile::Pane(own) if own == pane);
@@ -120,7 +120,7 @@ impl egui_tiles::Behavior<Pane> for Behaviour<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
-        // A panel alone keeps its tab: it names it, and it is what one drags.
+        // A single panel keeps its tab, which shows its name and is used for dragging.
         SimplificationOptions { prune_single_child_tabs: false, ..SimplificationOptions::default() }
     }
 
@@ -185,7 +185,7 @@ mod tests {
     use crate::app::Settings;
     use crate::app::recorded::SETTINGS;
 
-    /// Names of panels stand in people's settings.
+    /// Names of panels are stored in users' settings.
     #[test]
     fn panels_stand_as_recorded() {
         let layout = Settings::parse(SETTINGS).unwrap().layout.unwrap();

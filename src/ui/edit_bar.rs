@@ -1,5 +1,5 @@
-//! The foot of a page where a memory is edited, whatever the device: how many edits there are, taking them back, and
-//! writing them.
+//! The edit bar of a page for editing a memory, for any device: the number of edits, and the buttons to discard and to
+//! write them.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -74,7 +74,7 @@ pub fn edit_bar_ui(
     });
 }
 
-/// Draws the number of edits, as a number alone where there is no room for words.
+/// Draws the number of edits, as a number only if the text does not fit.
 fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     let color = theme.palette.staged;
     let font = egui::TextStyle::Body.resolve(ui.style());
@@ -85,7 +85,7 @@ fn edits(ui: &mut Ui, theme: &Theme, count: usize, words: &str) {
     label.on_hover_text(words);
 }
 
-/// A profile goes into a connected device of its kind: which one is chosen here.
+/// Draws the choice of a connected device of its kind to write the profile to.
 fn write_into(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && *other.phase() == Phase::Connected;
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

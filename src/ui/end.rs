@@ -1,5 +1,5 @@
-//! The end of the program, where it does not come from the window: a signal, or a display that is gone. Drives are stopped
-//! and let go before, from whichever thread that can be done.
+//! The end of the program that does not come from the window: a signal, or a lost display. Drives are stopped and released
+//! before, from whichever thread can do it.
 
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +12,7 @@ const ANSWERS: Duration = Duration::from_secs(2);
 /// Exit status of a program ended by a signal: 128 plus the number of SIGTERM.
 const ENDED: i32 = 143;
 
-/// Lets go of the drives when its thread ends, or when that thread ends the program.
+/// Releases the drives when its thread ends, or when that thread ends the program.
 struct ReleaseOnDrop(Brakes);
 
 impl Drop for ReleaseOnDrop {
@@ -23,11 +23,11 @@ impl Drop for ReleaseOnDrop {
 }
 
 thread_local! {
-    /// The library of the display ends the program itself when the display is gone: what a thread owns goes even then.
+    /// The display library ends the program itself when the display is lost: thread-local values are dropped even then.
     static LAST: OnceCell<ReleaseOnDrop> = const { OnceCell::new() };
 }
 
-/// Hears signals from now on, and that the thread of the window ends.
+/// Handles signals, and the end of the window's thread, from now on.
 pub(super) fn prepare(studio: &Studio) {
     let (brakes, mailbox) = (studio.brakes(), studio.mailbox());
     LAST.with(|last| last.set(ReleaseOnDrop(brakes.clone())).unwrap_or_default());
@@ -38,12 +38,12 @@ pub(super) fn prepare(studio: &Studio) {
         }
     });
     if let Err(why) = heard {
-        // Signals end it at once then.
+        // Signals then end it immediately.
         tracing::warn!("{why}");
     }
 }
 
-/// Drives first, then the window as if it were closed, but nothing is asked. Whether the window closes.
+/// Ends the drives first, then the window as if it were closed, but without questions. Returns whether the window closes.
 fn end(brakes: &Brakes, mailbox: &Mailbox) -> bool {
     brakes.begin();
     mailbox.send(Action::Quit);

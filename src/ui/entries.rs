@@ -1,4 +1,4 @@
-//! One-line text entries: plain, monospace, secret, labelled, and one that takes effect when it is left.
+//! One-line text entries: plain, monospace, secret, labelled, and one that takes effect when it loses focus.
 
 use egui::{Response, Ui, WidgetInfo};
 
@@ -6,14 +6,14 @@ use super::Theme;
 use super::controls::entry;
 use crate::app::Text;
 
-/// Inside a line of text, so that it is as high as a button.
+/// Inner margin of a line of text, so that it is as high as a button.
 const FIELD: egui::Margin = egui::Margin::symmetric(8, 6);
-/// A one-line entry with a name for screen readers.
+/// Draws a one-line entry with a name for screen readers.
 pub fn text_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str, hint: &str) -> Response {
     entry_in(ui, text, width, label, hint, egui::TextStyle::Body.into())
 }
 
-/// A one-line entry for what is spelled exactly.
+/// Draws a one-line entry for an exact spelling.
 pub(crate) fn mono_entry(
     ui: &mut Ui,
     theme: &Theme,
@@ -44,7 +44,7 @@ fn entry_in(
     response
 }
 
-/// A one-line entry for what is not to be seen: not on the screen, not by a screen reader, not by undoing.
+/// Draws a one-line entry for a secret: hidden on the screen, from screen readers and from undo.
 pub(crate) fn secret_entry(ui: &mut Ui, text: &mut String, width: f32, label: &str) -> Response {
     let edit = egui::TextEdit::singleline(text).password(true).desired_width(width).margin(FIELD);
     let response = ui.add(edit);
@@ -58,7 +58,7 @@ pub(crate) fn forget_secret(ui: &Ui, response: &Response, text: &mut String) {
     egui::TextEdit::store_state(ui.ctx(), response.id, egui::text_edit::TextEditState::default());
 }
 
-/// A one-line entry behind its label, which is also its name for screen readers.
+/// Draws a one-line entry after its label, which is also its name for screen readers.
 pub(crate) fn labelled_entry(
     ui: &mut Ui,
     theme: &Theme,
@@ -71,8 +71,8 @@ pub(crate) fn labelled_entry(
     entry(ui, theme, &word, |ui| text_entry(ui, text, width, &word, hint))
 }
 
-/// A one-line entry that counts when it is left or Enter is pressed. `draft` holds what is typed until it counts, or until
-/// it can: what `take` refuses stays, with the reason below it.
+/// Draws a one-line entry that takes effect when it loses focus or Enter is pressed. `draft` holds the text until then, or
+/// until it is valid: text refused by `take` stays, with the reason below it.
 pub fn settled_entry(
     ui: &mut Ui,
     draft: &mut Option<(String, Option<crate::app::Text>)>,

@@ -1,4 +1,4 @@
-//! The header: which session is shown, how it stands with it, what can be done at any time, and STOP.
+//! The header: the selected session, its status, the actions that are always available, and STOP.
 
 use egui::{RichText, Stroke, Ui};
 
@@ -19,7 +19,7 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
             let motion = views.tabs.device(device.tab()).and_then(|view| view.motion(device));
             status(ui, theme, device, motion);
         }
-        // Drawn from left to right, as the keyboard goes through it; how wide it is is known from the picture before.
+        // Drawn from left to right, in the order of the keyboard; its width is known from the previous frame.
         let width_id = ui.scope_id().with("tools");
         let width = ui.data(|data| data.get_temp::<f32>(width_id)).unwrap_or(0.0);
         let room = (ui.available_width() - width - ui.spacing().item_spacing.x).max(0.0);
@@ -46,8 +46,8 @@ pub(super) fn header_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut
 
 /// Draws the tools that are always available.
 fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
-    // In a narrow window the icons have to do; their words are the tooltips.
-    // A STOP of twice its width needs the room of some.
+    // In a narrow window only icons are drawn, with their texts as tooltips. A STOP of twice its width needs the space of
+    // some.
     let narrow = ui.ctx().content_rect().width() < if studio.moves() { 1240.0 } else { 1100.0 };
     let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
         let word = theme.say(id);
@@ -101,7 +101,7 @@ fn tools(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions
     }
 }
 
-/// The sessions, as a menu behind the name of the one that is shown.
+/// Draws the sessions, as a menu behind the name of the selected one.
 fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     let shown = studio.selected_device().map_or_else(|| theme.say("shell.no_session"), AnyDevice::name);
     let most = if ui.ctx().content_rect().width() < 1200.0 { 21 } else { 28 };
@@ -154,7 +154,7 @@ fn sessions(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Actio
     name(menu.response, true, &theme.say("shell.sessions"));
 }
 
-/// A name that leaves room for the rest of the header. Of a device the serial number stays: it tells two of a kind apart.
+/// Returns a name shortened for the header. A device keeps its serial number, which distinguishes two of a kind.
 fn shortened(name: &str, most: usize) -> String {
     let cut = |text: &str, most: usize| match text.chars().count() {
         count if count <= most => text.to_owned(),
@@ -179,7 +179,7 @@ fn phase_dot(ui: &mut Ui, theme: &Theme, device: &AnyDevice) {
     dot(ui, filled, colour);
 }
 
-/// *virtual*, *offline*, *connected*, *moving*, *lost*: each with a word.
+/// Draws the status as a word: *virtual*, *offline*, *connected*, *moving*, *lost*.
 fn status(ui: &mut Ui, theme: &Theme, device: &AnyDevice, motion: Option<Text>) {
     let palette = theme.palette;
     if device.is_virtual() {
@@ -214,10 +214,10 @@ fn link(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     }
 }
 
-/// STOP ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide; while one moves
-/// by this window it counts when it is pressed, not when it is let go, and ends nothing but motion.
+/// Draws STOP, which ends everything that runs and every motion, in all sessions. While a drive moves it is twice as wide;
+/// while one is moved by this window it takes effect on pressing, not on release, and ends only motion.
 fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    // Motion by another master cannot be stopped from here: that is no reason to let a job run on.
+    // Motion by another master cannot be stopped from here: that is no reason to let a job continue.
     let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
@@ -244,7 +244,7 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     }
 }
 
-/// STOP over whatever stands over the window, while a drive moves: where it always is.
+/// Draws STOP in its usual place above anything that covers the window, while a drive moves.
 pub(super) fn stop_over_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
     if !studio.moves() || ctx.memory(|memory| memory.top_modal_layer().is_none()) {
         return;
@@ -258,7 +258,7 @@ fn stop_place() -> egui::Id {
     egui::Id::unique("place of stop")
 }
 
-/// The notice that stands in the window: a strip that covers nothing, and is closed by a click.
+/// Draws the notice of the window: a strip that covers nothing, and is dismissed by a click.
 pub(super) fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice, actions: &mut Vec<Action>) {
     let (icon, colour) = severity(theme, notice.severity);
     let strip = egui::UiBuilder::new().sense(egui::Sense::click());

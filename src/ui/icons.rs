@@ -1,4 +1,4 @@
-//! Icons by name: a part of the Phosphor set, in `assets/fonts/Icons.ttf`. Each stands with a word or a tooltip.
+//! Icons by name: a part of the Phosphor set, in `assets/fonts/Icons.ttf`. Each has a text or a tooltip.
 
 pub const ARROWS_CLOCKWISE: &str = "\u{E094}";
 pub const ARROW_CLOCKWISE: &str = "\u{E036}";

@@ -1,5 +1,6 @@
-//! Keys before any widget sees them: a key that repeats itself, or comes at once after another, presses nothing, Space stops what moves, and so does every
-//! key while the pointer holds a drive. What holds a drive with a key judges for itself ([`HoldState`](crate::app::HoldState)).
+//! Keys before any widget sees them: a key that repeats, or follows immediately after another, presses nothing; Space stops
+//! a motion, and so does every key while the pointer holds a drive. A key that holds a drive is handled by
+//! [`HoldState`](crate::app::HoldState).
 
 use egui::{Context, Event, Key};
 
@@ -10,7 +11,7 @@ use crate::app::{FreshKeys, PressKey};
 /// The known state of the keys that press buttons, in the whole window.
 pub(super) struct Keys {
     fresh: FreshKeys,
-    /// In the last picture a consent was asked for.
+    /// A consent was requested in the last frame.
     asked: bool,
 }
 
@@ -19,8 +20,8 @@ impl Keys {
         Keys { fresh: FreshKeys::UP, asked: false }
     }
 
-    /// Takes out of this picture what no widget is to see. Whether everything that moves is to stop. `moves`: something moves
-    /// by this window; `asks`: a consent is asked for, which is given only by a key that was seen up since.
+    /// Removes the events of this frame that no widget may see. Returns whether all motion must stop. `moves`: something is
+    /// moved by this window; `asks`: a consent is requested, which only a key that was seen up since can give.
     pub(super) fn take(&mut self, ctx: &Context, moves: bool, asks: bool) -> bool {
         if asks && !std::mem::replace(&mut self.asked, asks) {
             self.fresh.forget();
@@ -28,7 +29,7 @@ impl Keys {
         self.asked = asks;
         let (held, for_hold_button) = (is_hold_button_held(ctx), has_hold_button_keyboard(ctx));
         let (now, has_keyboard) = ctx.input(|input| (input.time, input.focused));
-        // Enter ends what is typed into an entry, and presses nothing there.
+        // Enter completes a text entry, and presses nothing there.
         let typing = ctx.text_edit_focused();
         let space_stops = !for_hold_button && (moves || stop_debounce::has_just_stopped(ctx, now));
         let fresh = &mut self.fresh;
@@ -61,7 +62,7 @@ impl Keys {
                 };
                 let stop = held || space_stops && own == Some(PressKey::Space) && !repeats;
                 stops |= stop;
-                // Escape does more than stop, and is judged where it is known what.
+                // Escape has further effects, which are handled elsewhere.
                 counts && !stop || *key == Key::Escape
             }
             _ => true,
@@ -77,7 +78,7 @@ impl Keys {
     }
 }
 
-/// The key that presses buttons, where it is one.
+/// Returns the key if it presses buttons.
 pub(super) const fn press_key(key: Key) -> Option<PressKey> {
     match key {
         Key::Space => Some(PressKey::Space),

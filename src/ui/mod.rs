@@ -1,4 +1,4 @@
-//! The window: drawing only. A view reads the state, keeps nothing but its own text buffers and selection, and pushes
+//! The window: drawing only. A view reads the state, stores nothing but its own text buffers and selection, and pushes
 //! actions; it never does I/O, decodes, sorts or blocks.
 
 pub mod backups;

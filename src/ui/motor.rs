@@ -1,14 +1,14 @@
-//! The card of what turns the shaft of a virtual encoder.
+//! The card of the motor that turns the shaft of a virtual encoder.
 
 use egui::{Button, Ui};
 
 use super::Theme;
 use super::controls::{card, name, paragraph};
 
-/// Revolutions a minute to choose from.
+/// Revolutions per minute to choose from.
 const SPEEDS: [f64; 5] = [-60.0, -6.0, 0.0, 6.0, 60.0];
 
-/// Draws the card; `turn` is told the speed that is wished, in revolutions a minute.
+/// Draws the card; `turn` gets the requested speed in revolutions per minute.
 pub(crate) fn card_ui(ui: &mut Ui, theme: &Theme, now: f64, mut turn: impl FnMut(f64)) {
     card(ui, theme, "motor_card.title", |ui| {
         paragraph(ui, theme.caption(theme.say("motor_card.words")));

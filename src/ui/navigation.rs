@@ -9,7 +9,7 @@ use super::views::shown_in;
 use super::{Theme, Views, icons};
 use crate::app::{Action, Studio};
 
-/// The tabs, with the pages of the open one.
+/// Draws the tabs, with the pages of the open one.
 pub(super) fn navigation_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -30,7 +30,7 @@ pub(super) fn navigation_ui(
             open_pages(ui, theme, studio, views);
         }
     }
-    // At the foot, so that it is drawn wherever the rest ends.
+    // At the bottom, so that it is drawn wherever the rest ends.
     let footer = ui.max_rect().with_min_y(ui.max_rect().bottom() - 28.0);
     let mut footer = ui.new_child(egui::UiBuilder::new().max_rect(footer));
     if icon_button(&mut footer, true, icons::ARROWS_CLOCKWISE, &theme.say("shell.reset_layout")).clicked() {
@@ -38,7 +38,7 @@ pub(super) fn navigation_ui(
     }
 }
 
-/// The pages of the open tab, where it shows something.
+/// Draws the pages of the open tab, if it shows anything.
 fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     let tab = studio.settings.tab;
     let pages = views.tabs.pages(tab);
@@ -56,8 +56,8 @@ fn open_pages(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
     }
 }
 
-/// The entries of a tab's pages; the place of the page that was pressed. Edits that are not written mark the page that
-/// `edited` names.
+/// Draws the entries of a tab's pages; returns the index of the one that was pressed. Unwritten edits mark the page named
+/// by `edited`.
 fn pages_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -79,7 +79,7 @@ fn pages_ui(
     pressed
 }
 
-/// An entry of the navigation, as wide as it.
+/// Draws an entry of the navigation, as wide as it.
 fn entry(ui: &mut Ui, is_shown: bool, text: egui::RichText, word: &str) -> egui::Response {
     let size = egui::vec2(ui.available_width(), 32.0);
     let button = egui::Button::selectable(is_shown, (text, egui::Atom::grow())).frame_when_inactive(false);

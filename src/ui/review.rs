@@ -1,5 +1,5 @@
-//! The review of a write, whatever the device: every operation old → new, what it costs and needs, the consent, how far it
-//! is, what came of it.
+//! The review of a write, for any device: every operation old → new, its costs and requirements, the consent, the progress,
+//! and the result.
 
 use std::sync::Arc;
 
@@ -12,17 +12,18 @@ use super::{Theme, icons};
 use crate::app::review::{ChangeWords, ExecutionMode, OpWords, Question, ReviewSheet, Stage, Toggle};
 use crate::app::{Action, AnyDevice, ReviewAction, Rgb};
 
-/// Draws the dialog, where a write is on its way.
+/// Draws the dialog, if there is a write.
 pub(super) fn review_ui(ctx: &egui::Context, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let Some(sheet) = device.sheet() else { return };
     let width = (ctx.content_rect().width() - 64.0).min(760.0);
-    // As many operations as there is room for beside all that is said of them.
+    // As many operations as fit in addition to their texts.
     let room = (ctx.content_rect().height() - REST).clamp(LEAST, MOST);
     modal(ctx, theme, "review", width, |ui| {
         ui.label(theme.heading(theme.words(&sheet.title)));
         ui.label(theme.label(device.name()));
         ui.add_space(theme.space.between);
-        // The keyboard on a button of one stage is on none of the next: no key that cancels there writes here.
+        // The keyboard focus does not pass from a button of one stage to the next: a key that cancels there must not write
+        // here.
         apart(ui, std::mem::discriminant(&sheet.stage), |ui| content(ui, theme, device, (&sheet, room), actions));
     });
 }
@@ -65,7 +66,7 @@ fn content(
             buttons(ui, theme, device, actions, "review.cancel", |ui, actions| {
                 let icon =
                     if sheet.execution_mode == ExecutionMode::Writes { icons::DOWNLOAD_SIMPLE } else { icons::PLAY };
-                // Without the permit it would be refused.
+                // Without the permission it would be refused.
                 let may_wear = sheet.force_wear != Some(false);
                 if primary(ui, theme, device.is_ready() && may_wear, icon, &theme.say(sheet.execution_mode.button_id()))
                     .clicked()
@@ -146,7 +147,7 @@ fn buttons(
     });
 }
 
-/// The operations; while they are carried out, with the number of those that are done. What is written is never cut off.
+/// Draws the operations; during a write, with the number of completed ones. Values are never truncated.
 fn operations(ui: &mut Ui, theme: &Theme, (lines, room): (&[OpWords], f32), done: Option<usize>) {
     let palette = theme.palette;
     theme.sunken().show(ui, |ui| {
@@ -208,7 +209,7 @@ fn short(ui: &Ui, theme: &Theme, item: &str, change: &ChangeWords, ink: Rgb) -> 
     (galley.rows.len() == 1 && beside + galley.size().x <= ui.available_width()).then_some(galley)
 }
 
-/// One thing that changes: what it is, what is there before, and what after it.
+/// Draws a change: the item, its old and its new value.
 fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static str; 2], ink: Rgb) {
     if let Some(part) = &change.part {
         ui.horizontal(|ui| {
@@ -229,13 +230,13 @@ fn change_ui(ui: &mut Ui, theme: &Theme, change: &ChangeWords, heads: [&'static 
     }
 }
 
-/// Height of the operations, at least and at most, and of all else in the dialog and around it.
+/// Minimum and maximum height of the operations, and the height of everything else in the dialog and around it.
 const LEAST: f32 = 200.0;
 const MOST: f32 = 440.0;
 const REST: f32 = 400.0;
-/// Width of the icon before an item, with what lies between them.
+/// Width of the icon before an item, including the gap.
 const ICON: f32 = 24.0;
-/// Width of the column that says which is old and which is new.
+/// Width of the column that labels old and new.
 const HEADS: f32 = 56.0;
 
 fn remarks(ui: &mut Ui, theme: &Theme, sheet: &ReviewSheet) {
@@ -269,7 +270,7 @@ fn remark(ui: &mut Ui, icon: &str, colour: Rgb, words: &str) {
     });
 }
 
-/// A question with its two answers; what it is about stands in front of them.
+/// Draws a question with its two answers, after its subject.
 fn question_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, question: &Question, actions: &mut Vec<Action>) {
     remark(ui, icons::WARNING, theme.palette.warn, &theme.words(&question.title));
     ui.horizontal(|ui| {

@@ -1,4 +1,4 @@
-//! Opening the window: what it needs of the machine, and the one line that is said where there is no display.
+//! Opening the window: its requirements, and the one-line error without a display.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
@@ -52,7 +52,7 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
         }),
     );
     let result = result.map_err(|error| {
-        // The words of the libraries are for programmers, with paths of the machine that built them.
+        // The texts of the libraries are for programmers, with paths of the build computer.
         tracing::error!("{error}");
         NOT_OPENED.to_owned()
     });
@@ -65,7 +65,7 @@ pub fn run(start: Start, kinds: Kinds, tabs: TabViews) -> Result<(), String> {
 /// The window as eframe runs it.
 pub(crate) struct StudioApp {
     window: Window,
-    /// When the program began, until its first picture has been shown.
+    /// Start of the program, until its first frame has been shown.
     began: Option<Instant>,
 }
 
@@ -75,7 +75,7 @@ impl eframe::App for StudioApp {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        // The second picture begins when the first is on the screen.
+        // The second frame begins when the first is on the screen.
         if ui.ctx().cumulative_frame_nr() > 0
             && let Some(began) = self.began.take()
         {

@@ -1,10 +1,10 @@
-//! Presses of what stops, as the toolkit tells them; what they mean is [`StopPresses`]'.
+//! Presses that stop, as reported by the toolkit; [`StopPresses`] interprets them.
 
 use egui::{Context, Event, Id, Key, Response, Ui};
 
 use crate::app::StopPresses;
 
-/// Returns whether a press at this time, by the clock of the frames, is meant for a motion that runs or has just ended.
+/// Returns whether a press at this time, by the clock of the frames, applies to a motion that runs or has just ended.
 pub(crate) fn means_motion(ctx: &Context, moves: bool, pressed: f64) -> bool {
     let now = ctx.input(|input| input.time);
     with(ctx, |presses| presses.means_motion(moves, pressed, now))
@@ -20,7 +20,7 @@ fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
     ctx.data_mut(|data| act(data.get_temp_mut_or_default(id)))
 }
 
-/// The pointer goes down on a button that stops, in this picture.
+/// Returns whether the pointer goes down on a button that stops, in this frame.
 pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
     let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
     if goes {
@@ -36,7 +36,7 @@ pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
     with(ui.ctx(), |presses| presses.pressed_at(goes_down || released, now))
 }
 
-/// Esc goes down in this picture; a key that is held and repeats itself does not.
+/// Returns whether Esc is pressed in this frame; a held key that repeats does not count.
 pub(super) fn escape_goes_down(ctx: &Context) -> bool {
     let goes = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
     ctx.input(|input| input.events.iter().any(goes))

@@ -1,5 +1,5 @@
-//! The look of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the words of
-//! one language. Every view gets a [`Theme`]; no view names a colour, a size or a font of its own.
+//! The theme of the window applied to egui: fonts, colours, sizes and distances from `assets/theme.ron`, and the texts of
+//! one language. Every view gets a [`Theme`]; no view defines colours, sizes or fonts of its own.
 
 use egui::{Color32, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Margin, RichText, Stroke, TextStyle};
 
@@ -15,7 +15,7 @@ impl From<Rgb> for Color32 {
 /// The appearance and the language.
 #[derive(Clone, Copy, Debug)]
 pub struct Theme {
-    /// Colours by what they mean.
+    /// Colours by meaning.
     pub palette: &'static Palette,
     pub sizes: &'static TextSizes,
     /// Distances.
@@ -39,63 +39,63 @@ impl Theme {
         }
     }
 
-    /// The text of that name in the window's language.
+    /// Returns the text of that name in the window's language.
     pub fn say(&self, id: &'static str) -> String {
         Text::new(id).words(self.language)
     }
 
-    /// A text with its arguments in the window's language.
+    /// Returns a text with its arguments in the window's language.
     pub fn words(&self, text: &Text) -> String {
         text.words(self.language)
     }
 
-    /// A number with the language's decimal sign.
+    /// Returns a number with the language's decimal sign.
     pub fn number(&self, value: f64, decimals: usize) -> String {
         crate::app::decimal(value, decimals, self.language)
     }
 
-    /// A number with as many decimals as it has.
+    /// Returns a number with its own number of decimals.
     pub fn plain(&self, value: f64) -> String {
         let decimals = value.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
         self.number(value, decimals)
     }
 
-    /// A number as it came, in hexadecimal digits, and how wide it is.
+    /// Returns a number as received, in hexadecimal digits, with its width.
     pub fn word(&self, word: Word) -> String {
         self.words(&Text::new("live.word").with("hex", word).with("count", word.bits))
     }
 
-    /// A label: what a value beside it is.
+    /// Returns a label for the value beside it.
     pub fn label(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).color(self.palette.muted)
     }
 
-    /// A caption: small, beside and below things.
+    /// Returns a caption: small, for use beside and below widgets.
     pub fn caption(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).size(self.sizes.caption).color(self.palette.muted)
     }
 
-    /// The heading of a section or a card.
+    /// Returns the heading of a section or a card.
     pub fn heading(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(self.strong(self.sizes.section))
     }
 
-    /// Bytes, registers, and every number that changes.
+    /// Returns text for bytes, registers, and every number that changes.
     pub fn mono(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.body))
     }
 
-    /// The main value of a card.
+    /// Returns text for the main value of a card.
     pub fn value(&self, words: impl Into<String>) -> RichText {
         RichText::new(words).font(FontId::monospace(self.sizes.value))
     }
 
-    /// The heavier of the two weights.
+    /// Returns the heavier of the two weights.
     pub fn strong(&self, size: f32) -> FontId {
         FontId::new(size, FontFamily::Name(STRONG.into()))
     }
 
-    /// The frame of a card: raised, a line around it, no shadow.
+    /// Returns the frame of a card: raised, with a border, without a shadow.
     pub fn card(&self) -> egui::Frame {
         egui::Frame::NONE
             .fill(self.palette.raised.into())
@@ -104,7 +104,7 @@ impl Theme {
             .inner_margin(Margin::same(12))
     }
 
-    /// The frame of what is read rather than touched: plots, bytes, trace.
+    /// Returns the frame of read-only content: plots, bytes, trace.
     pub fn sunken(&self) -> egui::Frame {
         egui::Frame::NONE.fill(self.palette.sunken.into()).corner_radius(self.radius).inner_margin(Margin::same(8))
     }
@@ -166,7 +166,7 @@ impl Theme {
         let corner = CornerRadius::same(4);
         let text = Color32::from(palette.text);
         let line = Color32::from(palette.line);
-        // Controls that can be pressed or ticked stand out from separators.
+        // Controls that can be pressed or checked stand out from separators.
         let edge = Color32::from(palette.muted).gamma_multiply(0.6);
         let accent = Color32::from(palette.accent);
         let widgets = &mut visuals.widgets;
@@ -196,7 +196,7 @@ const FONTS: [(&str, &[u8]); 4] = [
     ("icons", include_bytes!("../../assets/fonts/Icons.ttf")),
 ];
 
-/// The fonts that ship with the program: one for text in two weights, one for bytes and numbers, one of icons.
+/// Installs the built-in fonts: one for text in two weights, one for bytes and numbers, one of icons.
 pub fn install_fonts(ctx: &egui::Context) {
     let mut fonts = FontDefinitions::empty();
     for (name, bytes) in FONTS {

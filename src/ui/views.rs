@@ -1,4 +1,4 @@
-//! The memory of the views while the window is open: text buffers and selections, nothing of the state.
+//! The memory of the views while the window is open: text buffers and selections, no state.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +41,7 @@ impl Views {
         }
     }
 
-    /// Returns the view of a session; `None` where no tab shows this kind of device.
+    /// Returns the view of a session; `None` if no tab shows this kind of device.
     pub(super) fn session(&mut self, device: &AnyDevice) -> Option<&mut dyn SessionView> {
         let view = self.tabs.device(device.tab())?;
         Some(self.sessions.entry(device.id()).or_insert_with(|| view.session()).as_mut())
@@ -53,7 +53,7 @@ impl Views {
         Some(tool.as_mut())
     }
 
-    /// Returns the open page of the open tab; of a tab of devices without one, the first page.
+    /// Returns the open page of the open tab; for a tab of devices without one, the first page.
     pub(super) fn page(&mut self, studio: &Studio) -> Option<PageInfo> {
         let tab = studio.settings.tab;
         let page = match (self.tool(tab), shown_in(studio, tab)) {
@@ -70,7 +70,7 @@ impl Views {
     }
 }
 
-/// Returns the device that a tab shows, where it is the open tab.
+/// Returns the device that a tab shows, if it is the open tab.
 pub(super) fn shown_in(studio: &Studio, tab: Tab) -> Option<&AnyDevice> {
     studio.selected_device().filter(|device| device.tab() == tab)
 }

@@ -1,4 +1,4 @@
-//! The window: header, navigation, panels, dialogs and the keyboard; what eframe asks of an application.
+//! The window: header, navigation, panels, dialogs and the keyboard; implements the application for eframe.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub struct Window {
     views: Views,
     docks: Docks,
     keys: Keys,
-    /// In this picture it was heard already that the window is to close.
+    /// The request to close the window was already handled in this frame.
     close_heard: bool,
     look: &'static ThemeData,
     dressed: Option<crate::app::ColorScheme>,
@@ -29,19 +29,19 @@ pub struct Window {
 }
 
 impl Window {
-    /// A window on a studio, with these tabs.
+    /// Creates a window on a studio, with these tabs.
     pub fn new(studio: Studio, look: &'static ThemeData, tabs: TabViews) -> Self {
         let docks = Docks::load(studio.settings.layout.as_deref());
         let views = Views::new(tabs);
         Window { studio, views, docks, keys: Keys::new(), close_heard: false, look, dressed: None, notice_since: None }
     }
 
-    /// All state.
+    /// Returns the complete state.
     pub fn studio(&self) -> &Studio {
         &self.studio
     }
 
-    /// Draws everything and does what was asked.
+    /// Draws everything and carries out the actions.
     pub fn draw(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         self.studio.poll();
@@ -57,7 +57,7 @@ impl Window {
         header::stop_over_ui(&ctx, &theme, &self.studio, &mut actions);
         self.take_escape(&ctx, in_use, &mut actions);
         if !actions.is_empty() {
-            // Their effect has to be drawn.
+            // Their effect must be drawn.
             ctx.request_repaint();
         }
         for action in actions {
@@ -134,7 +134,7 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// Draws the notice, at the bottom and over nothing. Notices that need an action stay until they are closed, the
+    /// Draws the notice, at the bottom and over nothing. Notices that need an action stay until they are dismissed, the
     /// others disappear by themselves.
     fn notice(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
         let Some(notice) = self.studio.services.log.standing() else {
@@ -160,12 +160,12 @@ impl Window {
         }
     }
 
-    /// Runs even if nothing is drawn: a minimised window still has to be closed. It keeps nothing moving.
+    /// Runs even if nothing is drawn: a minimised window must still be closed. It keeps nothing moving.
     pub fn logic(&mut self, ctx: &egui::Context) {
         self.hear_close(ctx);
-        // What draws hears of it in this very picture.
+        // Drawing must know about it in this frame.
         self.close_heard = true;
-        // The pads of a minimised window are in no picture.
+        // The jog buttons of a minimised window are in no frame.
         if self.studio.is_under_way() && ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
             self.studio.act(Action::LetGo);
         }
@@ -179,7 +179,7 @@ impl Window {
         ctx.request_repaint_after(Duration::from_millis(30));
     }
 
-    /// The window is asked to close: what moves stops first, then something may be asked.
+    /// Handles the request to close the window: motion stops first, then questions may be asked.
     fn hear_close(&mut self, ctx: &egui::Context) {
         let (asked, minimised) = ctx.input(|input| {
             let viewport = input.raw.viewport();
@@ -196,7 +196,7 @@ impl Window {
         }
     }
 
-    /// The keyboard, and files that are dropped on the window.
+    /// Handles the keyboard, and files that are dropped on the window.
     fn take_input(&mut self, ctx: &egui::Context, theme: &Theme, actions: &mut Vec<Action>) {
         if !std::mem::take(&mut self.close_heard) {
             self.hear_close(ctx);
@@ -214,8 +214,8 @@ impl Window {
         let covered = self.is_covered() || self.views.help;
         surround_hold_buttons(ctx, HoldSurroundings { covered, moving: self.studio.is_under_way() });
         if covered || !ctx.input(|input| input.focused) {
-            // The held button is not visible, or the release of its key will not be reported. This picture shows
-            // it already: an action would ask for another one each time.
+            // The held button is not visible, or the release of its key will not be reported. This frame already shows it:
+            // an action would request another one each time.
             self.studio.act(Action::LetGo);
         }
         if self.is_covered() {
@@ -277,16 +277,16 @@ impl Window {
         self.studio.connect.is_some() || self.asks() || dialog
     }
 
-    /// A consent is asked for.
+    /// Returns whether a consent is asked for.
     fn asks(&self) -> bool {
         let asks = self.studio.question.is_some() || self.studio.diverged.is_some();
         asks || self.studio.selected_device().is_some_and(AnyDevice::is_reviewing)
     }
 
-    /// Esc stops what runs first, then closes what is open. What has the keyboard or the pointer comes before both: a half
-    /// typed byte, an open menu, a field that is being dragged.
+    /// Handles Esc: it first stops what runs, then closes what is open. The focus of the keyboard or the pointer comes
+    /// before both: a half-typed byte, an open menu, a field being dragged.
     fn take_escape(&mut self, ctx: &egui::Context, in_use: bool, actions: &mut Vec<Action>) {
-        // Whoever presses it while a drive moves by this window means the machine, whatever else is open or dragged.
+        // Pressed while this window moves a drive, it applies to the motion, whatever else is open or dragged.
         let moves = self.studio.moves_by_hand();
         let goes_down = stop_debounce::escape_goes_down(ctx);
         let is_pressed = ctx.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
@@ -299,8 +299,8 @@ impl Window {
             return;
         }
         let means_motion = stop_debounce::means_motion(ctx, moves, ctx.input(|input| input.time));
-        // A held key stops what has begun since it went down, and nothing else. A further press within the half second means
-        // no more than motion either: also what was asked for in this very picture and does not move yet.
+        // A held key stops what has started since it was pressed, and nothing else. A further press within the half second
+        // only applies to motion either: also to one requested in this frame that does not move yet.
         if !goes_down || means_motion && !moves {
             actions.push(Action::StopMotion);
             return;
@@ -330,10 +330,10 @@ impl Window {
         }
         self.views.forget_closed(&self.studio);
         if self.studio.moves() {
-            // The heartbeat of whatever moves: 250 ms without a picture stop it.
+            // The refresh of any motion: 250 ms without a frame stop it.
             ctx.request_repaint_after(Duration::from_millis(30));
         } else if self.studio.is_live() {
-            // Fast enough for the eye, and little enough for drawing in software.
+            // Fast enough for the eye, and cheap enough for software rendering.
             ctx.request_repaint_after(Duration::from_millis(50));
         }
     }

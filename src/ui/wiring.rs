@@ -1,4 +1,4 @@
-//! Wires or pins of an encoder, a line each with what is on it.
+//! Wires or pins of an encoder, one per line with its signal.
 
 use egui::Ui;
 
@@ -6,7 +6,7 @@ use super::Theme;
 use super::controls::paragraph;
 use crate::app::Catalogue;
 
-/// Draws them, with words of this catalogue; their names stand in a column of this width.
+/// Draws them, with texts of this catalogue; their names are in a column of this width.
 pub(crate) fn wires_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -24,7 +24,7 @@ pub(crate) fn wires_ui(
     }
 }
 
-/// Each wire has this name, and its words say this, in English; in German it has other words.
+/// Checks that each wire has this name and this English text, and another German text.
 #[cfg(test)]
 pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static str)], expected: &[(&str, &[&str])]) {
     assert_eq!(wires.len(), expected.len());
@@ -34,7 +34,7 @@ pub(crate) fn check_wires(texts: &'static Catalogue, wires: &[(&str, &'static st
     }
 }
 
-/// The notes of a card say this, in English; in German they have other words.
+/// Checks that the notes of a card have these English texts, and other German ones.
 #[cfg(test)]
 pub(crate) fn check_notes(texts: &'static Catalogue, notes: &[&'static str], facts: &[&str]) {
     use crate::app::Language::{English, German};

@@ -1,4 +1,4 @@
-//! The workspace: what the open tab shows of the session that is shown.
+//! The workspace: the selected session in the open tab.
 
 use egui::{Align, Layout, RichText, Ui};
 
@@ -33,7 +33,7 @@ pub(super) fn workspace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &
     apart(ui, "page", |ui| session.page_ui(ui, theme, (studio, device), actions));
 }
 
-/// No device is on the desk: the ways to one.
+/// Draws the ways to open a device if none is open.
 fn nothing(ui: &mut Ui, theme: &Theme, view: Option<&dyn DeviceView>, actions: &mut Vec<Action>) {
     if empty(ui, theme, &theme.say("shell.empty"), Some((icons::PLUGS_CONNECTED, &theme.say("shell.connect"), true))) {
         actions.push(Action::Connect(connect::ConnectAction::Open));
@@ -61,7 +61,7 @@ pub(crate) fn running_ui(
 ) {
     let opening = *device.phase() == Phase::Opening;
     let running = device.running();
-    // A review that is open says how far it is by itself.
+    // An open review shows its own progress.
     if !opening && (running.is_none() || device.is_reviewing()) {
         return;
     }
@@ -81,7 +81,7 @@ pub(crate) fn running_ui(
                 }
                 None => theme.say("shell.opening"),
             };
-            // What is pressed stays where it is, however long the words are.
+            // The button stays in place, however long the text is.
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 if let Some(running) = running {
                     let stopping = running.stopping;
@@ -102,7 +102,7 @@ pub(crate) fn running_ui(
     });
 }
 
-/// Draws why there is no connection, and the way back.
+/// Draws why there is no connection, and the button to reconnect.
 fn lost(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
     let (Phase::Lost(why) | Phase::Silent(why)) = device.phase() else { return };
     let margin = egui::Margin { left: 24, right: 24, top: 8, bottom: 0 };

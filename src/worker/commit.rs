@@ -1,6 +1,6 @@
 //! The one way to write, for every kind of device in the same order: consent and base → before-image on disk → logbook:
-//! intent → the operations, each read back → logbook: result. A device brings what differs as a [`Write`] and cannot leave
-//! a step out: its operations take a [`Confirmed`], which only [`write_plan`] has made.
+//! intent → the operations, each read back → logbook: result. A device supplies its own parts as a [`Write`] and cannot
+//! omit a step: its operations take a [`Confirmed`], which only [`write_plan`] creates.
 
 #[cfg(test)]
 mod tests;
@@ -16,18 +16,18 @@ use crate::profile::{
 };
 use crate::store::{DeviceKey, EntryId, FileError, Logbook, LogbookError, Outcome, Store};
 
-/// A plan that a person consented to, with what was read for it.
+/// A plan that a user consented to, with the values read for it.
 #[derive(Clone, Debug)]
 pub struct ApprovedPlan<P> {
-    /// As it was shown.
+    /// The plan as shown.
     pub prepared: P,
     /// The consent to it.
     pub consent: Consent,
-    /// Write although the device counts as worn, or its write cycles are not known.
+    /// Whether to write although the device counts as worn, or its write cycles are not known.
     pub force_wear: bool,
 }
 
-/// The before-image is kept, and the logbook has been told.
+/// A write whose before-image is kept, and which the logbook has recorded.
 struct WriteIntent {
     backup: PathBuf,
     entry: Result<(Logbook, EntryId), LogbookError>,
@@ -36,15 +36,15 @@ struct WriteIntent {
 /// The result of a commit.
 #[derive(Clone, Debug, Default)]
 pub struct Committed<W> {
-    /// What was written, as counted by the kind of device.
+    /// The result of the write, as counted by the kind of device.
     pub written: W,
-    /// The before-image; `None` when there was nothing to write.
+    /// The before-image; `None` if there was nothing to write.
     pub backup: Option<PathBuf>,
-    /// What the logbook could not record; the write itself is done.
+    /// The error of the logbook after the write, which itself is complete.
     pub logbook_warning: Option<LogbookError>,
 }
 
-/// Why a write was not begun, for any kind of device. Nothing was written.
+/// The reason why a write did not begin, for any kind of device. Nothing was written.
 #[derive(Debug, thiserror::Error)]
 pub enum NotBegun {
     /// The consent is for another plan.
@@ -71,43 +71,44 @@ pub enum NotBegun {
     NotKept(FileError),
 }
 
-/// A plan that a job has made, with what was read for it: what a write has to know beside the wire.
+/// A plan that a job has made, with the values read for it: the data that a write needs in addition to the connection.
 pub trait Planned {
     /// The values that the plan is based on.
     type Base: Hash;
-    /// An operation of it.
+    /// An operation of the plan.
     type Op: Operation + Clone + Hash;
-    /// Kinds of change that differ in what completes one that was cut off.
+    /// Kinds of change that differ in how an interrupted one is completed.
     type Kind;
 
-    /// Returns what would be written.
+    /// Returns the plan to write.
     fn plan(&self) -> &Plan<Self::Base, Self::Op>;
 
-    /// Returns the kind of change that it is for.
+    /// Returns the kind of change of the plan.
     fn kind(&self) -> Self::Kind;
 
     /// Returns how backups and the logbook know the device.
     fn device(&self, is_virtual: bool) -> DeviceKey;
 
-    /// Returns the write cycles that this computer has seen the device take; `None` where the logbook does not tell.
+    /// Returns the write cycles that the logbook of this computer has recorded for the device; `None` if the logbook cannot
+    /// be read.
     fn cycles_seen(&self) -> Option<u64>;
 
     /// Returns the write cycles beyond which the device counts as worn.
     fn wear_limit(&self) -> u64;
 
-    /// Returns what an operation changes, as the logbook tells it.
+    /// Returns the change of an operation, as a text for the logbook.
     fn note(&self, op: &Self::Op) -> String;
 
-    /// Returns a restorable text of what the plan touches, as it was.
+    /// Returns a restorable text of the previous values that the plan changes.
     fn before_image(&self) -> String;
 }
 
-/// A write that is not done, or not to its end; where the base does not hold, it is the device's error.
+/// The error of a write that did not begin or was interrupted; if the base has changed, it is the device's error.
 type Unfinished<P, W, E> =
     JobError<<<W as Write>::Error as OperationError>::Device, E, InterruptedWrite<W>, <P as Planned>::Kind>;
 
-/// Writes a plan that a person consented to: the one way to write, for every kind of device. Each operation is told before
-/// it begins. A plan without operations is done.
+/// Writes a plan that a user consented to: the one way to write, for every kind of device. Each operation is reported
+/// before it begins. A plan without operations succeeds.
 ///
 /// # Errors
 /// See [`JobError`].
@@ -151,26 +152,27 @@ pub fn write_plan<P: Planned, W: Write<Base = P::Base, Op = P::Op>, E>(
     }
 }
 
-/// A profile as it is kept before a write.
+/// Creates the profile to keep before a write.
 pub fn backup_of(body: Body) -> Document {
     let mut document = Document::new(Timestamp::now().to_string(), body);
     document.note = Some("before-image of a write".to_owned());
     document
 }
 
-/// Write cycles that a device will have taken at least when it has taken `cost` more, where a person should know that they
-/// are numbered: from `warning` on.
+/// Returns the write cycles that a device will have taken at least after `cost` more, if the user should be told of the
+/// limit: from `warning` on.
 pub(crate) fn wear(seen: Option<u64>, cost: u64, warning: u64) -> Option<u64> {
     let after = seen.unwrap_or(0).saturating_add(cost);
     (cost > 0 && after >= warning).then_some(after)
 }
 
-/// A write costs cycles of a device of which it is not known how many it has had.
+/// Returns whether a write costs cycles of a device whose earlier cycles are not known.
 pub const fn is_uncounted(seen: Option<u64>, cost: u64) -> bool {
     seen.is_none() && cost > 0
 }
 
-/// Write cycles that this computer has seen a device take; `None` where the logbook does not tell.
+/// Returns the write cycles that the logbook of this computer has recorded for a device; `None` if the logbook cannot be
+/// read.
 pub fn cycles_seen(store: &Store, device: &DeviceKey) -> Option<u64> {
     let path = store.logbook_path();
     if matches!(path.try_exists(), Ok(false)) {
@@ -199,7 +201,7 @@ pub const fn check_wear(seen: Option<u64>, cost: u64, limit: u64, force_wear: bo
 }
 
 impl WriteIntent {
-    /// Keeps the before-image and tells the logbook.
+    /// Keeps the before-image and records the intent in the logbook.
     fn note(store: &Store, device: &DeviceKey, items: &str, cost: u64, before: &str) -> Result<Self, FileError> {
         let backup = store.backups().save(&device.kind, &device.serial_number, Timestamp::now(), before)?;
         let intend = |mut logbook: Logbook| {
@@ -210,7 +212,7 @@ impl WriteIntent {
         Ok(WriteIntent { backup, entry })
     }
 
-    /// The before-image, and what the logbook could not take.
+    /// Records the end of the write; returns the before-image, and the error of the logbook.
     fn conclude(self, outcome: Outcome, spent: u64) -> (PathBuf, Option<LogbookError>) {
         let warning = match self.entry {
             Ok((mut logbook, id)) => logbook.conclude(id, Timestamp::now(), outcome, spent).err(),

@@ -1,5 +1,4 @@
-//! Events leaving the thread of a session: none about a job is lost, progress is coalesced, and the thread never
-//! blocks.
+//! Events leaving the thread of a session: none about a job is lost, progress is coalesced, and the thread never blocks.
 
 use std::sync::Arc;
 
@@ -7,11 +6,11 @@ use crossbeam_channel::{Sender, TrySendError};
 
 use super::{Device, Event};
 
-/// Events that wait to be read, at most; progress counts once.
+/// Largest number of events that wait to be read; progress counts once.
 pub(super) const CAPACITY: usize = 64;
 
-/// Events on their way out. What does not fit into the channel waits here: no more than one job tells, because the next
-/// is not taken while the channel is full.
+/// A queue of outgoing events. Events that do not fit into the channel wait here: no more than those of one job, because
+/// the next job does not start while the channel is full.
 pub(super) struct EventSender<D: Device> {
     sender: Sender<Event<D>>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -28,7 +27,7 @@ impl<D: Device> EventSender<D> {
         match event {
             Event::Progress(..) => self.progress = Some(event),
             other => {
-                // It makes the progress before it old: that goes first or not at all.
+                // The event makes earlier progress outdated: that is sent first or not at all.
                 self.flush();
                 self.progress = None;
                 self.waiting.push(other);
@@ -55,8 +54,8 @@ impl<D: Device> EventSender<D> {
                 Err(TrySendError::Disconnected(_)) => return,
             }
         }
-        // Behind the start of its job, never before it. Half of the channel is for progress, so that it never stands in
-        // the way of an end.
+        // After the start of its job, never before it. Half of the channel is for progress, so that it never blocks the end
+        // of a job.
         if self.sender.len() < CAPACITY / 2
             && let Some(progress) = self.progress.take()
         {

@@ -1,16 +1,16 @@
-//! Why a job ends early on a writable device: before the first write, or after it.
+//! The reasons why a job ends early on a writable device: before the first write, or after it.
 
 use std::path::PathBuf;
 
 use super::NotBegun;
 use crate::profile::{DeviceError, Interrupted, OperationError, WriteRecord};
 
-/// Why a job ended early, for any kind of device.
+/// The reason why a job ended early, for any kind of device.
 pub trait EndedEarly {
-    /// The user wished it.
+    /// Returns whether the user cancelled it.
     fn is_cancelled(&self) -> bool;
 
-    /// Returns the operations that were carried out before; `None` where no write was begun.
+    /// Returns the number of operations carried out before; `None` if no write was begun.
     fn done(&self) -> Option<usize> {
         None
     }
@@ -21,23 +21,23 @@ pub trait EndedEarly {
     }
 }
 
-/// Why a job ended early, for a device with errors `E`, planning errors `P`, interrupted writes `I` (an
+/// The reason why a job ended early, for a device with errors `E`, planning errors `P`, interrupted writes `I` (an
 /// [`Interrupted`]) and kinds of change `K`.
 #[derive(Debug, thiserror::Error)]
 pub enum JobError<E, P, I, K> {
     /// The device.
     #[error(transparent)]
     Device(E),
-    /// It cannot be planned; nothing was written.
+    /// The plan is not possible; nothing was written.
     #[error(transparent)]
     Plan(P),
     /// The device counts as worn, or its before-image cannot be kept; nothing was written.
     #[error(transparent)]
     NotBegun(#[from] NotBegun),
-    /// It was begun and not finished.
+    /// The write was begun and not finished.
     #[error("{interrupted}; before-image: {}", backup.display())]
     Interrupted {
-        /// What was written, why it ended, and the state the device was left in.
+        /// The changes written, the cause, and the state in which the device was left.
         interrupted: Box<I>,
         /// The before-image.
         backup: PathBuf,
@@ -49,7 +49,7 @@ pub enum JobError<E, P, I, K> {
 }
 
 impl<P, Op, E: OperationError, Done: WriteRecord, Left, K> JobError<E::Device, P, Interrupted<Op, E, Done, Left>, K> {
-    /// Returns the error of the device or its link, whether or not something was written before.
+    /// Returns the error of the device or its connection, whether or not something was written before.
     pub fn device(&self) -> Option<&E::Device> {
         match self {
             JobError::Device(error) => Some(error),

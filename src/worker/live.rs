@@ -1,5 +1,5 @@
-//! Requests to a worker while its thread runs: to end, how often to sample, what to watch. The latest request counts;
-//! none is queued.
+//! Requests to a worker while its thread runs: cancellation, the sampling interval, the watched values. The latest request
+//! counts; none is queued.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
@@ -11,11 +11,11 @@ use crate::link::Cancel;
 /// Longer intervals are this one.
 const LONGEST: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// The live wishes of a session. Clones share them.
+/// The live requests of a session. Clones share them.
 #[derive(Clone)]
 pub(super) struct Live {
     requests: Arc<Mutex<PollRequests>>,
-    /// Cuts a sample in its repetitions short.
+    /// Cancellation of a sample during its repetitions.
     sampling: Cancel,
     /// Wakes the thread; a full channel means that it is about to wake.
     changed: Sender<()>,
@@ -25,7 +25,7 @@ struct PollRequests {
     /// The end of the running job, or of the last.
     job: Cancel,
     interval: Option<Duration>,
-    /// Counts the wishes to poll, so that what fails ends the one it was done for and no later one.
+    /// Counter of polling requests, so that a failure ends only the request that it belongs to.
     number: u64,
 }
 
@@ -71,7 +71,7 @@ impl Live {
         self.lock().number
     }
 
-    /// Ends polling from the thread's side, where a sample for that wish failed.
+    /// Ends polling from the side of the thread after a sample of that request failed.
     pub(super) fn poll_failed(&self, number: u64) {
         let mut requests = self.lock();
         if requests.number == number {
@@ -79,13 +79,13 @@ impl Live {
         }
     }
 
-    /// Interrupts a running sample. Make the request first: the thread takes the token back and then looks for
-    /// requests, so that none is missed.
+    /// Interrupts a running sample. Make the request first: the thread resets the token and then reads the requests, so
+    /// that none is missed.
     pub(super) fn interrupt_sample(&self) {
         self.sampling.request();
     }
 
-    /// The token of the samples.
+    /// Returns the token of the samples.
     pub(super) fn sampling(&self) -> &Cancel {
         &self.sampling
     }
@@ -95,7 +95,7 @@ impl Live {
     }
 
     fn wake(&self) {
-        // Full: the thread has not seen the wish before this one and will see both.
+        // Full: the thread has not read the previous request and will read both.
         let _ = self.changed.try_send(());
     }
 
@@ -119,17 +119,17 @@ struct List<W> {
 struct Entry<W> {
     value: W,
     interval: Duration,
-    /// The device does not have it: it is not asked for again while it stays in the list.
+    /// Whether the device does not have it: it is not requested again while it stays in the list.
     refused: bool,
 }
 
 impl<W: Clone + PartialEq> Watches<W> {
-    /// Creates an empty watch; the thread learns of changes through `live`.
+    /// Creates an empty watch; the thread is notified of changes through `live`.
     pub(super) fn new(live: Live) -> Self {
         Watches { list: Arc::new(Mutex::new(List { entries: Vec::new(), number: 0 })), live }
     }
 
-    /// Wishes these, each once: the first of several of the same thing counts.
+    /// Sets the values to watch, each once: the first of several equal ones counts.
     pub(super) fn set_entries(&self, watched: Vec<(W, Duration)>) {
         let mut list = self.lock();
         let mut entries: Vec<Entry<W>> = Vec::with_capacity(watched.len());
@@ -143,7 +143,7 @@ impl<W: Clone + PartialEq> Watches<W> {
         list.entries = entries;
         list.number += 1;
         drop(list);
-        // The running request may no longer be wanted.
+        // The running request may no longer be needed.
         self.live.interrupt_sample();
         self.live.wake();
     }
@@ -160,7 +160,7 @@ impl<W: Clone + PartialEq> Watches<W> {
         self.lock().asked_for()
     }
 
-    /// The device does not have this.
+    /// Records that the device does not have this value.
     pub(super) fn refuse(&self, what: &W) {
         let mut list = self.lock();
         list.number += 1;
@@ -187,12 +187,12 @@ impl<W> Clone for Watches<W> {
     }
 }
 
-/// Stops a worker from code that does not own it. Clones share the worker.
+/// A handle that stops a worker from code that does not own it. Clones share the worker.
 #[derive(Clone)]
 pub struct Stopper(Live);
 
 impl Stopper {
-    /// Ends polling, and the running job at the next point at which it can end. One that is submitted later is not meant.
+    /// Ends polling, and the running job at the next possible point. It does not affect jobs submitted later.
     pub fn stop(&self) {
         self.0.stop();
     }

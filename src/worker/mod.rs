@@ -1,11 +1,11 @@
-//! The background I/O worker: one thread a session, one job at a time, sampling and watching while there is none, and a
-//! stop that overtakes everything.
+//! The background I/O worker: one thread per session, one job at a time, sampling and watching while there is no job, and a
+//! stop that takes effect before everything else.
 //!
-//! Nothing here knows a protocol: a [`Device`] has its own types of jobs, results and errors, so that a session with one
+//! This module knows no protocol: a [`Device`] has its own types of jobs, results and errors, so that a session with one
 //! kind of device cannot receive the jobs of another.
 //!
-//! Events about a job are never lost. Progress is coalesced: while events are not read, only the newest
-//! is kept. Neither side waits for the other: a full channel is a state of the worker, not a pause of the line.
+//! Events about a job are never lost. Progress is coalesced: while events are not read, only the newest is kept. Neither
+//! side waits for the other: a full channel is a state of the worker and does not stop the line.
 
 #![warn(missing_docs)]
 
@@ -42,27 +42,27 @@ use thread::{Bench, Never, Order};
 
 use crate::link::{Cancel, LinkError};
 
-/// A kind of device at the end of a session: its wire, what is known about it, and what can be done with it.
+/// A kind of device in a session: its connection, its known data, and its jobs.
 pub trait Device: Send + 'static {
     /// A request to the device.
     type Job: Send + fmt::Debug;
     /// The result of a job.
     type Output: Send + fmt::Debug;
-    /// Why a job ends early.
+    /// The reason why a job ends early.
     type Error: EndedEarly + Send + fmt::Debug;
     /// A message that the device sends along with any reply.
     type DeviceMessage: Send + fmt::Debug;
     /// One polled sample; samples of watched values identify themselves.
     type Sample: Send + fmt::Debug + 'static;
-    /// A value that can be watched: asked for between two samples.
+    /// A value that can be watched: requested between two samples.
     type Watch: Clone + PartialEq + Send + fmt::Debug + 'static;
-    /// The steps that its jobs tell.
+    /// The steps that its jobs report.
     type JobStep: Clone + Send + fmt::Debug;
 
     /// Carries out a job.
     ///
     /// # Errors
-    /// When it ended early.
+    /// The reason why it ended early.
     fn run(
         &mut self,
         context: &mut SessionContext,
@@ -70,32 +70,32 @@ pub trait Device: Send + 'static {
         tell: &mut dyn FnMut(JobReport<Self::DeviceMessage, Self::JobStep>),
     ) -> Result<Self::Output, Self::Error>;
 
-    /// Samples are wished at this interval from now on, or none any more: what the device sends by itself begins with the
-    /// next sample and ends here.
+    /// Sets the interval of samples from now on, or none: data that the device sends without request begin with the next
+    /// sample and end here.
     fn pace(&mut self, _desk: &mut SessionContext, _interval: Option<Duration>) {}
 
-    /// Takes one sample: as few exchanges as it needs. What the device says on the way belongs to the sample.
+    /// Takes one sample with as few exchanges as possible. Messages of the device meanwhile belong to the sample.
     ///
     /// # Errors
-    /// When there is none: polling ends.
+    /// Returns an error if there is no sample: polling ends.
     fn sample(&mut self, context: &mut SessionContext) -> Result<Self::Sample, Self::Error>;
 
-    /// Asks for a value that is watched. What the device says on the way belongs to the sample.
+    /// Requests a watched value. Messages of the device meanwhile belong to the sample.
     ///
     /// # Errors
-    /// When it does not answer: polling ends. A refusal is an answer.
+    /// Returns an error if it does not answer: polling ends. A refusal is an answer.
     fn watch(&mut self, context: &mut SessionContext, what: &Self::Watch)
     -> Result<Watched<Self::Sample>, Self::Error>;
 
-    /// Takes what the device said since the last time.
+    /// Takes the message of the device since the last call, if there is one.
     fn take_remark(&mut self) -> Option<Self::DeviceMessage> {
         None
     }
 
-    /// Looks whether the wire is still there.
+    /// Checks that the connection still exists.
     ///
     /// # Errors
-    /// When it is not.
+    /// Returns an error if it is lost.
     fn check(&mut self) -> Result<(), LinkError>;
 
     /// Returns how often an idle worker checks the device and its wire.
@@ -103,7 +103,7 @@ pub trait Device: Send + 'static {
         IDLE
     }
 
-    /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
+    /// Maintains the session while there is no job, and returns a message if there is one.
     fn idle(&mut self, _desk: &mut SessionContext) -> Option<Self::DeviceMessage> {
         None
     }
@@ -113,7 +113,7 @@ pub trait Device: Send + 'static {
         false
     }
 
-    /// The session ends: what must not be left as it is.
+    /// Restores, at the end of the session, any state that must not remain.
     fn leave(&mut self, _desk: &mut SessionContext) {}
 }
 
@@ -125,7 +125,7 @@ pub(crate) const IDLE: Duration = Duration::from_millis(500);
 pub enum Watched<S> {
     /// The value, or why there is none at the moment.
     Sample(S),
-    /// It does not have it, and is not asked again; with the sample that says so.
+    /// The device does not have the value, and is not asked again; with the sample that reports it.
     Refused(S),
 }
 
@@ -145,7 +145,7 @@ pub struct Progress<W> {
 }
 
 impl<W> Progress<W> {
-    /// The same progress, with what is being done in other terms.
+    /// Returns the same progress, with the step converted.
     pub fn map<T>(self, terms: impl FnOnce(W) -> T) -> Progress<T> {
         Progress { done: self.done, total: self.total, step: terms(self.step) }
     }
@@ -169,33 +169,33 @@ pub enum Event<D: Device> {
     Progress(JobId, Progress<D::JobStep>),
     /// A message of the device, during a job or at its end.
     Remark(D::DeviceMessage),
-    /// It is done.
+    /// The job is done.
     Finished(JobId, Box<D::Output>),
-    /// It failed.
+    /// The job failed.
     Failed(JobId, Box<D::Error>),
-    /// It ended because the user wished it; with what was written until then, where it writes.
+    /// The job ended because the user cancelled it; a writing job includes what was written before.
     Cancelled(JobId, Box<D::Error>),
     /// A sample failed, and polling is off.
     PollFailed(Box<D::Error>),
-    /// The wire is gone, found while nothing was to do.
+    /// The connection was lost while no job was running.
     Lost(LinkError),
 }
 
-/// Why a job cannot be accepted.
+/// The reason why a job cannot be accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SubmitError {
-    /// The job slot is taken; jobs do not queue.
+    /// A job is running; jobs do not queue.
     #[error("busy with another job")]
     Busy,
-    /// As many events wait to be read as the channel takes: first those.
+    /// The channel is full of unread events, which have to be read first.
     #[error("what was told is not read")]
     Unread,
-    /// The worker is gone.
+    /// The worker has ended.
     #[error("the session has ended")]
     Ended,
 }
 
-/// A session's thread, seen from outside. Dropping it stops what runs and ends the thread, and does not wait for it.
+/// A session's thread, used from outside. Dropping it stops the running work and ends the thread, and does not wait for it.
 pub struct Worker<D: Device> {
     orders: Sender<Order<D>>,
     events: Receiver<Event<D>>,
@@ -214,7 +214,7 @@ impl<D: Device> Worker<D> {
     /// Starts a thread for a session. `wake` is called after each event, and not for samples.
     ///
     /// # Errors
-    /// When the system has no thread left.
+    /// Returns an error if the system has no free thread.
     pub fn spawn(session: Session<D>, wake: Arc<dyn Fn() + Send + Sync>) -> std::io::Result<Self> {
         let (orders, incoming) = bounded(1);
         let (outgoing, events) = bounded(CAPACITY);
@@ -237,7 +237,7 @@ impl<D: Device> Worker<D> {
         Ok(Worker { orders, events, samples, live, watches, busy, ended, next: 0 })
     }
 
-    /// Gives the worker something to do. It goes before sampling, and waits for no more than the exchange that runs.
+    /// Submits a job. It takes precedence over sampling, and waits only for the running exchange.
     ///
     /// # Errors
     /// See [`SubmitError`].
@@ -250,7 +250,7 @@ impl<D: Device> Worker<D> {
         }
         let id = JobId(self.next);
         self.next += 1;
-        // Each job has a wish to end of its own: an old one does not concern it, and none is taken back.
+        // Each job has its own cancellation, so that an earlier one does not affect it, and none is reset.
         let cancel = Cancel::default();
         self.live.next_job(cancel.clone());
         if self.orders.try_send(Order { id, job, cancel }).is_err() {
@@ -271,21 +271,22 @@ impl<D: Device> Worker<D> {
         self.live.stopper()
     }
 
-    /// Wishes samples, one each `interval` from start to start while no job runs, back to back with zero; or none. The
-    /// latest wish counts, from now on.
+    /// Requests samples, one each `interval` from start to start while no job runs, back to back with zero; or none. The
+    /// latest request counts, from now on.
     pub fn poll(&self, interval: Option<Duration>) {
         self.live.poll(interval);
     }
 
-    /// The wish in force: `None` also after a sample failed or a stop.
+    /// Returns the current request: `None` also after a sample failed or a stop.
     pub fn polling(&self) -> Option<Duration> {
         self.live.polling()
     }
 
-    /// Wishes these values watched, each interval from start to start: while the device is polled, between two samples and
-    /// at most one of them there, so that none comes more often than samples do. Each has one pace: the first counts
-    /// where one stands twice. What the device does not have is asked for once, as long as it stays in the list. The
-    /// latest wish counts, from now on; it outlives polling, and watching goes on when that does.
+    /// Requests that these values are watched, each interval from start to start: while the device is polled, between two
+    /// samples and at most one of them there, so that none is requested more often than samples. Each has one interval: the
+    /// first counts if a value is listed twice. A value that the device does not have is requested once, as long as it
+    /// stays in the list. The latest request counts, from now on; it continues after polling ends, and watching resumes
+    /// when polling does.
     pub fn watch(&self, watched: Vec<(D::Watch, Duration)>) {
         self.watches.set_entries(watched);
     }
@@ -295,12 +296,12 @@ impl<D: Device> Worker<D> {
         self.watches.asked_for()
     }
 
-    /// Returns the samples, at most 4096 of them; a new sample wakes no one.
+    /// Returns the samples, at most 4096 of them; a new sample does not call `wake`.
     pub fn samples(&self) -> &Ring<D::Sample> {
         &self.samples
     }
 
-    /// A job runs.
+    /// Returns whether a job runs.
     pub fn is_busy(&self) -> bool {
         self.busy.load(Ordering::SeqCst)
     }
@@ -310,19 +311,19 @@ impl<D: Device> Worker<D> {
         &self.events
     }
 
-    /// The thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the wire is free.
     pub fn is_ended(&self) -> bool {
         has_ended(&self.ended)
     }
 
-    /// Asks what runs to end and lets the thread go, without waiting for it.
+    /// Cancels the running work and lets the thread end, without waiting for it.
     pub fn end(self) -> Ending<D> {
         // Dropping the worker does both.
         Ending { events: self.events.clone(), ended: self.ended.clone() }
     }
 
     /// Does the same as [`end`](Self::end) without taking the worker: no further jobs are accepted. Waits at most
-    /// `patience`; returns true when the thread has ended and the wire is free.
+    /// `patience`; returns true when the thread has ended and the connection is free.
     pub fn finish(&mut self, patience: Duration) -> bool {
         self.live.stop();
         // The thread ends when no more orders can arrive.
@@ -330,7 +331,8 @@ impl<D: Device> Worker<D> {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 
-    /// [`end`](Self::end), waiting at most `patience`; true when the thread has ended and the wire is free.
+    /// Calls [`end`](Self::end) and waits at most `patience`; returns true when the thread has ended and the connection is
+    /// free.
     pub fn close(self, patience: Duration) -> bool {
         self.end().wait(patience)
     }
@@ -342,7 +344,7 @@ impl<D: Device> Drop for Worker<D> {
     }
 }
 
-/// A worker that was let go: its thread ends as soon as what runs has ended.
+/// A worker that was released: its thread ends as soon as the running work has ended.
 pub struct Ending<D: Device> {
     events: Receiver<Event<D>>,
     ended: Receiver<Never>,
@@ -354,12 +356,12 @@ impl<D: Device> Ending<D> {
         &self.events
     }
 
-    /// The thread has ended and the wire is free.
+    /// Returns whether the thread has ended and the wire is free.
     pub fn is_ended(&self) -> bool {
         has_ended(&self.ended)
     }
 
-    /// Waits at most `patience` for the end; true when it has come.
+    /// Waits at most `patience` for the end; returns true when the thread has ended.
     pub fn wait(&self, patience: Duration) -> bool {
         matches!(self.ended.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }

@@ -1,4 +1,4 @@
-//! From a link URL to a wire: what all devices on a stream of bytes share.
+//! Opening a connection from a link URL: the common part of all devices on a stream of bytes.
 
 use std::path::Path;
 use std::sync::{Arc, Mutex};
@@ -12,7 +12,7 @@ use crate::sim::{ByteDevice, ConfigError};
 use crate::store::{FileError, StoreError, read_text};
 use crate::units::CharacterFormat;
 
-/// Why a link cannot be opened.
+/// The reason why a link cannot be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// A parameter.
@@ -40,7 +40,7 @@ pub enum OpenError {
     Store(#[from] StoreError),
 }
 
-/// Returns how much later than the protocol's worst case a reply may arrive, by kind of wire: USB adapters deliver in
+/// Returns the allowed delay of a reply beyond the protocol's worst case, by kind of connection: USB adapters deliver in
 /// packets, device servers over a network, and even a thread has to be woken up.
 pub(crate) const fn margin(scheme: Scheme) -> Duration {
     match scheme {
@@ -50,7 +50,7 @@ pub(crate) const fn margin(scheme: Scheme) -> Duration {
     }
 }
 
-/// Opens the wire of a byte stream; `simulated` makes the virtual one.
+/// Opens the connection of a byte stream; `simulated` creates the virtual one.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -71,17 +71,17 @@ pub fn open_bytes(
     })
 }
 
-/// The wire to a virtual device in this process.
+/// Opens the connection to a virtual device in this process.
 pub fn inside(device: impl ByteDevice + 'static, clock: &Arc<dyn Clock>) -> Box<dyn ByteLink> {
     Box::new(SimLink::connect(Arc::new(Mutex::new(device)), clock.clone()))
 }
 
-/// Links of this kind do not lead to a device; those that do are `known`.
+/// Creates the error for links that do not lead to a device; `known` are those that do.
 pub fn leads_elsewhere(scheme: Scheme, known: &'static str) -> OpenError {
     UrlError::Device { scheme: scheme.word(), known }.into()
 }
 
-/// A recorded trace.
+/// Returns a recorded trace.
 ///
 /// # Errors
 /// [`OpenError::File`], [`OpenError::Recording`].
@@ -103,11 +103,11 @@ pub fn check_parameters(query: &Query, scheme: Scheme, known: &[&str]) -> Result
     }
 }
 
-/// The settings of the virtual device that a link gives: its parameters but those that only the `line` has, and none where
-/// the link leads to a real one.
+/// Returns the settings of the virtual device in a link: its parameters except those of the `line`, and none if the link
+/// leads to a real one.
 ///
 /// # Errors
-/// [`UrlError::Unknown`], for a parameter that the line to a real one has not.
+/// [`UrlError::Unknown`], for a parameter that the line to a real one does not have.
 pub(crate) fn simulated(url: &LinkUrl, line: &[&str], device: &[&str]) -> Result<Vec<(String, String)>, UrlError> {
     if url.scheme != Scheme::Sim {
         check_parameters(&url.query, url.scheme, line)?;

@@ -1,4 +1,4 @@
-//! Schedules the requests to a polled device: its sample, and at most one watched value between two samples. It has no
+//! A schedule of the requests to a polled device: its sample, and at most one watched value between two samples. It has no
 //! clock.
 
 use std::time::{Duration, Instant};
@@ -12,11 +12,11 @@ pub(super) enum Due<W> {
     Watch(W),
 }
 
-/// The paces of what is asked for.
+/// The schedule of the requests, with the pace of each.
 pub(super) struct PollScheduler<W> {
     sample: Pace,
     watches: Vec<Watch<W>>,
-    /// No value was watched since the last sample, so that one may be.
+    /// Whether no value was watched since the last sample, so that one may be.
     sample_was_last: bool,
 }
 
@@ -42,8 +42,8 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         }
     }
 
-    /// Returns the next request and its time: the earliest one, and the sample where several are due. Watching pauses
-    /// while sampling is off; a new request is due at once.
+    /// Returns the next request and its time: the earliest one, and the sample if several are due. Watching pauses while
+    /// sampling is off; a new request is due at once.
     pub(super) fn next(&mut self, polling: Option<Duration>, now: Instant) -> Option<(Instant, Due<W>)> {
         let sample = self.sample.due(polling, now);
         let mut next: Option<(Instant, Due<W>)> = None;
@@ -60,7 +60,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
         next.filter(|(due, _)| *due < sample).or(Some((sample, Due::Sample)))
     }
 
-    /// Notes that the value was requested and the reply came at `now`.
+    /// Records that the request was made and its reply came at `now`.
     pub(super) fn taken(&mut self, due: &Due<W>, now: Instant) {
         self.sample_was_last = *due == Due::Sample;
         match due {
@@ -74,7 +74,7 @@ impl<W: Clone + PartialEq> PollScheduler<W> {
     }
 }
 
-/// When something is due: at equal distances from start to start, and never several at once after a late one.
+/// The times of a request: at equal distances from start to start, and never several at once after a late one.
 #[derive(Default)]
 struct Pace {
     interval: Option<Duration>,
@@ -82,7 +82,7 @@ struct Pace {
 }
 
 impl Pace {
-    /// The next time, by the wish that is in force; a new wish begins now.
+    /// Returns the next time for the current request; a new request is due now.
     fn due(&mut self, interval: Option<Duration>, now: Instant) -> Option<Instant> {
         if interval != self.interval {
             self.interval = interval;
@@ -153,7 +153,7 @@ mod tests {
             (0, vec![('a', 0)], 125, ".0 a25 .50 a75 .100 a125"),
             (0, vec![('a', 0), ('b', 0)], 175, ".0 a25 .50 b75 .100 a125 .150 b175"),
             (0, vec![('a', 200)], 275, ".0 a25 .50 .75 .100 .125 .150 .175 .200 a225 .250 .275"),
-            // Seldom samples: no more watched values than those.
+            // Rare samples: no more watched values than samples.
             (1000, vec![('a', 10)], 2100, ".0 a25 .1000 a1025 .2000 a2025"),
         ] {
             assert_eq!(course(polling, &watches, end), expected, "{polling} {watches:?}");

@@ -15,19 +15,19 @@ struct State<T> {
 }
 
 impl<T> Ring<T> {
-    /// An empty ring for so many things, at least one.
+    /// Creates an empty ring for `capacity` entries, at least one.
     pub fn new(capacity: usize) -> Self {
         let capacity = capacity.max(1);
         Ring(Arc::new(Mutex::new(State { items: VecDeque::new(), capacity, dropped: 0 })))
     }
 
-    /// Adds one; in a full ring the oldest makes room.
+    /// Adds one; in a full ring the oldest is dropped.
     pub fn push(&self, item: T) {
         let mut state = self.lock();
         let oldest = if state.items.len() >= state.capacity { state.items.pop_front() } else { None };
         state.dropped += u64::from(oldest.is_some());
         state.items.push_back(item);
-        // Taking it apart may take time, and is nothing for the others to wait for.
+        // Dropping an entry may take time, and is done without the lock.
         drop(state);
         drop(oldest);
     }
@@ -42,7 +42,7 @@ impl<T> Ring<T> {
     }
 
     fn lock(&self) -> MutexGuard<'_, State<T>> {
-        // Nothing in here can panic half-way.
+        // No code under this lock can panic half-way.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

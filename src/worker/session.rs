@@ -1,4 +1,4 @@
-//! A session: one wire, what is known about the device at its end, and what every job needs beside them.
+//! A session: one connection, the known data of its device, and the context of every job.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use super::{Device, EndedEarly as _, Event, JobId, JobReport, Watched};
 use crate::link::{Cancel, Clock, Ctx, LinkError, Trace, TraceEntry};
 use crate::store::Store;
 
-/// The context of a job, whatever the device: time, cancellation, trace, and the folders.
+/// The context of a job for any kind of device: time, cancellation, trace, and the folders.
 pub struct SessionContext {
     /// The time of the session.
     pub clock: Arc<dyn Clock>,
@@ -15,36 +15,36 @@ pub struct SessionContext {
     pub(super) trace: Trace,
     /// The folders: backups, logbook.
     pub store: Store,
-    /// The device lives in this process: its wear counts apart.
+    /// Whether the device is in this process: its write cycles are counted separately.
     pub is_virtual: bool,
 }
 
 impl SessionContext {
-    /// The context of a procedure on `wire`.
+    /// Returns the context of a procedure on `wire`.
     pub fn ctx<'a, W: ?Sized>(&'a mut self, wire: &'a mut W) -> Ctx<'a, W> {
         Ctx { wire, clock: &*self.clock, cancel: &self.cancel, trace: &mut self.trace }
     }
 }
 
-/// One wire, from opening to closing. A test runs jobs on it inline; a worker runs them on a thread of its own.
+/// One connection, from opening to closing. A test runs jobs on it inline; a worker runs them on its own thread.
 pub struct Session<D> {
     context: SessionContext,
     pub(crate) device: D,
 }
 
 impl<D: Device> Session<D> {
-    /// A session with a device.
+    /// Creates a session with a device.
     pub fn with(device: D, clock: Arc<dyn Clock>, store: Store, is_virtual: bool) -> Self {
         let (cancel, trace) = (Cancel::default(), Trace::default());
         Session { context: SessionContext { clock, cancel, trace, store, is_virtual }, device }
     }
 
-    /// The wish to end what runs.
+    /// Returns the cancellation of the running work.
     pub fn cancel(&self) -> Cancel {
         self.context.cancel.clone()
     }
 
-    /// Listens to another wish from now on: a test's, that comes by itself.
+    /// Replaces the cancellation, for a test that cancels automatically.
     pub fn set_cancel(&mut self, cancel: Cancel) {
         self.context.cancel = cancel;
     }
@@ -54,15 +54,15 @@ impl<D: Device> Session<D> {
         self.context.trace.watch(watcher);
     }
 
-    /// The device lives in this process.
+    /// Returns whether the device lives in this process.
     pub fn is_virtual(&self) -> bool {
         self.context.is_virtual
     }
 
-    /// Looks whether the wire is still there.
+    /// Checks that the connection still exists.
     ///
     /// # Errors
-    /// When it is not.
+    /// Returns an error if it is lost.
     pub fn check(&mut self) -> Result<(), LinkError> {
         self.device.check()
     }
@@ -72,7 +72,7 @@ impl<D: Device> Session<D> {
         self.device.idle_interval()
     }
 
-    /// No job is to do: looks after what goes on without being asked, and tells what there is to say of it.
+    /// Maintains the session while there is no job, and returns a message if there is one.
     pub fn idle(&mut self) -> Option<D::DeviceMessage> {
         self.device.idle(&mut self.context)
     }
@@ -82,12 +82,12 @@ impl<D: Device> Session<D> {
         self.device.is_urgent()
     }
 
-    /// The session ends: what must not be left as it is.
+    /// Restores, at the end of the session, any state that must not remain.
     pub fn leave(&mut self) {
         self.device.leave(&mut self.context);
     }
 
-    /// Carries out a job here and now. `tell` hears all events but the last, which is given back.
+    /// Runs a job on this thread. `tell` receives all events but the last, which is returned.
     pub fn run(&mut self, id: JobId, job: D::Job, tell: &mut dyn FnMut(Event<D>)) -> Event<D> {
         tell(Event::Started(id));
         let result = self.device.run(&mut self.context, job, &mut |report| match report {
@@ -104,7 +104,7 @@ impl<D: Device> Session<D> {
         }
     }
 
-    /// Samples are wished at this interval from now on, or none any more.
+    /// Sets the interval of samples from now on, or none.
     pub fn pace(&mut self, interval: Option<Duration>) {
         self.device.pace(&mut self.context, interval);
     }
@@ -112,7 +112,7 @@ impl<D: Device> Session<D> {
     /// Takes a sample here and now.
     ///
     /// # Errors
-    /// When there is none.
+    /// Returns an error if there is none.
     pub fn sample(&mut self) -> Result<D::Sample, D::Error> {
         self.device.sample(&mut self.context)
     }
@@ -120,7 +120,7 @@ impl<D: Device> Session<D> {
     /// Asks for a watched value here and now.
     ///
     /// # Errors
-    /// When there is no answer.
+    /// Returns an error if there is no answer.
     pub fn watch_value(&mut self, what: &D::Watch) -> Result<Watched<D::Sample>, D::Error> {
         self.device.watch(&mut self.context, what)
     }
@@ -133,7 +133,7 @@ impl<D: Device> Session<D> {
     /// Runs a job on this thread, for callers that need only its result.
     ///
     /// # Errors
-    /// Those of the job.
+    /// Errors of the job.
     pub fn run_inline(&mut self, job: D::Job) -> Result<D::Output, D::Error> {
         self.device.run(&mut self.context, job, &mut |_| {})
     }

@@ -1,7 +1,7 @@
-//! Streams of unrequested data: batches of samples from their own thread, through a bounded ring that drops the oldest
-//! and counts. The thread never waits for the reader, and wakes the window at intervals, not for each batch.
+//! Streams of unrequested data: batches of samples from their own thread, through a bounded ring that drops the oldest and
+//! counts. The thread never waits for the reader, and wakes the window at intervals, not for each batch.
 //!
-//! Nothing here knows where samples come from: a [`Producer`] does.
+//! This module does not know the source of the samples: a [`Producer`] supplies them.
 
 mod analogue;
 #[cfg(test)]
@@ -22,9 +22,9 @@ use crate::analysis::Time;
 use crate::analysis::wiring::Wires;
 use crate::link::Clock;
 
-/// How long a producer may wait at once: the longest delay until a stop or a change takes effect.
+/// The longest wait of a producer at once, and thus the longest delay until a stop or a change takes effect.
 pub(crate) const PATIENCE: Duration = Duration::from_millis(20);
-/// The window is woken so often at most.
+/// Shortest interval between two calls that wake the window.
 const WAKE: Duration = Duration::from_millis(50);
 
 /// A stretch of samples at equal distances.
@@ -32,7 +32,7 @@ const WAKE: Duration = Duration::from_millis(50);
 pub struct Batch<S> {
     /// Number of its first sample, counted by the source from 0.
     pub first: u64,
-    /// When that was taken.
+    /// Time at which that was taken.
     pub time: Time,
     /// Nanoseconds from one sample to the next.
     pub period_ns: i64,
@@ -54,16 +54,16 @@ pub trait Producer: Send + 'static {
     type Request: Send + 'static;
     /// The samples of a batch.
     type Samples: SampleCount;
-    /// Why it ends by itself.
+    /// The reason why the source ends without a request.
     type Error: Send + 'static;
 
-    /// Works by this wish from the next sample on.
+    /// Applies this request from the next sample on.
     fn change(&mut self, request: Self::Request);
 
-    /// Waits for samples, no longer than `patience`; `None` where none have come.
+    /// Waits for samples, no longer than `patience`; `None` if none have come.
     ///
     /// # Errors
-    /// When there will be no more.
+    /// Returns an error if there will be no more.
     fn next(&mut self, clock: &dyn Clock, patience: Duration) -> Result<Option<Batch<Self::Samples>>, Self::Error>;
 
     /// Ends the stream at the source, which otherwise keeps sending.
@@ -75,12 +75,12 @@ pub trait Producer: Send + 'static {
 pub struct End(Receiver<Never>);
 
 impl End {
-    /// Waits at most `patience`; true when the thread has ended and what it used is free.
+    /// Waits at most `patience`; returns true when the thread has ended and its resources are free.
     pub fn wait(&self, patience: Duration) -> bool {
         matches!(self.0.recv_timeout(patience), Err(RecvTimeoutError::Disconnected))
     }
 
-    /// The thread has ended and what it used is free.
+    /// Returns whether the thread has ended and its resources are free.
     pub fn has_ended(&self) -> bool {
         has_ended(&self.0)
     }
@@ -94,7 +94,7 @@ pub struct Stream<P: Producer> {
 
 struct Shared<P: Producer> {
     ring: Mutex<Ring<P::Samples>>,
-    /// The latest, until it is taken.
+    /// The latest request, until it is taken.
     request: Mutex<Option<P::Request>>,
     error: Mutex<Option<P::Error>>,
     stop: AtomicBool,
@@ -111,11 +111,11 @@ struct Ring<S> {
 }
 
 impl<P: Producer> Stream<P> {
-    /// Starts a thread for a producer. At most `capacity` samples wait to be read, or one batch where that has more. `wake`
-    /// is called when there is something to read, at most 20 times a second, and at the end.
+    /// Starts a thread for a producer. At most `capacity` samples wait to be read, or one batch if that has more. `wake` is
+    /// called when there is something to read, at most 20 times per second, and at the end.
     ///
     /// # Errors
-    /// When the system has no thread left.
+    /// Returns an error if the system has no free thread.
     pub fn spawn(
         producer: P,
         capacity: usize,
@@ -134,12 +134,12 @@ impl<P: Producer> Stream<P> {
         Ok(Stream { shared, ended })
     }
 
-    /// Changes what the producer does, from its next sample on. Of several changes the latest counts.
+    /// Changes the request to the producer, from its next sample on. Of several changes the latest counts.
     pub fn change(&self, request: P::Request) {
         *lock(&self.shared.request) = Some(request);
     }
 
-    /// Takes what has come since the last time, the oldest first.
+    /// Takes the batches received since the last call, the oldest first.
     pub fn take(&self) -> Vec<Batch<P::Samples>> {
         let mut ring = lock(&self.shared.ring);
         ring.held = 0;
@@ -153,22 +153,22 @@ impl<P: Producer> Stream<P> {
         lock(&self.shared.ring).lost
     }
 
-    /// Returns why it ended by itself; once.
+    /// Returns the reason why it ended without a request; once.
     pub fn take_error(&self) -> Option<P::Error> {
         lock(&self.shared.error).take()
     }
 
-    /// Ends the thread. What has come can still be taken.
+    /// Ends the thread. Received batches can still be taken.
     pub fn stop(&self) {
         self.shared.stop.store(true, Ordering::SeqCst);
     }
 
-    /// The thread has ended and what it used is free.
+    /// Returns whether the thread has ended and its resources are free.
     pub fn is_ended(&self) -> bool {
         has_ended(&self.ended)
     }
 
-    /// Its end, also for when it was dropped.
+    /// Returns its end, which can also be used after it was dropped.
     pub fn end(&self) -> End {
         End(self.ended.clone())
     }
@@ -212,7 +212,7 @@ impl SampleCount for Wires {
     }
 }
 
-/// The end of a thread, however it comes: told when it is over.
+/// A guard that signals the end of a thread, for any reason.
 struct ExitSignal {
     alive: Option<Sender<Never>>,
     wake: Arc<dyn Fn() + Send + Sync>,
@@ -254,6 +254,6 @@ fn work<P: Producer>(mut producer: P, shared: &Shared<P>, clock: &dyn Clock, end
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    // Nothing that is done under these locks can panic half-way.
+    // No code under these locks can panic half-way.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,4 +1,5 @@
-//! The thread of a session: jobs as they come, samples and what is watched in between, and a look at the wire now and then.
+//! The thread of a session: jobs as they arrive, samples and watched values in between, and regular checks of the
+//! connection.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -19,18 +20,18 @@ const RETRY: Duration = Duration::from_millis(5);
 pub(super) struct Order<D: Device> {
     pub(super) id: JobId,
     pub(super) job: D::Job,
-    /// The wish to end this one.
+    /// Cancellation of this job.
     pub(super) cancel: Cancel,
 }
 
-/// Nothing of this kind is ever sent: its channel tells by its end that the thread has ended.
+/// A type without values: its channel is used only to signal the end of the thread by closing.
 pub(super) enum Never {}
 
-/// All that a session's thread works with.
+/// The parts that a session's thread works with.
 pub(super) struct Bench<D: Device> {
     pub(super) session: Session<D>,
     pub(super) orders: Receiver<Order<D>>,
-    /// A live wish has changed.
+    /// Signals that a live request has changed.
     pub(super) changes: Receiver<()>,
     pub(super) live: Live,
     pub(super) watches: Watches<D::Watch>,
@@ -39,10 +40,10 @@ pub(super) struct Bench<D: Device> {
     pub(super) busy: Arc<AtomicBool>,
 }
 
-/// Starts the thread; `alive` goes last, when the wire is free.
+/// Starts the thread; `alive` is dropped last, when the connection is free.
 ///
 /// # Errors
-/// When the system has no thread left.
+/// Returns an error if the system has no free thread.
 pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io::Result<()> {
     std::thread::Builder::new().name("session".to_owned()).spawn(move || {
         let _alive = alive;
@@ -52,7 +53,7 @@ pub(super) fn start<D: Device>(bench: Bench<D>, alive: Sender<Never>) -> std::io
     Ok(())
 }
 
-/// The job slot of a thread: free when the thread is gone, however it ended.
+/// The job slot of a thread: free after the thread has ended for any reason.
 struct Slot(Arc<AtomicBool>);
 
 impl Drop for Slot {
@@ -68,7 +69,7 @@ fn work<D: Device>(mut bench: Bench<D>) {
     let mut lost = false;
     let mut next_check = Instant::now() + bench.session.idle_interval();
     loop {
-        // The token first, then what it may have been wished for: see `Live::interrupt_sample`.
+        // The token first, then the requests that it was set for: see `Live::interrupt_sample`.
         bench.live.sampling().reset();
         match bench.orders.try_recv() {
             Ok(order) => {
@@ -129,7 +130,7 @@ impl<D: Device> Bench<D> {
         self.events.send(end);
     }
 
-    /// False when a job or another wish came in between: what is due is still due.
+    /// Takes a sample or watched value; returns false if a job or another request interrupted it: it is then still due.
     fn take(&mut self, due: &Due<D::Watch>) -> bool {
         self.session.set_cancel(self.live.sampling().clone());
         let request = self.live.number();
@@ -159,19 +160,19 @@ impl<D: Device> Bench<D> {
 
     /// Does unrequested work, however often samples are taken.
     fn run_idle_work(&mut self) {
-        // A job cuts it short, as it does a sample.
+        // A job interrupts it, like a sample.
         self.session.set_cancel(self.live.sampling().clone());
         if let Some(remark) = self.session.idle() {
             self.events.send(Event::Remark(remark));
         }
     }
 
-    /// Waits for a job, a changed wish or the time. A job stays in its channel: the loop takes it.
+    /// Waits for a job, a changed request or the time. A job stays in its channel: the loop takes it.
     fn wait(&self, patience: Duration) {
         let mut ready = Select::new();
         ready.recv(&self.orders);
         ready.recv(&self.changes);
-        // The time is up: nothing is ready, and that is no error.
+        // The time is up: nothing is ready, which is not an error.
         let _ = ready.ready_timeout(patience);
         let _ = self.changes.try_recv();
     }

@@ -1,5 +1,5 @@
-//! The rules of the house that the compiler does not know: floors point down, protocol code is pure, simulators do not
-//! know procedures, consent is given by a person, and every text is in the table.
+//! Architecture rules that the compiler does not check: layers use only lower ones, protocol code is pure, simulators use
+//! no procedures, consent is given by the user, and every text is in the table.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
@@ -14,7 +14,7 @@ mod words;
 use paths::{Used, paths};
 use places::{Owner, Place, modules_of};
 
-/// The one file that names all devices, and what buses and Signals add to them.
+/// The only file that names all devices, and what buses and Signals add to them.
 const LIST_OF_KINDS: &str = "src/kinds.rs";
 
 struct Source {
@@ -25,18 +25,18 @@ struct Source {
 }
 
 impl Source {
-    /// Lines of code with their numbers: no comments, no tests.
+    /// Returns the lines of code with their numbers, without comments and tests.
     fn code(&self) -> impl Iterator<Item = (usize, &str)> {
         self.without_tests().lines().enumerate().map(|(at, line)| (at + 1, line.split("//").next().unwrap_or_default()))
     }
 
-    /// A test module stands at the end of its file; `#[cfg(test)] mod tests;` may stand anywhere.
+    /// Returns the text without a test module, which is at the end of its file; `#[cfg(test)] mod tests;` may be anywhere.
     fn without_tests(&self) -> &str {
         let end = self.text.find("\n#[cfg(test)]\nmod tests {").unwrap_or(self.text.len());
         &self.text[..end]
     }
 
-    /// The folder in which it stands, under `src`.
+    /// Returns the folder of the file, under `src`.
     fn folder(&self) -> Option<&str> {
         Some(self.path.strip_prefix("src/")?.rsplit_once('/')?.0)
     }
@@ -81,8 +81,8 @@ fn collect(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-/// Returns whether a path is the list of devices at the virtual adapter, which opening one requires. It is the only
-/// thing that a device, a bus's tests and Signals use of that list.
+/// Returns whether a path is the list of devices at the virtual adapter, which opening an adapter requires. It is the only
+/// part of that list that a device, a bus's tests and Signals use.
 fn is_at_adapter(path: &[String]) -> bool {
     path == ["kinds", "at_adapter"]
 }
@@ -97,7 +97,7 @@ fn floors_point_down_only() {
     }
 }
 
-/// Layers on one floor know each other only where it is said here.
+/// Layers on one level use each other only where this list allows it.
 #[test]
 fn neighbours_are_known_only_where_it_is_allowed() {
     const ALLOWED: [(&str, &str); 4] =
@@ -112,7 +112,7 @@ fn neighbours_are_known_only_where_it_is_allowed() {
     }
 }
 
-/// Two folders of the core that use each other would be one. A folder and what it contains are.
+/// No two folders of the core use each other: they would be one. A folder and its subfolders are one.
 #[test]
 fn no_two_folders_of_the_core_use_each_other() {
     let sources: Vec<Source> = sources().into_iter().filter(|source| source.place.owner == Owner::Core).collect();
@@ -135,8 +135,8 @@ fn no_two_folders_of_the_core_use_each_other() {
     assert!(uses.is_empty(), "these use each other: {uses:?}");
 }
 
-/// A device is known only by itself and by the list of kinds, a bus by its users: devices, and Signals at an adapter's
-/// inputs. Signals is known by the list alone.
+/// A device is used only by itself and by the list of kinds, a bus by its users: devices, and Signals at an adapter's
+/// inputs. Signals is used by the list only.
 #[test]
 fn devices_and_buses_are_known_only_where_it_is_allowed() {
     for source in sources() {
@@ -199,7 +199,7 @@ fn only_the_window_and_the_command_line_give_consent() {
     assert_eq!(found, ["src/app/session/memory.rs", "src/cli/consent.rs"]);
 }
 
-/// Nothing is carried out without a confirmed plan; the one function that confirms it keeps the before-image as well.
+/// No operation is carried out without a confirmed plan; the one function that confirms it keeps the before-image as well.
 #[test]
 fn only_the_one_way_to_write_confirms_a_plan() {
     let confirms = |source: &Source| source.code().any(|(_, code)| code.contains("Confirmed::confirm("));
@@ -220,7 +220,7 @@ fn every_module_says_what_it_is_and_none_is_long() {
     }
 }
 
-/// The names of a catalogue of texts.
+/// Returns the names of a catalogue of texts.
 fn ids_of(owner: &Owner) -> BTreeSet<String> {
     let name = match owner {
         Owner::Core => "common",
@@ -233,7 +233,7 @@ fn ids_of(owner: &Owner) -> BTreeSet<String> {
     names.map(|(name, _)| name.to_owned()).collect()
 }
 
-/// The names that a source may ask for: those of its owner's catalogue, and the common ones.
+/// The text names that a source may use: those of its owner's catalogue, and the common ones.
 struct Known(Vec<(Owner, BTreeSet<String>)>);
 
 impl Known {
@@ -264,7 +264,7 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
     let areas: BTreeSet<&str> =
         known.0.iter().flat_map(|(_, ids)| ids).filter_map(|id| id.split_once('.')).map(|(area, _)| area).collect();
     let mut used = BTreeSet::new();
-    // Beside what is told from the state on: the entries of parameters, which are named where these are declared.
+    // Besides the layers from the state upwards: the entries of parameters, which are named where these are declared.
     let says = |source: &&Source| source.place.floor() >= 5 || source.text.contains("parameters! {");
     for source in sources.iter().filter(says).filter(|source| !source.path.ends_with("texts.rs")) {
         for (line, code) in source.code() {
@@ -281,7 +281,7 @@ fn every_text_is_in_the_table_and_every_row_is_used() {
             }
         }
     }
-    // A text that stands by the number of a table's row is held to that table beside it.
+    // A text named by the number of a table's row is checked against that table.
     let is_numbered = |id: &str| id.split_once('.').is_some_and(|(_, name)| name.parse::<u16>().is_ok());
     let ids = known.0.iter().flat_map(|(_, ids)| ids);
     let unused: Vec<&String> = ids.filter(|id| !used.contains(*id) && !is_numbered(id)).collect();
@@ -297,11 +297,11 @@ fn only_the_window_draws() {
     }
 }
 
-/// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a
-/// word has three letters or more that are not all capitals.
+/// The texts of the window come from the catalogues. A literal of a view may be the id of a text, or be invisible; a word
+/// has three letters or more that are not all capitals.
 #[test]
 fn no_view_holds_a_literal_text() {
-    /// Behind these stand names for egui, for a place in a text, for the system or the compiler.
+    /// Code before a literal that is a name for egui, for a position in a text, for the system or the compiler.
     const NAMES: [&str; 21] = [
         "Id::unique(",
         "id_salt(",
@@ -325,7 +325,7 @@ fn no_view_holds_a_literal_text() {
         "target_os =",
         "reason =",
     ];
-    /// The program's name, examples of what to type, and names of the manual.
+    /// The program's name, examples of input, and names from the manual.
     const ALLOWED: [&str; 8] = [
         "encoder-studio",
         "drop:0.01",
@@ -336,7 +336,7 @@ fn no_view_holds_a_literal_text() {
         "nERR",
         "nWARN",
     ];
-    /// No views: what the terminal is told, and the names of fonts.
+    /// Files that are no views: messages on the terminal, and the names of fonts.
     const NO_VIEWS: [&str; 2] = ["src/ui/run.rs", "src/ui/theme.rs"];
     let sources = sources();
     let known = Known::read(&sources);
@@ -370,7 +370,7 @@ fn every_text_that_is_asked_for_is_in_the_table() {
     }
 }
 
-/// Three letters or more in a row that are not all capitals, outside the places of a format string.
+/// Returns whether it has three letters or more in a row that are not all capitals, outside the places of a format string.
 fn has_word(text: &str) -> bool {
     let mut bare = String::new();
     let mut rest = text;
@@ -384,14 +384,14 @@ fn has_word(text: &str) -> bool {
     words.into_iter().any(|word| word.chars().count() >= 3 && word.chars().any(char::is_lowercase))
 }
 
-/// A string literal with what stands before it.
+/// A string literal with the text before it.
 struct Literal {
     line: usize,
     before: String,
     text: String,
 }
 
-/// The string literals of a source: not those in its comments, nor those of the tests at its end.
+/// Returns the string literals of a source: not those in its comments, nor those of the tests at its end.
 fn literals(source: &str) -> Vec<Literal> {
     let source = source.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     let characters: Vec<char> = source.chars().collect();
@@ -429,7 +429,7 @@ fn literals(source: &str) -> Vec<Literal> {
     found
 }
 
-/// Without its escapes, none of which stands for a letter.
+/// Returns a text without its escapes, none of which is for a letter.
 fn unescaped(text: &str) -> String {
     let mut characters = text.chars();
     let mut bare = String::new();

@@ -1,4 +1,4 @@
-//! Paths to modules in the text of a file, wherever they stand: behind `use`, in a type, in an expression.
+//! Paths to modules in the text of a file, at any place: after `use`, in a type, in an expression.
 
 /// A path from the root of the crate, and the line on which it begins.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -7,7 +7,7 @@ pub(crate) struct Used {
     pub(crate) path: Vec<String>,
 }
 
-/// Every path that begins with `crate`, `super` or `self`, seen from a module; without comments.
+/// Returns every path that begins with `crate`, `super` or `self`, seen from a module; without comments.
 pub(crate) fn paths(module: &[String], text: &str) -> Vec<Used> {
     let code: String = text.lines().map(|line| format!("{}\n", line.split("//").next().unwrap_or_default())).collect();
     let mut found = Vec::new();
@@ -36,7 +36,7 @@ pub(crate) fn paths(module: &[String], text: &str) -> Vec<Used> {
     found
 }
 
-/// Reads a path behind `before`, with all its branches; gives what is left of the text.
+/// Reads a path after `before`, with all its branches; returns the rest of the text.
 fn read<'t>(text: &'t str, before: &[String], ends: &mut Vec<Vec<String>>) -> &'t str {
     let text = text.trim_start();
     if let Some(mut rest) = text.strip_prefix('{') {

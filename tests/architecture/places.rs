@@ -1,4 +1,4 @@
-//! Whose a module is, and how high it stands: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
+//! The owner and the layer of a module: `src/<layer>` is the core's, `src/devices/<device>/<module>` a device's.
 
 /// Layers and their floors.
 const LAYERS: [(&str, u8); 18] = [
@@ -22,7 +22,7 @@ const LAYERS: [(&str, u8); 18] = [
     ("kinds", 6),
 ];
 
-/// Layers that the core does not have: it knows no bytes of a device, and nothing that is done with one.
+/// Layers that the core does not have: it knows neither the bytes nor the procedures of a device.
 const NEVER_OF_THE_CORE: [&str; 2] = ["protocol", "procedures"];
 
 /// The modules of a device, a bus and Signals, and the layers that they are.
@@ -37,7 +37,7 @@ const MODULES: [(&str, &str); 8] = [
     ("commands", "cli"),
 ];
 
-/// Whose a module is.
+/// The owner of a module.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Owner {
     Core,
@@ -46,7 +46,7 @@ pub(crate) enum Owner {
     Signals,
 }
 
-/// Whose a module is, and its layer.
+/// The owner of a module, and its layer.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) owner: Owner,
@@ -54,7 +54,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Of a path of modules from the root of the crate; `None` where the first is no module of it.
+    /// Returns the place of a path of modules from the root of the crate; `None` if the first is no module of it.
     pub(crate) fn of(path: &[String]) -> Option<Self> {
         let names: Vec<&str> = path.iter().map(String::as_str).collect();
         let place = |owner, layer| Some(Place { owner, layer });
@@ -88,7 +88,7 @@ fn layer_of_module(name: &str) -> Option<&'static str> {
     MODULES.iter().find(|(module, _)| *module == name).map(|(_, layer)| *layer)
 }
 
-/// The modules of a file's path under `src`: `app/hiperface/mod.rs` is `app`, `hiperface`.
+/// Returns the modules of a file's path under `src`: `app/hiperface/mod.rs` is `app`, `hiperface`.
 pub(crate) fn modules_of(path: &str) -> Vec<String> {
     let mut modules: Vec<String> = path.trim_end_matches(".rs").split('/').map(ToOwned::to_owned).collect();
     if matches!(modules.last().map(String::as_str), Some("mod" | "lib")) {
@@ -119,7 +119,7 @@ fn a_module_has_one_owner_and_one_layer() {
         ("worker/commit.rs", core("worker")),
         ("link/line/echo.rs", core("link")),
         ("analysis/check.rs", core("analysis")),
-        // Protocols and procedures are a device's or a bus's, and a folder without a layer has no place.
+        // Protocols and procedures belong to a device or a bus, and a folder without a layer has no place.
         ("protocol/hiperface/crc.rs", None),
         ("procedures/echo.rs", None),
         ("device/line.rs", None),

@@ -1,5 +1,5 @@
-//! Words that must not come back: into the texts of the window and the command line (docs/terms.md has those to use), and
-//! into the comments of the code.
+//! Words that must not be used: in the texts of the window and the command line (docs/terms.md has those to use), and in
+//! the comments of the code.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,12 +24,12 @@ const ENGLISH: &[&str] = &[
     "talks",
     "on its desk",
 ];
-/// Words of comments, and how a doc comment must not begin: see CONTRIBUTING.md.
+/// Forbidden words of comments, and forbidden beginnings of a doc comment: see CONTRIBUTING.md.
 const COMMENTS: &[&str] = &["nobody", "somebody", "anew", "all the same", "lately", "reckon", "mend", "lamp", "lamps"];
 const BEGINNINGS: &[&str] = &["Who ", "Where ", "That ", "Nobody ", "Somebody ", "Whoever "];
 const GERMAN: &[&str] = &["jemand", "lampe", "lampen", "leuchte", "leuchten", "verbindungsangabe"];
 
-/// Whether a text has these words as words.
+/// Returns whether a text contains these words as whole words.
 fn has(text: &str, words: &str) -> bool {
     let text = text.to_lowercase();
     text.match_indices(words).any(|(at, _)| {
@@ -38,7 +38,7 @@ fn has(text: &str, words: &str) -> bool {
     })
 }
 
-/// The texts of a line of a catalogue, each with its language.
+/// Returns the texts of a line of a catalogue, each with its language.
 fn texts(line: &str) -> impl Iterator<Item = (&'static str, &str)> {
     ["en", "terminal", "de"].into_iter().filter_map(move |language| {
         let begin = line.find(&format!("{language}: \""))? + language.len() + 3;

@@ -1,4 +1,4 @@
-//! What can be typed wrongly about a BiSS encoder, and profiles that cannot be used: one sentence each.
+//! Invalid input for a BiSS encoder, and profiles that cannot be used: one sentence each.
 
 use super::biss_profile::PROFILE;
 use super::support::Bench;
@@ -33,7 +33,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
     }
 }
 
-/// Issue 22.17: a profile of a newer schema is compared, which is said to be all that is done with it.
+/// Issue 22.17: a profile of a newer schema is compared, and the message says that nothing else is possible.
 #[test]
 fn a_profile_of_a_newer_schema_is_only_read() {
     let bench = Bench::new();

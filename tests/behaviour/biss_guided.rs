@@ -1,5 +1,5 @@
-//! The procedures that need a turning motor, with an encoder that is not our program and with our own, without a terminal:
-//! a run starts as soon as what is measured fits.
+//! The procedures that need a turning motor, with a foreign encoder and with the virtual one, without a terminal: a run
+//! starts as soon as the measured values fit.
 
 use std::time::Duration;
 
@@ -101,8 +101,8 @@ fn a_run_that_fails_leads_back_to_operation() {
     }
 }
 
-/// Temperature → calibration → Wiegand test → preset → data, in one run. The motor stands while the data are read, turns,
-/// and stops after the test.
+/// Temperature → calibration → Wiegand test → preset → data, in one run. The motor stands still while the data are read,
+/// turns, and stops after the test.
 #[test]
 fn a_mounting_run_does_all_of_it() {
     let bench = Bench::new();
@@ -139,8 +139,8 @@ fn what_is_no_part_of_a_mounting_is_told() {
     bench.run(&["do", "biss", "mounting", "preset=16777216", "--yes", "--link", "sim:"]).fails(1, &["16777215"]);
 }
 
-/// Our own encoder turns 515 times each way: 15.5 s at 2000 rpm. Issue 22.19: a test that was not passed is no success; 5.2 V
-/// are less than 5.3 V (reference 4).
+/// The virtual encoder turns 515 times each way: 15.5 s at 2000 rpm. Issue 22.19: a failed test is no success; 5.2 V are
+/// less than 5.3 V (reference 4).
 #[test]
 fn our_own_encoder_is_led_through_as_well() {
     let bench = Bench::new();
@@ -156,7 +156,7 @@ fn our_own_encoder_is_led_through_as_well() {
     assert_eq!((&result["ok"], &result["lowest_cw_v"], &result["saved"]), (&json!(false), &json!(5.2), &json!(true)));
 }
 
-/// The first question is what turns the motor; one that needs this encoder is refused.
+/// The first question is about the motor; a motor that needs this encoder is refused.
 #[test]
 fn on_a_terminal_somebody_says_what_turns_the_motor() {
     let bench = Bench::new();

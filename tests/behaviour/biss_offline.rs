@@ -1,4 +1,4 @@
-//! BiSS without a device: captured bytes explained, profiles compared, recordings played back.
+//! BiSS without a device: captured bytes are decoded, profiles compared, recordings played back.
 
 use serde_json::{Value, json};
 
@@ -33,7 +33,7 @@ fn golden_bytes_are_explained() {
     }
 }
 
-/// BiSS reference 2: every frame of the table, and one with its lowest data bit turned.
+/// BiSS reference 2: every frame of the table, and one with its lowest data bit inverted.
 #[test]
 fn position_frames_are_checked() {
     let bench = Bench::new();
@@ -59,7 +59,7 @@ fn position_frames_are_checked() {
     assert_eq!(prefixed["frames"][0]["turns"], json!(0x1234));
 }
 
-/// UBICOM reference 6, turn 1234h at 270°: `position` prints a word that can be decoded, whichever form it has.
+/// UBICOM reference 6, turn 1234h at 270°: `position` prints a word that can be decoded, in either form.
 #[test]
 fn position_words_are_decoded_as_they_are_printed() {
     let bench = Bench::new();
@@ -97,10 +97,10 @@ fn what_is_damaged_names_the_sum_that_does_not_fit() {
         let told = bench.run(&[&command[..], &["--json"]].concat()).json_with(1);
         assert!(told["frames"].as_array().unwrap().iter().all(|frame| frame["valid"] == json!(false)), "{told}");
     }
-    // A frame that an adapter has read with a wrong CRC: its packet is whole.
+    // A frame that an adapter has read with a wrong CRC: its packet is valid.
     let packet = "06 07 A1 41 42 0F 01 01 01 01 01 02 CE 04 80 69 24 01 01 03 85 9D 00";
     bench.run(&["decode", "biss", packet]).fails(1, &["CRC-6", "024698000CE"]);
-    // What is good beside it is told.
+    // The valid frames in the same command are printed.
     let mixed = bench.run(&["decode", "biss", "024698000CF", "024698000CE", "--json"]).json_with(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);
@@ -140,14 +140,15 @@ fn two_profiles_are_compared_without_a_link() {
     assert_eq!((&told["equal"], &told["differences"]), (&json!(false), &differences), "{told}");
     let text = bench.run(&["diff", &left, &right]);
     assert!(text.status == Some(3) && text.out.contains("0x24:0x00  00  →  A1"), "{text:?}");
-    // A profile of another kind of device is named with both.
+    // For a profile of another kind of device, the message names both kinds.
     let other = bench.file("other.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
     bench.run(&["diff", &left, &other, "--json"]).fails(1, &["other.ron", "hiperface", "biss"]);
     bench.run(&["diff", &other, &left, "--json"]).fails(1, &["left.ron", "hiperface", "biss"]);
 }
 
-/// Issue 22.17: a misspelt name stops a restore with its place, and a newer schema is compared but not restored.
+/// Issue 22.17: a misspelt name stops a restore and is reported with its position, and a newer schema is compared but not
+/// restored.
 #[test]
 fn a_misspelt_name_is_told_and_a_newer_schema_is_only_looked_at() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! A profile of the foreign kit encoder, as a person could write it.
+//! A profile of the foreign kit encoder, as a user could write it.
 
 /// Bank 24h holds 00h to 3Fh, bank 25h three bytes; the preset is 270°.
 pub(crate) const PROFILE: &str = r#"(

@@ -1,4 +1,4 @@
-//! Looking at a kit encoder that is not our program: over its configuration pin and over an adapter.
+//! Reading a foreign kit encoder, over its configuration pin and over an adapter.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use super::support::{Bench, Foreign, Ran, finish, signal};
 
 const JSON: &str = "--json";
 
-/// The same encoder over either way.
+/// Starts the same encoder on each connection.
 fn both(bench: &Bench, arguments: &[&str]) -> Option<[Foreign; 3]> {
     Some([bench.kit(arguments)?, bench.adapter(arguments)?, bench.adapter_on_terminal(arguments)?])
 }
@@ -68,15 +68,15 @@ fn status_names_what_is_set() {
         assert_eq!(told["warnings"], json!([{"code": 0, "text": "temperature too high"}]));
         let text = ask(&bench, encoder, &["status", "biss"]);
         assert!(text.out.contains("magnetic field too low"), "{text:?}");
-        // The position's own bits, or the registers where it has none.
+        // The position's own bits, or the registers if it has none.
         let position = ask(&bench, encoder, &["position", "biss", JSON]).json();
         assert_eq!((&position["valid"], &position["warning"]), (&json!(false), &json!(true)));
     }
 }
 
-/// Issue 22.19: nothing tells that a Wiegand sensor is good whose test was never saved.
-/// A verdict a line: an encoder as delivered, and one with the errors of reference 7 that is hotter than its data sheet
-/// allows (105 °C), behind an adapter that measures its supply on a disturbed line.
+/// Issue 22.19: a Wiegand sensor whose test was never saved is not reported as good. One verdict per line: an encoder with
+/// factory settings, and one with the errors of reference 7 that is hotter than its data sheet allows (105 °C), at an
+/// adapter that measures its supply on a disturbed line.
 #[test]
 fn a_check_judges_what_the_encoder_says_of_itself() {
     let bench = Bench::new();
@@ -110,7 +110,7 @@ fn a_check_judges_what_the_encoder_says_of_itself() {
     bench.run(&["do", "biss", "check", "restart", "--link", "sim:"]).fails(2, &["no argument"]);
 }
 
-/// Issue 22.20: of an encoder that does not tell its frame the position is the word alone, until the link gives turns and
+/// Issue 22.20: if an encoder does not report its frame, the position is only the word, until the link names turns and
 /// steps: turn 1234h and 270°.
 #[test]
 fn a_position_that_nothing_explains_is_raw_until_the_link_explains_it() {
@@ -129,7 +129,7 @@ fn a_position_that_nothing_explains_is_raw_until_the_link_explains_it() {
     assert_eq!((&told["turns"], &told["steps"], &told["degrees"]), (&json!(4660), &json!(98_304), &json!(270.0)));
 }
 
-/// Turn 1234h and 270°: one word however it comes, and over BiSS the frame with its CRC beside it.
+/// Turn 1234h and 270°: the same word on each connection, and over BiSS the frame with its CRC in addition.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
@@ -155,7 +155,7 @@ fn the_position_has_turns_steps_and_degrees() {
     }
 }
 
-/// 360° a second counterclockwise.
+/// 360° per second counterclockwise.
 #[test]
 fn a_turning_shaft_is_followed() {
     let bench = Bench::new();
@@ -168,7 +168,7 @@ fn a_turning_shaft_is_followed() {
         let moved = place(&lines[10]) - place(&lines[0]);
         let speed = moved / (time(&lines[10]) - time(&lines[0]));
         assert!((speed + 1.0).abs() < 0.1, "{speed} revolutions a second: {ran:?}");
-        // Data is not touched while the shaft turns.
+        // Data is not read while the shaft turns.
         let file = bench.file("p.ron");
         ask(&bench, encoder, &["save", "biss", "-o", &file, JSON]).fails(1, &["turns", "rest"]);
         ask(&bench, encoder, &["read", "biss", "0x24:0x10", JSON]).fails(1, &["turns", "rest"]);
@@ -184,7 +184,7 @@ fn a_frame_with_a_wrong_crc_gives_no_line_and_is_counted() {
     let ran = ask(&bench, &encoder, &["position", "biss", "--csv", "--count", "20", "--interval", "0"]);
     assert_eq!((ran.status, ran.out.lines().count()), (Some(0), 21), "{ran:?}");
     assert!(ran.out.lines().skip(1).all(|line| line.contains(",4660,98304,270,")), "{ran:?}");
-    // 20 good frames, and between them every third frame of all.
+    // 20 good frames, and between them every third of all frames.
     let count: u64 = ran.err.strip_prefix("crc errors: ").unwrap().trim().parse().unwrap();
     assert!((9..=10).contains(&count), "{ran:?}");
     let Some(hopeless) = bench.adapter(&["--damage", "1"]) else { return };
@@ -333,7 +333,7 @@ fn access_codes_are_not_for_it() {
     let bench = Bench::new();
     bench.run(&["identify", "biss", "--link", "sim:", "--code", "0=66"]).fails(2, &["--code"]);
     let mut command = bench.program(&["read", "biss", "0x66", "--link", "sim:", "--json"]);
-    // Those of the environment may be for other devices.
+    // Codes in the environment may be for other devices.
     command.env("ENCODER_STUDIO_CODES", "0=66");
     assert_eq!(finish(command).json()["value"], json!(80));
 }

@@ -41,7 +41,7 @@ fn examine(path: &str) {
         "-", // a wrong checksum
         "-", // another node
         "-", // an unknown command
-        "-", // a length that does not fit
+        "-", // length does not match
         "80 01 01 01 00 01 7B",
     ];
     assert_eq!(replies, expected);
@@ -58,7 +58,7 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     let terminal = Simulated::start(&bench, &[&["biss", "--pty", &bench.file("enc")], &WARM[..]].concat());
     assert!(bench.path("enc").is_symlink());
     examine(&terminal.place);
-    // The next client finds the mode as the first has left it.
+    // The next client finds the mode that the first has set.
     let mode = foreign_host("ubicom_host.py", &terminal.place, &["80 01 01 02 00 2A 00 51"]);
     assert_eq!(mode, ["80 01 01 01 00 07 75"]);
     terminal.end("INT");
@@ -68,7 +68,8 @@ fn the_configuration_pin_answers_the_frames_of_the_reference() {
     port.end("TERM");
 }
 
-/// The encoder has one speed (UBICOM reference 1); a line at another is set so and not understood.
+/// The encoder has one speed (UBICOM reference 1); a line at another speed is set to it, and the encoder does not
+/// understand.
 #[test]
 fn the_speed_of_the_line_can_be_written_into_the_link() {
     let bench = Bench::new();
@@ -84,7 +85,7 @@ fn the_speed_of_the_line_can_be_written_into_the_link() {
     terminal.end("INT");
 }
 
-/// Saving a preset restarts the encoder: it is silent for half a second, in operation afterwards.
+/// Saving a preset restarts the encoder: it is silent for half a second, and in operation afterwards.
 #[test]
 fn a_restart_is_silent_and_faults_are_those_asked_for() {
     let bench = Bench::new();
@@ -118,7 +119,7 @@ fn told(path: &str, actions: &[&str]) -> Vec<Value> {
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// What a session with an adapter is like: bridge reference 2 to 4.
+/// Checks a session with an adapter: bridge reference 2 to 4.
 fn examine_adapter(path: &str) {
     let said = told(
         path,
@@ -171,8 +172,8 @@ fn the_adapter_reads_frames_and_registers_of_every_bank() {
     terminal.end("TERM");
 }
 
-/// 20 000 frames a second: none is missing, each has its time, its CRC and its place on a shaft that turns ten times a
-/// second.
+/// 20 000 frames per second: none is missing, and each has its time, its CRC and its position on a shaft that turns ten
+/// times per second.
 #[test]
 fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -188,14 +189,14 @@ fn a_stream_of_twenty_thousand_frames_a_second_has_no_gap() {
     }
     assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
     let number = |key: &str| stream[key].as_u64().unwrap();
-    // On a busy machine the host may start to count late; what it counts is without a gap all the same.
+    // On a busy computer the host may start to count late; the counted frames have no gap even then.
     assert!(number("frames") > 30_000, "{stream}");
     let (moved, expected) = (number("last_steps") - number("first_steps"), (number("frames") - 1) * 131_072 / 2_000);
     assert!(moved.abs_diff(expected) <= 1, "{moved} steps where {expected} were expected: {stream}");
     assert_eq!(said[3]["status"], json!(0), "single frames again when the stream has ended");
 }
 
-/// Faults of the adapter's own bytes: what is damaged is dropped by both ends, what is lost is asked again.
+/// Faults of the adapter's own bytes: damaged bytes are dropped on both sides, lost ones are requested again.
 #[test]
 fn faults_of_the_adapters_line_are_those_asked_for() {
     let bench = Bench::new();
@@ -219,13 +220,13 @@ fn faults_of_the_adapters_line_are_those_asked_for() {
     assert_eq!((&died[4]["error"], &died[5]["status"]), (&json!(4), &json!(1)), "{died:?}");
 }
 
-/// Somebody starts a stream and fetches nothing of it.
+/// A client starts a stream and reads nothing of it.
 #[test]
 fn an_interrupt_ends_it_whatever_the_client_does() {
     let bench = Bench::new();
     let port = Simulated::start(&bench, &["biss", "--bridge", "--listen", "127.0.0.1:0"]);
     let mut client = TcpStream::connect(&port.place).unwrap();
-    // ANALOG_CONFIG and ANALOG_STREAM: a million samples a second, four bytes each.
+    // ANALOG_CONFIG and ANALOG_STREAM: a million samples per second, four bytes each.
     client.write_all(b"\x06\x0B\x30\x40\x42\x0F\x03\x33\xCC\x00").unwrap();
     client.write_all(b"\x06\x0C\x31\x01\x78\x9F\x00").unwrap();
     std::thread::sleep(Duration::from_secs(5));

@@ -1,4 +1,4 @@
-//! The tour of the README: a virtual kit encoder beside the commands, from looking at it to having it as it was.
+//! The tour of the README: a virtual kit encoder and the commands, from reading it to restoring its original content.
 
 use serde_json::json;
 

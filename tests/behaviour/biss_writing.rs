@@ -1,4 +1,4 @@
-//! Writing into a kit encoder that is not our program: over its configuration pin and over an adapter.
+//! Writing into a foreign kit encoder, over its configuration pin and over an adapter.
 
 use encoder_studio::store::{DeviceKey, Logbook, Outcome};
 use jiff::Timestamp;
@@ -7,11 +7,11 @@ use serde_json::{Value, json};
 use super::biss_profile::PROFILE;
 use super::support::{Bench, Foreign, Ran, asked};
 
-/// What the profile says of bank 24h and 25h, and its preset value of 270°.
+/// The content of the profile for bank 24h and 25h, and its preset value of 270°.
 const AS_PROFILE: &str = r#"{"0x24:0x00": "000102030405060708090A0B0C0D0E0F101112131415161718191A1B1C1D1E1F202122232425262728292A2B2C2D2E2F303132333435363738393A3B3C3D3E3F", "0x25:0x00": "A1B2C3"}"#;
 const PRESET: &str = "008001000000";
 
-/// The same encoder over either way.
+/// Starts the same encoder on each connection.
 fn both(bench: &Bench, arguments: &[&str]) -> Option<[Foreign; 2]> {
     Some([bench.kit(arguments)?, bench.adapter(arguments)?])
 }
@@ -20,13 +20,12 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Registers written since the last time, without bank selection.
+/// Returns the registers written since the last time, without bank selection.
 fn written(encoder: &Foreign) -> Vec<String> {
     encoder.registers_written().into_iter().filter(|line| !line.starts_with("0x40 ")).collect()
 }
 
-/// Reference 5.3: password and mode, open the OEM data, the registers, save, back to operation; and the password is not
-/// left set.
+/// Reference 5.3: password and mode, open the OEM data, the registers, save, back to operation; and the password is reset.
 fn saved(registers: &[&str]) -> Vec<String> {
     let around = (["0x6B 2A", "0x6A 04", "0x00:0x1A 02"], ["0x00:0x1A 03", "0x6A 00", "0x6B 00"]);
     [&around.0[..], registers, &around.1].concat().into_iter().map(str::to_owned).collect()
@@ -54,13 +53,13 @@ fn three_bytes_of_a_bank_are_three_registers_and_one_save() {
         assert_eq!(written(encoder), saved(&["0x24:0x01 A1", "0x24:0x02 A2", "0x24:0x0F EE"]));
         assert_eq!(ask(&bench, encoder, &["verify", &file]).json()["equal"], json!(true));
 
-        // The before-image is a profile, and restoring it brings back what was there.
+        // The before-image is a profile, and restoring it restores the previous content.
         let backup = told["backup"].as_str().unwrap();
         let undone = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
         assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(3), &json!(1)));
         let there = ask(&bench, encoder, &["read", "biss", "0x24:0x00+16"]).json();
         assert_eq!(there["value"], json!("000102030405060708090A0B0C0D0E0F"));
-        // The same once more: nothing differs, nothing is sent, nothing is kept.
+        // Repeated: nothing differs, nothing is sent, nothing is kept.
         written(encoder);
         let again = ask(&bench, encoder, &["restore", backup, "--yes"]).json();
         assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
@@ -79,7 +78,7 @@ fn write_stores_exactly_these_bytes() {
             (&json!("0x25:0x10"), &json!(1), &json!(1))
         );
         assert_eq!(written(encoder), saved(&["0x25:0x10 5A"]));
-        // Of a run only what differs.
+        // Only the changed registers of a run.
         let told = ask(&bench, encoder, &["write", "biss", "0x25:0x00+4", "A1 00 C3 01", "--yes"]).json();
         assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
         assert_eq!(written(encoder), saved(&["0x25:0x01 00", "0x25:0x03 01"]));
@@ -135,7 +134,7 @@ fn the_mounting_of_another_encoder_is_left_alone() {
     assert_eq!(value["value"], json!(PRESET));
 }
 
-/// Issue 22.9: another type is named, and refused without a permit of its own.
+/// Issue 22.9: another type is named, and refused without explicit permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
     let bench = Bench::new();
@@ -151,7 +150,7 @@ fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
     assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
     let other = bench.file("hiperface.ron");
     assert_eq!(bench.run(&["save", "hiperface", "--link", "sim:", "-o", &other]).status, Some(0));
-    // The kind of device is in the file: a HIPERFACE encoder is looked for, and does not answer.
+    // The file names the kind of device: a HIPERFACE encoder is searched for, and does not answer.
     ask(&bench, &encoder, &["restore", &other, "--dry-run"]).fails(1, &[]);
     assert_eq!(encoder.requests(), [""; 0]);
 }
@@ -239,7 +238,7 @@ fn filter_and_preset_are_actions() {
         // 270° and turn 5: stored, then carried out.
         assert_eq!(preset(&["98304", "5"]), 2);
         assert_eq!(place(encoder), (5, 98_304));
-        // Stored already, and the shaft is elsewhere by then: nothing to store.
+        // Already stored, and the shaft has moved since: nothing to store.
         assert_eq!(preset(&[]), 1);
         assert_eq!(preset(&["1000", "singleturn"]), 2);
         assert_eq!(place(encoder), (5, 1000), "the turn stays");
@@ -250,7 +249,7 @@ fn filter_and_preset_are_actions() {
     }
 }
 
-/// Manual 6.1: 1000 write cycles. From 800 on it is said; beyond 1000 nothing is written unless that is wished.
+/// Manual 6.1: 1000 write cycles. A warning is printed from 800 on; beyond 1000 nothing is written unless forced.
 #[test]
 fn a_worn_flash_is_told_and_written_only_where_that_is_wished() {
     let bench = Bench::new();
@@ -302,8 +301,8 @@ fn a_link_that_is_cut_in_the_middle_is_told_with_the_backup() {
     }
 }
 
-/// Issue 22.15: registers that were entered and never saved are told, and no comparison takes them for the encoder's
-/// content. Only `lead-back` leads back.
+/// Issue 22.15: registers that were written and never saved are reported, and no comparison takes them for the encoder's
+/// content. Only `lead-back` restores the mode.
 #[test]
 fn what_a_killed_write_has_left_is_not_taken_for_the_encoders_content() {
     let bench = Bench::new();
@@ -332,7 +331,7 @@ fn what_a_killed_write_has_left_is_not_taken_for_the_encoders_content() {
     }
 }
 
-/// Issue 22.16: the program ends when the supply is as it was found.
+/// Issue 22.16: the supply is restored at the end of the program.
 #[test]
 fn an_adapter_is_left_with_the_supply_as_it_was_found() {
     let bench = Bench::new();
@@ -351,7 +350,7 @@ fn an_adapter_is_left_with_the_supply_as_it_was_found() {
     bench.run(&["read", "biss", "0x66", "--link", &url]).fails(2, &["leave-supply=no", "as-found, on or off"]);
 }
 
-/// Reference 5: a mode that another host has left, and the password that it has left set.
+/// Reference 5: the mode and the password that another host has set are reset.
 #[test]
 fn an_encoder_that_was_left_in_a_mode_is_led_back() {
     let bench = Bench::new();
@@ -366,8 +365,8 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back() {
     }
 }
 
-/// Issue 22.15: leading back discards what somebody has entered and not saved: on a terminal that is asked, unless --yes answers
-/// it. Nothing is stored by it, so that a script needs no --yes.
+/// Issue 22.15: restoring the mode discards unsaved changes: on a terminal the program asks, unless --yes answers it. It
+/// stores nothing, so that a script needs no --yes.
 #[test]
 fn on_a_terminal_leading_back_is_asked_for() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! What a foreign encoder is told to do, frame by frame, and the encoders that are not the usual one.
+//! Actions on a foreign encoder, checked frame by frame, and unusual encoders.
 
 use serde_json::{Value, json};
 
@@ -60,7 +60,7 @@ fn a_position_is_set_in_phase_or_exactly() {
 
     act(&bench, &encoder, &["set-position", "0x1234", "--exact"]).json();
     assert_eq!(encoder.writes(), ["40 43 00 00 12 34 55 70"]);
-    // An encoder with a bearing of its own has nothing to synchronise.
+    // An encoder with its own bearing has nothing to synchronise.
     act(&bench, &encoder, &["set-position", "0x1000000"]).fails(1, &["0 to 16777215"]);
 }
 
@@ -90,7 +90,7 @@ fn settings_are_stored_and_the_counter_is_cleared() {
         write("settings", "0xE5").json();
         assert_eq!(encoder.writes(), ["40 57 E5 55 A7"], "{reply:?}");
         write("settings", "0x97").fails(1, &["reserved"]);
-        // Counting over the end is a warning, not a failure.
+        // A counter overflow is a warning, not a failure.
         let ran = act(&bench, &encoder, &["increment-counter"]);
         ran.json();
         assert!(ran.err.contains("08h"), "{ran:?}");
@@ -124,7 +124,7 @@ fn an_encoder_with_an_extended_label_is_known_by_it() {
     let told = bench.run(&["identify", "hiperface", "--link", &encoder.url, "--json"]).json();
     assert_eq!((&told["encoder_type"], &told["encoder_name"]), (&json!(0xFF), &json!("SEL37-HFB0-K02")));
     let line = bench.run(&["position", "hiperface", "--link", &encoder.url, "--json"]).json();
-    // 512 steps a turn.
+    // 512 steps per turn.
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
     assert!((line["degrees"].as_f64().unwrap() - 305.0 * 360.0 / 512.0).abs() < 1e-9, "{line}");
 }
@@ -153,8 +153,8 @@ fn an_unknown_type_takes_periods_and_turns_from_the_link() {
     assert_eq!((&line["turns"], &line["steps"]), (&json!(2), &json!(0x131)));
 }
 
-/// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again, but leaves and
-/// names one that was changed meanwhile, and what stands before it.
+/// Issue 22.12: a restore onto another encoder creates data fields; restoring its before-image deletes them again, except
+/// for a field that was changed meanwhile, which is named, and the fields before it.
 #[test]
 fn undoing_a_restore_deletes_what_it_created_and_no_more() {
     let bench = Bench::new();
@@ -190,7 +190,7 @@ fn undoing_a_restore_deletes_what_it_created_and_no_more() {
         let deleted = |number: u8| frame(&format!("40 4D 0{number} 48 55"));
         let defined: Vec<String> = target.writes().into_iter().filter(|frame| frame.starts_with("40 4D")).collect();
         if changed {
-            // The last one is as it was written; the one before it is not.
+            // The last one is as written; the one before it is not.
             assert_eq!(defined, [deleted(2)], "{undo:?}");
             assert!(undo.err.contains("data field 1"), "{undo:?}");
             assert_eq!(target.host(&["40 4A 01 00 01 55"]), [frame("40 4A 01 00 01 77")]);
@@ -198,7 +198,7 @@ fn undoing_a_restore_deletes_what_it_created_and_no_more() {
             assert_eq!(defined, [deleted(2), deleted(1)], "{undo:?}");
             assert!(!undo.err.contains("data field"), "{undo:?}");
         }
-        // What was there before it has its bytes again.
+        // The previous fields have their bytes again.
         assert_eq!(target.host(&["40 4A 00 00 01 55"]), [frame("40 4A 00 00 01 AA")]);
     }
 }

@@ -1,4 +1,4 @@
-//! `analyse`: captures made here by arithmetic give back what was put in, and bad ones get one sentence.
+//! `analyse`: synthetic captures result in their own parameters, and invalid ones in one sentence.
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -22,7 +22,7 @@ struct Signal {
 const REFERENCE: Signal =
     Signal { amplitude: 0.5, offset_cosine: 0.02, offset_sine: -0.03, ratio: 1.05, phase_deg: 3.0 };
 
-/// Sine and cosine at an angle in periods.
+/// Returns the sine and cosine at an angle in periods.
 fn at(signal: &Signal, periods: f64) -> (f64, f64) {
     let (angle, phase) = (TAU * periods, signal.phase_deg.to_radians());
     let sine = (signal.amplitude * angle.sin() * phase.cos() - signal.amplitude * angle.cos() * phase.sin())
@@ -73,7 +73,8 @@ fn the_reference_signal_gives_back_what_was_put_in() {
     }
 }
 
-/// 2 mV rms of noise in 0.5 V: 1000 points a period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; five of them.
+/// 2 mV rms of noise in 0.5 V: 1000 points per period, 7.25 periods. A parameter scatters by σ·√(2/n) = 33 µV; the limit is
+/// five of them.
 #[test]
 fn noise_moves_it_only_as_far_as_its_statistics_allow() {
     let bench = Bench::new();
@@ -212,7 +213,7 @@ fn the_captures_that_ship_are_a_good_one_and_a_bad_one() {
     let good = bench.run(&["analyse", &path("healthy.csv")]);
     assert_eq!(good.status, Some(0), "{good:?}");
     assert!(good.out.contains("within the limits") && good.out.contains("periods"), "{good:?}");
-    // As put in: R, p, q, r, α; 0.5 mV rms of noise on 400 points.
+    // The parameters of the capture: R, p, q, r, α; 0.5 mV rms of noise on 400 points.
     let told = bench.run(&["analyse", &path("offset-gain-phase.csv"), "--json"]).json();
     let expected = [
         ("amplitude_v", 0.5, 2e-4),
@@ -253,8 +254,8 @@ fn the_revolution_that_ships_tells_its_eccentricity() {
     // The mean over a 16th of a revolution lessens 120″ by (π/16)²/6 = 0.6 %.
     near(&told, "inl_deg", 119.2 / 3600.0, 0.4 / 3600.0);
     near(&told, "inl_deg_corrected", 119.2 / 3600.0, 0.4 / 3600.0);
-    // Python: half of peak to peak of the errors of this ellipse, 5.801567° electrical, in 16 periods; noise of 0.035° comes
-    // up to four times that far on either side.
+    // Python: half of peak to peak of the errors of this ellipse, 5.801567° electrical, in 16 periods; noise of 0.035°
+    // occurs up to four times that on either side.
     near(&told, "dnl_deg", 0.181_3, 0.008);
     near(&told, "dnl_deg_corrected", 0.0, 0.012);
     let text = bench.run(&["analyse", path, "--periods", "16"]).out;
@@ -263,7 +264,7 @@ fn the_revolution_that_ships_tells_its_eccentricity() {
         "{text}"
     );
 
-    // Without the number of periods there is a hint, with a wrong one the right one is told.
+    // Without the number of periods there is a hint; with a wrong one the right one is named.
     let ran = bench.run(&["analyse", path, "--json"]);
     assert!(ran.json().get("inl_deg").is_none() && ran.err.contains("--periods"), "{ran:?}");
     let ran = bench.run(&["analyse", path, "--json", "--periods", "32"]);
@@ -300,7 +301,7 @@ fn a_drive_and_a_broken_wire_are_told() {
     near(&told["interference"][0], "frequency_hz", 8_000.0, 2.0);
     near(&told["interference"][0], "amplitude_v", 0.01, 1e-4);
     assert!(told["findings"].to_string().contains("Interference at 8000 Hz"), "{told}");
-    // COS lies on ground, beside its reference of 2.5 V.
+    // COS is at ground, its reference at 2.5 V.
     let wires = good.iter().fold("t,SIN,REFSIN,COS,REFCOS\n".to_owned(), |mut text, [t, sine, _]| {
         writeln!(text, "{t:.6},{:.6},2.5,0.02,2.5", sine + 2.5).unwrap();
         text
@@ -309,7 +310,7 @@ fn a_drive_and_a_broken_wire_are_told() {
     bench.run(&["analyse", &file]).fails(1, &["cosine channel has no signal", "COS is at ground"]);
 }
 
-/// 2 kHz at 2.5 µs, and what a slow recorder, a second recording in the file or too few samples make of it.
+/// 2 kHz at 2.5 µs, and the effect of a slow recorder, a second recording in the file or too few samples.
 #[test]
 fn a_frequency_is_told_of_what_was_seen_and_marked_where_it_is_uncertain() {
     let bench = Bench::new();

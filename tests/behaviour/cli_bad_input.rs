@@ -1,4 +1,4 @@
-//! What can be typed wrongly: each with its exit status and one clear sentence.
+//! Invalid input: each case with its exit status and one clear sentence.
 
 use std::fs;
 use std::process::Stdio;
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::support::{Bench, finish};
 
-/// A profile of the virtual encoder with one field.
+/// Returns a profile of the virtual encoder with one field.
 fn profile(bench: &Bench) -> String {
     let file = bench.file("good.ron");
     let ran = bench.run(&["save", "hiperface", "--link", "sim:?serial=HF0000001", "-o", &file]);
@@ -64,7 +64,7 @@ fn a_broken_profile_is_refused_with_its_name_and_what_is_wrong() {
     }
 }
 
-/// Issue 22.17: a profile of a newer schema is compared, which is said to be all that is done with it.
+/// Issue 22.17: a profile of a newer schema is compared, and the message says that nothing else is possible.
 #[test]
 fn a_profile_of_a_newer_schema_is_only_read() {
     let bench = Bench::new();
@@ -106,15 +106,15 @@ fn a_profile_of_another_encoder_is_refused_before_anything_is_written() {
     }
     assert_eq!(encoder.writes(), [""; 0]);
     let arguments = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
-    // What its bytes mean is not known (issue 22.8).
+    // The meaning of its bytes is not known (issue 22.8).
     let arguments = [&arguments[..], &["--copy", "field:0"]].concat();
     let told = bench.run(&arguments).json();
     assert_eq!(told["verified"], told["written"]);
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
 }
 
-/// Issue 22.30: a silent line is no proof that no drive is on it, so that a search on a serial line needs somebody who says
-/// that there is none. Other commands go on, as scripts know them.
+/// Issue 22.30: a silent line is no proof that there is no drive on it, so that a search on a serial line needs a
+/// confirmation from the user. Other commands run without it, as scripts expect.
 #[test]
 fn a_search_without_a_terminal_needs_the_word_that_no_drive_is_there() {
     let bench = Bench::new();
@@ -128,12 +128,12 @@ fn a_search_without_a_terminal_needs_the_word_that_no_drive_is_there() {
     bench.run(&["identify", "biss", "--only-master", "--link", "sim:"]).fails(2, &["--only-master"]);
 }
 
-/// A ready-made profile.
+/// Returns a ready-made profile.
 fn ready_made(kind: &str, name: &str) -> String {
     format!("{}/profiles/{kind}/{name}.ron", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Issue 22.8: answers about data fields are refused where there are none, before anything is opened.
+/// Issue 22.8: options about data fields are refused for devices without them, before anything is opened.
 #[test]
 fn answers_about_data_fields_are_for_devices_that_have_them() {
     let bench = Bench::new();
@@ -150,7 +150,7 @@ fn answers_about_data_fields_are_for_devices_that_have_them() {
     }
 }
 
-/// Issue 22.9: another kind of BiSS encoder is named, and refused without a permit of its own.
+/// Issue 22.9: another kind of BiSS encoder is named, and refused without explicit permission.
 #[test]
 fn a_profile_of_another_kind_of_biss_encoder_needs_a_permit_of_its_own() {
     let bench = Bench::new();
@@ -164,7 +164,7 @@ fn a_profile_of_another_kind_of_biss_encoder_needs_a_permit_of_its_own() {
     assert!(allowed.status == Some(0) && allowed.err.contains("may have another meaning"), "{allowed:?}");
 }
 
-/// Issue 22.9: another type is named, and refused without a permit of its own.
+/// Issue 22.9: another type is named, and refused without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_permit_of_its_own() {
     let bench = Bench::new();
@@ -310,7 +310,7 @@ fn nobody_reading_the_output_is_no_disaster() {
     let ran = super::support::ended(child, std::time::Instant::now());
     assert!(ran.status.is_some() && !ran.err.contains("panicked"), "{ran:?}");
 
-    // Nor is a closed standard error.
+    // A closed standard error is no failure either.
     let mut command = bench.program(&["identify", "hiperface"]);
     command.stderr(Stdio::from(closed_pipe()));
     assert_eq!(finish(command).status, Some(2));
@@ -319,7 +319,7 @@ fn nobody_reading_the_output_is_no_disaster() {
     assert_eq!(finish(command).status, Some(1));
 }
 
-/// The writing end of a pipe that nobody reads.
+/// Returns the writing end of a pipe without a reader.
 fn closed_pipe() -> std::io::PipeWriter {
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);

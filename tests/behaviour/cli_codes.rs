@@ -1,4 +1,4 @@
-//! Access codes other than the factory's: asked for by number, used where given, shown nowhere.
+//! Access codes other than the factory's: requested by number, used if given, never shown.
 
 use serde_json::json;
 
@@ -6,7 +6,7 @@ use super::support::{Bench, Foreign, finish, frame};
 
 const FIELDS: &str = r#"[{"status":"C8","bytes":"0815"},{"status":"E8","bytes":"0102"}]"#;
 
-/// An encoder whose code 2 is A7h and guards field 1.
+/// Starts an encoder whose code 2 is A7h and protects field 1.
 fn guarded(bench: &Bench) -> Option<Foreign> {
     let encoder = bench.encoder(&["--fields", FIELDS])?;
     assert_eq!(encoder.host(&["40 4F 02 55 A7"]), [frame("40 4F 02")]);
@@ -72,7 +72,7 @@ fn a_code_opens_a_field_and_is_shown_nowhere() {
     codes_in(&["read", "hiperface", "field:1@0+2", "--code", "2=B3"], None);
     assert!(bench.read("t.trace").lines().any(|line| line.ends_with("> 40 4A 01 00 02 ** **")), "{shown}");
 
-    // Nor in profiles, backups, the logbook and traces: neither the codes nor a checksum over them.
+    // Profiles, backups, the logbook and traces contain neither the codes nor a checksum over them.
     shown.push_str(&bench.everything_kept());
     let shown = bench.without_folder(&shown).to_uppercase();
     for secret in ["A7", "B3"] {

@@ -1,4 +1,4 @@
-//! Consent, and what needs more than that: values of the mounting.
+//! Consent, and values of the mounting, which need more than that.
 
 use serde_json::json;
 
@@ -11,7 +11,7 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     if python("master.py").is_none() {
         return;
     }
-    // On a terminal it is asked for a drive as well (issue 22.30), unless that was said.
+    // On a terminal the program asks about a drive as well (issue 22.30), unless the answer was given.
     let arguments = ["write", "hiperface", "field:0@1", "16", "--only-master", "--link", &encoder.url];
     for no in ["n\n", "\n", "what?\n"] {
         let ran = asked(&bench, &arguments, no);
@@ -26,7 +26,8 @@ fn on_a_terminal_the_plan_is_shown_and_only_yes_writes() {
     assert_eq!(encoder.writes(), [frame("40 4B 00 01 01 55 16")]);
 }
 
-/// Issue 22.30: on a terminal it is asked whether a drive is on the line, before the first byte; only a no goes on.
+/// Issue 22.30: on a terminal the program asks whether a drive is on the line, before the first byte; it continues only
+/// after a no.
 #[test]
 fn on_a_terminal_a_drive_on_the_line_is_asked_for() {
     let bench = Bench::new();
@@ -60,7 +61,7 @@ fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
     assert_eq!(bench.run(&["save", "hiperface", "--link", &source.url, "-o", &file]).status, Some(0));
     assert!(bench.read("p.ron").contains("field:0@0+16"));
 
-    // Issue 22.8: two bytes have no known meaning, so that the restore asks for them.
+    // Issue 22.8: two bytes have no known meaning, so that the restore asks about them.
     let restore = ["restore", &file, "--yes", "--allow-other-device", "--link", &encoder.url, "--json"];
     bench.run(&restore).fails(1, &["Data field 0", "--copy", "--leave"]);
     let dry = bench.run(&[&restore[..], &["--dry-run"]].concat());
@@ -75,13 +76,13 @@ fn values_of_the_mounting_stay_off_another_encoder_unless_told_otherwise() {
     assert_eq!((&ran.json()["written"], &ran.json()["redo"]), (&json!(2), &json!(["commutation"])));
     assert!(ran.err.contains("field:0@0+16") && ran.err.contains("--with-mounting"), "{ran:?}");
     assert_eq!(encoder.writes(), [frame("40 4B 00 10 02 55 08 15")]);
-    // Issue 22.7: with both permits given, what has to be set up anew is said all the more.
+    // Issue 22.7: with both permissions, the values to adjust again are still reported.
     let ran = bench.run(&[&restore[..], &["--with-mounting"]].concat());
     assert_eq!(ran.json()["written"], json!(16));
     assert_eq!(ran.json()["redo"], json!(["commutation", "field:0@0+16"]));
     assert!(ran.err.contains("Set these up again") && ran.err.contains("field:0@0+16"), "{ran:?}");
     assert_eq!(bench.run(&["verify", &file, "--link", &encoder.url, "--json"]).json()["equal"], json!(true));
-    // Onto its own encoder nothing is held back.
+    // For its own encoder no value is left out.
     source.host(&["40 4B 00 00 01 55 00"]);
     let own = bench.run(&["restore", &file, "--yes", "--link", &source.url, "--json"]).json();
     assert_eq!(own["written"], json!(1));
@@ -102,7 +103,8 @@ fn two_writes_in_a_second_keep_two_before_images() {
     }
 }
 
-/// Issue 22.28: a file that is there is replaced on a terminal only when that is agreed to; without one it is, and that is said.
+/// Issue 22.28: an existing file is replaced on a terminal only after consent; without a terminal it is replaced, with a
+/// message.
 #[test]
 fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
     let bench = Bench::new();
@@ -134,14 +136,14 @@ fn save_replaces_a_file_on_a_terminal_only_when_told_to() {
     }
     assert_eq!(asked(&bench, &save, "y\n").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
-    // An answer given before is not asked for.
+    // With an option as the answer, there is no question.
     std::fs::write(&file, "dear").unwrap();
     assert_eq!(asked(&bench, &[&save[..], &["--force"]].concat(), "").status, Some(0));
     assert_eq!(bench.read("layout.ron"), written);
 }
 
-/// Issue 22.4: where the logbook cannot tell the write cycles, a write is refused before anybody is asked for consent
-/// to it, for every kind of device.
+/// Issue 22.4: if the logbook cannot be read for the write cycles, a write is refused before the question for consent, for
+/// every kind of device.
 #[test]
 fn a_write_that_is_refused_for_unknown_wear_is_not_asked_for() {
     if python("master.py").is_none() {

@@ -29,7 +29,7 @@ fn a_port_in_use_is_not_taken_away() {
     second.fails(1, &["in use"]);
 }
 
-/// A device server that serves one client, then ends.
+/// Starts a device server that serves one client, then ends.
 fn server(serve: impl FnOnce(TcpStream) + Send + 'static) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let url = format!("tcp:{}", listener.local_addr().unwrap());
@@ -48,7 +48,7 @@ fn a_line_that_is_never_silent_ends_a_command_within_ten_seconds() {
     let ran = bench.run(&["identify", "hiperface", "--link", &server(talk), "--json"]);
     ran.fails(1, &[]);
     assert!(ran.took < Duration::from_secs(10), "{ran:?}");
-    // A search would disturb whoever talks there.
+    // A search would disturb the communication on the port.
     bench
         .run(&["find", "hiperface", "--only-master", "--link", &server(talk)])
         .fails(1, &["sends on this line", "nothing was sent"]);

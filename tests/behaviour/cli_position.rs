@@ -1,4 +1,4 @@
-//! `position`: a table that a script reads, and streams that Ctrl-C ends between two lines.
+//! `position`: a table for scripts, and streams that Ctrl-C ends between two lines.
 
 use std::io::{BufRead, BufReader, Read};
 use std::time::Instant;
@@ -36,7 +36,7 @@ fn a_scale_has_millimetres_and_codes_have_a_column() {
     let lines: Vec<&str> = ran.out.lines().collect();
     assert_eq!(lines[0], "t_s,raw,turns,steps,millimetres,valid,codes");
     let behind_the_time = |line: &str| line.split_once(',').unwrap().1.to_owned();
-    // Warnings leave the position valid, and stand where they were announced.
+    // Warnings leave the position valid, and are in the line in which they were reported.
     assert_eq!(behind_the_time(lines[1]), "918833,,,28713.53125,true,1C 08", "{ran:?}");
     assert_eq!(behind_the_time(lines[2]), "918833,,,28713.53125,true,", "{ran:?}");
 }
@@ -44,7 +44,8 @@ fn a_scale_has_millimetres_and_codes_have_a_column() {
 #[test]
 fn ctrl_c_ends_a_stream_between_two_lines() {
     let bench = Bench::new();
-    // Without a number of lines a table goes on until Ctrl-C, and is done then; a stream of so many lines is cut short.
+    // Without a number of lines a table runs until Ctrl-C, which is then no failure; a stream with a number of lines is
+    // interrupted.
     let cases: [(&[&str], i32); 3] =
         [(&["--csv"], 0), (&["--csv", "--count", "100000"], 1), (&["--json", "--count", "100000"], 1)];
     for (options, status) in cases {
@@ -53,7 +54,7 @@ fn ctrl_c_ends_a_stream_between_two_lines() {
             let mut child = bench.program(&arguments).spawn().unwrap();
             let mut out = BufReader::new(child.stdout.take().unwrap());
             let mut text = String::new();
-            // Lines come as they are read, not when a buffer is full.
+            // Lines are printed when they are read, not when a buffer is full.
             (0..4).for_each(|_| assert!(out.read_line(&mut text).unwrap() > 0));
             signal(&child, "INT");
             let rest = std::thread::spawn(move || {

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::support::{Bench, Simulated, frame, host, python};
 
-/// What the reference says about an encoder as delivered, with the two ways an error frame may begin.
+/// Checks an encoder with factory settings against the reference, with the two ways an error frame may begin.
 fn examine(path: &str) {
     let replies = host(
         path,
@@ -59,7 +59,7 @@ fn a_terminal_answers_the_frames_of_the_reference_and_one_client_after_the_other
     assert_eq!(simulated.place, bench.file("enc"));
     assert!(bench.path("enc").is_symlink());
     examine(&simulated.place);
-    // The next client finds what the first has left.
+    // The next client finds the content that the first has left.
     assert_eq!(host(&simulated.place, &["40 4A 00 00 04 55 5B"]), ["40 4A 00 00 04 DE AD BE EF 2C"]);
     assert_eq!(host(&simulated.place, &["FF 50 AF", "40 53 13", "40 50 10"]), ["40 50 00 10", "-", "40 50 00 10"]);
     let url = format!("serial:{}", simulated.place);
@@ -117,12 +117,12 @@ fn after_a_reset_the_encoder_is_deaf_and_then_answers() {
         }
         reply
     };
-    // On a busy machine a question may come too late to fall on deaf ears: then once more.
+    // On a busy computer a request may arrive too late for the silent time: then it is repeated.
     for _ in 0..5 {
         let begun = Instant::now();
         assert!(ask(&[0x40, 0x53, 0x13], 25).is_empty());
         let reply = ask(&[0x40, 0x50, 0x10], 20);
-        // Or it runs together with the reset into one frame of the wrong length.
+        // Or it is joined with the reset into one frame of the wrong length.
         let asked_in_time = begun.elapsed() < Duration::from_millis(55) && reply != [0x40, 0x50, 0x0C, 0x1C];
         sleep(Duration::from_millis(200));
         assert_eq!(ask(&[0x40, 0x50, 0x10], 2000), [0x40, 0x50, 0x00, 0x10]);

@@ -89,7 +89,8 @@ fn layouts_go_to_other_programs() {
     assert_eq!(told["position"], 0x2A5B);
 }
 
-/// A recording of `tests/vectors/ssi_find` (made in Python): its path, its frames as text and the positions that were meant.
+/// Returns a recording of `tests/vectors/ssi_find` (made in Python): its path, its frames as text and the intended
+/// positions.
 fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     let path = format!("{}/tests/vectors/ssi_find/{name}.txt", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).unwrap();
@@ -98,8 +99,8 @@ fn recording(name: &str) -> (String, Vec<(String, Option<u64>)>) {
     (path, rows)
 }
 
-/// Issue 22.22: `ssi find` of the contract: the first in the list reads the frames as they were meant, and can be tried as it
-/// stands.
+/// Issue 22.22: `ssi find` as in the contract: the first layout of the list reads the frames as intended, and can be used
+/// unchanged.
 #[test]
 fn layouts_of_recorded_frames_are_found() {
     let bench = Bench::new();
@@ -122,7 +123,7 @@ fn layouts_of_recorded_frames_are_found() {
         let decoded = bench.run(&["ssi", "decode", "--json", "--layout", spec, frame]).json();
         assert_eq!(decoded["position"].as_u64(), *meant, "{name}: {spec}");
     }
-    // Further columns are ignored, hex takes its clocks from the option, and a person reads the same.
+    // Further columns are ignored, hex takes its clocks from the option, and the text output has the same content.
     let (_, rows) = recording("excess_360_fast");
     let hex = |(frame, _): &(String, Option<u64>)| format!("0x{:X},17\n", u64::from_str_radix(frame, 2).unwrap());
     let hex = bench.write("hex.csv", rows.iter().map(hex).collect::<String>());
@@ -130,7 +131,7 @@ fn layouts_of_recorded_frames_are_found() {
     assert!(found.out.contains("steps=360") && found.out.contains("explains every bit"), "{found:?}");
     let guessed = bench.run(&["ssi", "find", &hex]);
     assert!(guessed.err.contains("taken as 9"), "{guessed:?}");
-    // What says nothing.
+    // Recordings without information.
     let standing = bench.write("standing.txt", "101010101\n".repeat(300));
     bench.run(&["ssi", "find", &standing]).fails(1, &["the shaft stands"]);
     let low = bench.write("low.txt", "000000000\n".repeat(300));
@@ -141,7 +142,7 @@ fn layouts_of_recorded_frames_are_found() {
     bench.run(&["ssi", "find", &hex, "--clocks", "65"]).fails(2, &["65"]);
 }
 
-/// Issue 22.22: any frame in one word, as `ssi find` gives it.
+/// Issue 22.22: any frame can be written as one word, as `ssi find` prints it.
 #[test]
 fn any_frame_is_written_in_one_word() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! Status codes: the queue as a whole, and what codes met on the way do to a value.
+//! Status codes: the complete queue, and the effect of other codes on a value.
 
 use serde_json::{Value, json};
 
@@ -15,13 +15,13 @@ fn position(bench: &Bench, codes: &str) -> Option<(Ran, Value)> {
     Some((ran, line))
 }
 
-/// Issue 22.10: the codes that `status` has taken out of the encoder are in the logbook.
+/// Issue 22.10: the codes that `status` has removed from the encoder are in the logbook.
 #[test]
 fn status_codes_are_kept_in_the_logbook() {
     let bench = Bench::new();
     let Some(encoder) = bench.encoder(&["--status", "1E"]).map(Foreign::waited_for) else { return };
     assert_eq!(bench.run(&["status", "hiperface", "--link", &encoder.url, "--json"]).status, Some(0));
-    // Beside the database its journal may hold what is not in it yet.
+    // The journal next to the database may contain entries that are not in it yet.
     let folders = [bench.path("data"), bench.path("data/encoder-studio")];
     let files =
         folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten().map(|file| file.unwrap().path());
@@ -47,8 +47,8 @@ fn status_reads_the_whole_queue_and_ends_well_whatever_it_reports() {
     assert_eq!(told, json!({"ok": true, "errors": [], "warnings": []}));
 }
 
-/// Issue 22.10: 50h takes a code out of the encoder: its reply that comes ten times as late as it may (17.6 ms, reference 4) is taken all the
-/// same, so that no code is lost by asking again.
+/// Issue 22.10: 50h removes a code from the encoder: a reply ten times as late as allowed (17.6 ms, reference 4) is still
+/// accepted, so that a repeated request loses no code.
 #[test]
 fn codes_in_late_replies_are_not_lost() {
     let bench = Bench::new();
@@ -62,8 +62,8 @@ fn codes_in_late_replies_are_not_lost() {
     }
 }
 
-/// Issue 22.10: whatever comes instead of a reply to 50h, also an old one that comes again, each code is given or said to be lost,
-/// and none is given twice.
+/// Issue 22.10: for any data instead of a reply to 50h, including a repeated old one, each code is printed or reported as
+/// lost, and none is printed twice.
 #[test]
 fn each_code_is_given_once_or_said_to_be_lost() {
     let bench = Bench::new();
@@ -91,7 +91,7 @@ fn each_code_is_given_once_or_said_to_be_lost() {
     }
 }
 
-/// Issue 22.10: a reply that a device server gives twice has its codes in it.
+/// Issue 22.10: a reply that a device server sends twice is read with its codes.
 #[test]
 fn a_reply_that_comes_twice_costs_no_code() {
     let bench = Bench::new();
@@ -166,7 +166,7 @@ fn the_check_gives_a_verdict_a_line() {
     assert_eq!(good["lines"], lines);
     let hot = bench.run(&[&check[..], &["sim:?temperature=200", "--json"]].concat()).json();
     assert_eq!((&hot["lines"][0]["name"], &hot["lines"][0]["verdict"]), (&json!("status"), &json!("warning")));
-    // Issue 22.11: how good the line was.
+    // Issue 22.11: the quality of the line.
     let quality = &good["line_quality"];
     assert!(quality["requests"].as_u64().is_some_and(|count| count > 5), "{quality}");
     assert_eq!(quality["requests"], quality["replies"]);

@@ -1,4 +1,4 @@
-//! An encoder that is not our program, on a real pseudo-terminal: read, save, compare, restore, verify.
+//! A foreign encoder on a real pseudo-terminal: read, save, compare, restore, verify.
 
 use serde_json::{Value, json};
 
@@ -89,7 +89,7 @@ fn write_stores_exactly_these_bytes() {
     assert_eq!((&told["written"], &told["write_cycles"]), (&json!(2), &json!(1)));
     assert_eq!(encoder.writes(), [frame("40 4B 00 03 02 55 AA BB")]);
     assert_eq!(encoder.host(&["40 4A 00 02 04 55"]), [frame("40 4A 00 02 04 FF AA BB FF")]);
-    // The same again: nothing differs, nothing is sent.
+    // Repeated: nothing differs, nothing is sent.
     encoder.requests();
     assert_eq!(bench.run(&arguments).json()["write_cycles"], json!(0));
     assert_eq!(encoder.writes(), [""; 0]);
@@ -121,7 +121,7 @@ fn what_another_host_has_changed_is_found_restored_and_verified() {
     assert_eq!(encoder.writes(), [frame("40 4B 00 03 02 55 FF FF"), frame("40 4B 00 1F 01 55 FF")]);
     assert_eq!(bench.run(&[&["verify", &file], &link[..]].concat()).json()["equal"], json!(true));
 
-    // The before-image is a profile, and restoring it brings the foreign bytes back.
+    // The before-image is a profile, and restoring it restores the foreign bytes.
     let backup = told["backup"].as_str().unwrap();
     let undone = bench.run(&[&["restore", backup, "--yes"], &link[..]].concat()).json();
     assert_eq!(undone["written"], json!(3));
@@ -162,7 +162,7 @@ fn a_dry_run_prints_what_is_carried_out_later_and_writes_nothing() {
     let file = bench.write("wanted.ron", text);
     let dry = bench.run(&["restore", &file, "--dry-run", "--link", &encoder.url, "--json"]).json();
     assert_eq!(encoder.writes(), [""; 0]);
-    // Unlocking, writing and locking of the protected field are shown and costed.
+    // Unlocking, writing and locking of the protected field are shown with their cost.
     let expected = [
         ("field:0@1+2", "15FF", "1600"),
         ("status:1", "A8", "E8"),
@@ -236,7 +236,7 @@ fn a_converter_that_echoes_is_learned_or_told() {
         let told = bench.run(&["read", "hiperface", "field:0@0+2", "--link", &url, "--json"]).json();
         assert_eq!(told["value"], json!("0815"), "{echo}");
     }
-    // 47h is answered by itself: from it nothing can be learned, so something else is asked first.
+    // The reply to 47h equals its request, which proves nothing about an echo, so another request is made first.
     for action in [&["increment-counter", "--yes"][..], &["configure-for-now", "0xE4"][..]] {
         encoder.requests();
         let ran = bench.run(&[&["do", "hiperface", "--link", &encoder.url], action].concat());

@@ -1,4 +1,4 @@
-//! A program that goes on until something ends it: what it has printed says how far it is.
+//! A program that runs until it is ended, with its output so far.
 
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, ChildStdout, Command};
@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::support::{Ran, ended};
 
-/// A program that goes on until something ends it, and what it has printed until then.
+/// A program that runs until it is ended, and its output so far.
 pub(crate) struct Going {
     pub(crate) child: Child,
     out: BufReader<ChildStdout>,
@@ -14,7 +14,7 @@ pub(crate) struct Going {
 }
 
 impl Going {
-    /// Started, and it has printed so many lines.
+    /// Starts it, and waits until it has printed this number of lines.
     #[track_caller]
     pub(crate) fn since(mut command: Command, lines: usize) -> Self {
         let mut child = command.spawn().unwrap();
@@ -28,7 +28,7 @@ impl Going {
         Going { child, out, text }
     }
 
-    /// Waits for its end. The time is that from now on.
+    /// Waits for its end. The time is measured from now on.
     pub(crate) fn ended(self) -> Ran {
         let Going { child, mut out, mut text } = self;
         let rest = std::thread::spawn(move || {

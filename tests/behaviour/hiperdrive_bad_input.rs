@@ -1,4 +1,4 @@
-//! Everything about HIPERDRIVE that can be typed wrongly or stands in the way: one clear sentence, and nothing is set.
+//! Invalid input and obstacles for HIPERDRIVE: one clear sentence each, and nothing is set.
 
 use super::hiperdrive_tap::Tapped;
 use super::support::Bench;
@@ -7,10 +7,10 @@ use super::support::Bench;
 fn what_cannot_be_written_is_refused_with_its_reason() {
     let bench = Bench::new();
     let cases: [(&[&str], i32, &[&str]); 32] = [
-        // Both limits, whoever refuses.
+        // Both limits, in the program's and in the drive's refusal.
         (&["166", "351"], 1, &["166", "351", "5 to 350"]),
         (&["166", "4"], 1, &["5 to 350"]),
-        // Issue 21.10: 512 turns of 65536 steps either way; of the keys' steps 1024.
+        // Issue 21.10: 512 turns of 65536 steps either way; for the steps of the keys 1024.
         (&["158", "2147483648"], 1, &["158", "-33554432 to 33554432"]),
         (&["158", "-2147483648"], 1, &["-33554432 to 33554432"]),
         (&["158", "-33554433"], 1, &["-33554432 to 33554432"]),
@@ -26,23 +26,23 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
         (&["47", "0"], 1, &["47", "save"]),
         // 158 above 160.
         (&["158", "33488896"], 1, &["33488896"]),
-        // What can only be read.
+        // Parameters that can only be read.
         (&["107", "0"], 1, &["107", "Actual position", "only be read"]),
         (&["17", "1"], 1, &["17", "only be read"]),
         (&["13", "1"], 1, &["13", "only be read"]),
-        // What moves.
+        // A parameter that moves the drive.
         (&["101", "1"], 1, &["101", "move hiperdrive"]),
         (&["102", "50"], 1, &["102", "move hiperdrive"]),
         (&["104", "1000"], 1, &["104", "move hiperdrive"]),
         (&["199", "1"], 1, &["199"]),
-        // What is not understood.
+        // Values that cannot be parsed.
         (&["155", "1"], 2, &["155"]),
         (&["limit", "1"], 2, &["limit", "158 drive 2"]),
         (&["158", "low"], 2, &["158", "low"]),
         (&["258", "1", "--drive", "3"], 2, &["258", "3"]),
         (&["47", "1", "--drive", "2"], 2, &["47"]),
         (&["158", "1", "--drive", "9"], 2, &["9"]),
-        // What is not there.
+        // Parameters that do not exist.
         (&["266", "100"], 1, &["2"]),
         (&["900", "1"], 2, &["900"]),
         (&["158 drive 2", "1"], 1, &["2"]),
@@ -131,7 +131,7 @@ fn without_consent_nothing_is_touched() {
 #[test]
 fn nobody_there_is_told_within_ten_seconds() {
     let bench = Bench::new();
-    // Port 1 takes no connections here.
+    // Port 1 accepts no connections here.
     let ran = bench.run(&["identify", "hiperdrive", "--link", "enip:127.0.0.1:1"]);
     ran.fails(1, &["127.0.0.1:1"]);
     let silent = std::net::TcpListener::bind("127.0.0.1:0").unwrap();

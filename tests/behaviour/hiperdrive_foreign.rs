@@ -1,5 +1,5 @@
-//! The host's side of EtherNet/IP against a target with HIPERDRIVE parameters that is not our program, with every trouble that
-//! it can make. What was set and saved is told by its own log.
+//! The host's side of EtherNet/IP against a foreign target with HIPERDRIVE parameters and all its possible faults. Its own
+//! log shows what was set and saved.
 
 use std::net::SocketAddrV4;
 use std::sync::Arc;
@@ -81,7 +81,7 @@ fn whatever_the_target_is_like_it_is_read_and_written() {
         let done = change(&mut session, Change::Write(wanted)).unwrap_or_else(|why| panic!("{options:?}: {why}"));
         assert_eq!((done.written.verified, done.written.write_cycles), (3, 1), "{options:?}");
         let mut log = foreign.requests();
-        // In which order parameters that do not concern each other are written is the plan's.
+        // The plan defines the order of independent parameters.
         let saved = log.split_off(log.len().saturating_sub(2));
         log.sort();
         assert_eq!(log, ["SET 188 5", "SET 24 77", "SET 358 -65536"], "{options:?}");
@@ -89,7 +89,7 @@ fn whatever_the_target_is_like_it_is_read_and_written() {
     }
 }
 
-/// The commands, as somebody types them.
+/// The commands as a user types them.
 #[test]
 fn the_commands_do_their_work_with_it() {
     let bench = Bench::new();
@@ -170,8 +170,8 @@ fn services_settings_and_positions_are_carried_out_as_they_were_planned() {
     assert!(done.backup.is_none() && foreign.requests().is_empty(), "what is so already is not set");
 }
 
-/// Issue 21.8: what the manual allows long for is waited for, whatever a usual reply may take: 47 with each of its values, and 152
-/// from 0 to 1. With 8000 ms for a hub it is the same, and takes as long.
+/// Issue 21.8: the program waits as long as the manual allows, whatever the usual reply time: for 47 with each of its
+/// values, and 152 from 0 to 1. With 8000 ms for a hub it is the same, and takes as long.
 #[test]
 fn what_takes_long_is_answered_late_and_done_once() {
     let bench = Bench::new();
@@ -195,8 +195,8 @@ fn what_takes_long_is_answered_late_and_done_once() {
     }
 }
 
-/// Issue 21.9: a number of another length than the manual's is shown by no command, kept in no file and written beside; both
-/// lengths are told, and so is what to do.
+/// Issue 21.9: a number with another length than in the manual is shown by no command, kept in no file and used in no
+/// write; both lengths are reported, with the remedy.
 #[test]
 fn a_number_of_another_length_is_shown_nowhere() {
     let bench = Bench::new();
@@ -225,7 +225,7 @@ fn a_number_of_another_length_is_shown_nowhere() {
         assert!(foreign.requests().is_empty(), "{words:?}");
     }
     assert!(!std::path::Path::new(&other).exists(), "a save that fails leaves no file");
-    // What is read all at once goes on without it, and names it.
+    // A command that reads all parameters continues without it, and names it.
     let foreign = bench.target(&["--lengths=24:2,158:1"]).unwrap();
     let survey = match session(&bench, &foreign, "").run_inline(HiperdriveJob::Survey).unwrap() {
         HiperdriveOutput::Surveyed(survey) => *survey,
@@ -236,7 +236,7 @@ fn a_number_of_another_length_is_shown_nowhere() {
     assert!(wrong.iter().all(|(own, ..)| !survey.values.contains_key(&ParameterNumber::new(*own).unwrap())));
 }
 
-/// Issue 21.10: beyond the turns of the drive nothing is sent; both limits are told in the steps of its scale.
+/// Issue 21.10: beyond the turns of the drive nothing is sent; both limits are reported in the steps of its scale.
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
     let bench = Bench::new();
@@ -250,7 +250,7 @@ fn limits_beyond_the_turns_of_the_drive_are_not_sent() {
     ask(&["restore", &file, "--yes"]).fails(1, &["158", "-33554432 to 33554432"]);
     assert!(foreign.requests().is_empty());
     assert_eq!(ask(&["write", "hiperdrive", "160", "33554432", "--yes"]).status, Some(0));
-    // 400/1 are 102400 steps a turn, 52428800 of 512 turns.
+    // 400/1 are 102400 steps per turn, 52428800 for 512 turns.
     assert_eq!(ask(&["write", "hiperdrive", "154", "400", "--yes"]).status, Some(0));
     ask(&["write", "hiperdrive", "160", "52428801", "--yes"]).fails(1, &["160", "-52428800 to 52428800"]);
     assert_eq!(ask(&["write", "hiperdrive", "160", "52428800", "--yes"]).status, Some(0));
@@ -281,7 +281,7 @@ fn a_target_that_is_silent_or_gone_ends_everything_in_time() {
     }
 }
 
-/// Waits for something that comes within seconds.
+/// Waits for a condition, for a few seconds.
 fn comes(what: &str, mut has_come: impl FnMut() -> bool) {
     let begun = std::time::Instant::now();
     while !has_come() {
@@ -315,7 +315,7 @@ fn the_cyclic_connection_is_opened_as_the_target_takes_it_and_closed_again() {
         assert!(matches!(session.run_inline(HiperdriveJob::Take), Err(JobError::Device(Error::InControl))));
         session.run_inline(HiperdriveJob::Give).unwrap();
         assert!(!motion.is_open(), "{options:?}");
-        // Nothing is wanted, so that no word but 0 is sent, and 0 stands already.
+        // No motion is requested, so that no word but 0 is sent, and it is already 0.
         assert_eq!(foreign.requests(), [opened, "CLOSE"], "{options:?}");
     }
 }
@@ -355,8 +355,8 @@ fn a_session_that_goes_stops_what_it_has_opened() {
     });
 }
 
-/// Issue 22.19: what was done in vain is no success: a fault that stays after it was acknowledged, and drives that the presence
-/// test does not find again.
+/// Issue 22.19: an action without effect is no success: a fault that remains after acknowledgement, and drives that the
+/// presence test does not find again.
 #[test]
 fn an_action_whose_result_is_bad_fails() {
     let bench = Bench::new();
@@ -367,7 +367,7 @@ fn an_action_whose_result_is_bad_fails() {
         assert_eq!(ran.status, Some(1), "{ran:?}");
         ran.says(words);
     };
-    // 2AB8: a fault (reference 3); its drive is led by nobody, so that it stays.
+    // 2AB8: a fault (reference 3); its drive is under no control, so that it remains.
     let Some(faulty) = bench.target(&["--status=2AB8"]) else { return };
     fails(&act(&faulty, "acknowledge"), &["Drive 1 still has its fault"]);
     let Some(hub) = bench.target(&["--topology=hub4", "--drives=1,3", "--gone-after-reset=3"]) else { return };

@@ -1,4 +1,4 @@
-//! `move hiperdrive`: the one command that moves something.
+//! `move hiperdrive`: the one command that causes motion.
 
 use std::time::Duration;
 
@@ -6,14 +6,14 @@ use serde_json::json;
 
 use super::support::{Bench, Simulated};
 
-/// Reference 3 and 5: a turn is 65536 steps. The drive is where it should be, and off afterwards.
+/// Reference 3 and 5: a turn is 65536 steps. The drive reaches its target, and is off afterwards.
 #[test]
 fn a_drive_goes_to_a_position() {
     let bench = Bench::new();
     let simulated = Simulated::start(&bench, &["hiperdrive", "--listen", "127.0.0.1:0", "--hub", "4"]);
     let link = format!("enip:{}", simulated.place);
     let run = |arguments: &[&str]| bench.run(&[arguments, &["--link", &link]].concat());
-    // The drives of a hub are not requested from the factory.
+    // The drives of a hub are not requested in the factory settings.
     assert_eq!(run(&["write", "hiperdrive", "152", "1", "--drive", "2", "--yes"]).status, Some(0));
     let ran = run(&["move", "hiperdrive", "65536", "--drive", "2", "--yes", "--json"]);
     assert_eq!(ran.json(), json!({"drive": 2, "target": 65_536, "position": 65_536, "reached": true}));
@@ -22,7 +22,7 @@ fn a_drive_goes_to_a_position() {
     // 511 turns either way; 1000 of 65536 steps are 0.015 of a turn.
     let range = "drive 2 moves to -1000 (-0.02 turns), within -33488896 (-511.00 turns) to 33488896 (511.00 turns)\n";
     assert_eq!(ran.err, range);
-    // 0E30 or 2E30: found, standing, not ready.
+    // 0E30 or 2E30: found, at standstill, not ready.
     let word = run(&["read", "hiperdrive", "105", "--drive", "2", "--json"]).json()["value"].as_u64().unwrap();
     assert_eq!(word & 0x007F, 0x0030, "{word:04X}");
     // The others have not moved.
@@ -30,7 +30,7 @@ fn a_drive_goes_to_a_position() {
     simulated.end("INT");
 }
 
-/// Status 2 where it was called wrongly: nothing is opened for that. Nobody answers at this address.
+/// Status 2 for wrong usage: nothing is opened. There is no device at this address.
 #[test]
 fn without_consent_nothing_is_touched() {
     let bench = Bench::new();
@@ -67,7 +67,7 @@ fn what_may_not_be_is_refused() {
     }
 }
 
-/// What began and did not arrive says where it stands, also to scripts.
+/// If a motion does not reach its target, the position is printed, also for scripts.
 #[test]
 fn what_does_not_arrive_says_where_it_stands() {
     let bench = Bench::new();

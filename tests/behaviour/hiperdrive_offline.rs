@@ -1,4 +1,4 @@
-//! HIPERDRIVE without a device: words, process data and packets explained.
+//! HIPERDRIVE without a device: words, process data and packets are decoded.
 
 use serde_json::json;
 
@@ -26,7 +26,7 @@ fn golden_words_and_process_data_are_explained() {
         (&["2AB8", "2A70"], &["status word, fault", "switch-on lock"]),
         (&["047F"], &["OUT: not to be sent", "reserved bits set (1, 2)", "IN: status word", "no drive sends that"]),
         (&["0000"], &["leaves the drive alone", "no drive found"]),
-        // 163840 = 2.5 · 65536; −65536 is a turn back.
+        // 163840 = 2.5 · 65536; −65536 is one turn backwards.
         (
             &["79 04 64 64 00 80 02 00"],
             &["OUT: drive 1: control word 0479", "speed 100 %", "target 163840 (turn 2, 180.000°"],
@@ -56,7 +56,7 @@ fn golden_words_and_process_data_are_explained() {
         (&["2F 20 00 00 FC FF 00 00"], &["write -4 (reset the drives) to parameter 47"]),
         (&["79 50 00 00 48 44 41 33"], &["parameter 121 (drive name of drive 1) is \"HDA3\""]),
         (&["A6 20 00 00 5F 01 00 00"], &["write 351 (35.1 rpm)", "warning: it may be 5 to 350"]),
-        // Issue 21.9: a word where the parameter has a double word, the other way, and data of another length.
+        // Issue 21.9: a word for a parameter with a double word, the opposite case, and data of another length.
         (
             &["6B 10 00 00 02 00 00 00", "--direction", "in"],
             &["parameter 107 (actual position of drive 1) is no value (2 bytes where its type has 4: 0x2)"],
@@ -74,7 +74,7 @@ fn golden_words_and_process_data_are_explained() {
             assert!(ran.out.contains(word), "{word}: {ran:?}");
         }
     }
-    // A hub of four, drive 3 at byte 16: 2A31 and −1.5 rpm; the others are not there.
+    // A hub of four, drive 3 at byte 16: 2A31 and −1.5 rpm; the others are missing.
     let hub = format!("{} 31 2A F1 FF 00 00 00 00 {}", "00 ".repeat(16), "00 ".repeat(8));
     let told = bench.run(&["decode", "hiperdrive", "--direction", "in", "--json", &hub]).json();
     let drives = &told["frames"][0]["readings"][0]["drives"];
@@ -142,7 +142,7 @@ fn golden_packets_are_explained() {
             assert!(ran.out.contains(word), "{word}: {ran:?}");
         }
     }
-    // Of another device, an attribute is a number.
+    // For another device, an attribute is a number.
     let other = bench.run(&["decode", "ethernet-ip", &request]);
     assert!(!other.out.contains("parameter"), "{other:?}");
     let told = bench.run(&["decode", "hiperdrive", "--json", out]).json();

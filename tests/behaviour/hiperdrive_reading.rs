@@ -1,4 +1,4 @@
-//! What is read of virtual HIPERDRIVE drives, in the process and over TCP, and that nothing is set for it.
+//! Reading virtual HIPERDRIVE drives, in the process and over TCP; reading sets nothing.
 
 use serde_json::{Value, json};
 
@@ -43,7 +43,7 @@ fn a_healthy_device_has_nothing_to_tell() {
     let bench = Bench::new();
     let told = ask(&bench, "sim:", &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"], &told["warnings"]), (&json!(true), &json!([]), &json!([])), "{told}");
-    // 2A30: what a drive says that nobody leads (reference 3).
+    // 2A30: the status of a drive under no control (reference 3).
     let drive = &told["drives"][0];
     assert_eq!((&drive["status_word"], &drive["state"]), (&json!(0x2A30), &json!("not-ready")));
     let text = bench.run(&["status", "hiperdrive", "--link", "sim:"]);
@@ -65,15 +65,15 @@ fn errors_of_now_are_errors_and_those_of_before_are_notes() {
     device.ask(&bench, &["do", "hiperdrive", "acknowledge", "--drive", "2", "--yes"]).json();
     let told = device.ask(&bench, &["status", "hiperdrive"]).json();
     assert_eq!((&told["ok"], &told["errors"]), (&json!(true), &json!([])), "{told}");
-    // What the buffer still holds is no warning of now.
+    // The content of the buffer is no current warning.
     assert_eq!(told["warnings"], json!([]), "{told}");
     let text = bench.run(&["status", "hiperdrive", "--link", &device.url()]);
     let notes = text.out.lines().filter(|line| line.starts_with("note")).count();
     assert_eq!(notes, told["earlier"].as_array().unwrap().len(), "{text:?}");
 }
 
-/// Issue 22.9: restored onto a device with the same serial number that is of another type, as a whole or in its drive: named,
-/// and refused without a permit of its own.
+/// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive: named,
+/// and refused without explicit permission.
 #[test]
 fn a_profile_of_another_type_needs_a_permit_of_its_own() {
     let bench = Bench::new();
@@ -101,8 +101,8 @@ fn a_check_says_each_thing_once() {
     assert_eq!(line.matches("good").count(), 1, "{line}");
 }
 
-/// Issue 21.10: a speed is in tenths of rpm with the factory's scale alone (manual 6.2); nominal data may be tenths. A drive that
-/// stands has speed 0 in any scale.
+/// Issue 21.10: a speed is in tenths of rpm only with the factory's scale (manual 6.2); nominal data may be tenths. A drive
+/// at standstill has speed 0 in any scale.
 #[test]
 fn units_are_those_of_the_manual() {
     let bench = Bench::new();
@@ -117,7 +117,7 @@ fn units_are_those_of_the_manual() {
     assert_eq!((read("127")["value"].clone(), read("127").get("unit")), (json!("A25"), None));
 }
 
-/// 65536 steps a turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
+/// 65536 steps per turn: −1 is turn −1, step 65535; 163840 are 2.5 turns (reference 2).
 #[test]
 fn a_position_has_turns_with_a_sign() {
     let bench = Bench::new();
@@ -160,7 +160,7 @@ fn parameters_are_read_by_their_numbers() {
         let told = ask(&bench, HUB, &[&["read", "hiperdrive"], words].concat()).json();
         assert_eq!((&told["item"], &told["value"], &told["unit"]), (&json!(item), &value, &unit), "{told}");
     }
-    // 7 of the manual's table is HDA30A; 2A30 is said by a drive that nobody leads.
+    // 7 of the manual's table is HDA30A; 2A30 is the status of a drive under no control.
     for (item, text) in [
         ("166", "350 × 0.1 rpm = 35.0 rpm\n"),
         ("0x9E", "-33488896 steps\n"),
@@ -197,7 +197,7 @@ fn what_is_saved_is_a_profile_that_people_read() {
         ask(&bench, HUB, &["verify", &file]).json(),
         json!({"equal": true, "differences": [], "compared": 36, "missing": []})
     );
-    // The position is another one, and no difference.
+    // The position is another one, which is no difference.
     let moved = HUB.replace("requested=1", "requested=1&position=5000&supply=22");
     assert_eq!(ask(&bench, &moved, &["diff", &file]).json()["equal"], json!(true));
     let slower = HUB.replace("requested=1", "requested=1&speed=200");
@@ -207,13 +207,13 @@ fn what_is_saved_is_a_profile_that_people_read() {
         {"item": "166 drive 3", "left": "350", "right": "200"},
     ]);
     assert_eq!(told["differences"], expected);
-    // A place that has become empty.
+    // A slot that has become empty.
     let fewer = HUB.replace("1,0,1", "1,0,0");
     let told = ask(&bench, &fewer, &["verify", &file]).json_with(3);
     assert_eq!((&told["compared"], &told["missing"][0]), (&json!(23), &json!("152 drive 3")), "{told}");
 }
 
-/// No set request, no cyclic connection: get attribute, single (0E) or all (01), is all that is ever sent.
+/// No set request, no cyclic connection: only get attribute, single (0E) or all (01), is sent.
 #[test]
 fn reading_sets_nothing() {
     let bench = Bench::new();
@@ -239,7 +239,7 @@ fn reading_sets_nothing() {
         let foreign: Vec<&String> =
             heard.iter().filter(|own| !own.starts_with("0E ") && !own.starts_with("01 ")).collect();
         assert!(foreign.is_empty(), "{words:?}: {foreign:?}");
-        // Without consent nothing is opened at all.
+        // Without consent nothing is opened.
         let asks = !matches!(words, ["restore", _] | ["write", ..]);
         assert_eq!((ran.status, heard.is_empty()), (Some(if asks { 0 } else { 2 }), !asks), "{words:?}: {ran:?}");
     }
@@ -257,7 +257,7 @@ fn devices_are_found_by_asking_an_address() {
     wrong.fails(2, &["enip:ADDRESS"]);
 }
 
-/// At a terminal there is a bar, and a word on the network; a script reads nothing of that.
+/// On a terminal there is a bar, and a note about the network; a script gets neither.
 #[test]
 fn a_slow_device_is_read_without_a_word_where_nobody_looks() {
     let bench = Bench::new();

@@ -1,6 +1,6 @@
-//! Whatever happens to the host, its wires or its window while a drive moves: the drive stands, and keeps standing. The drive
-//! is a process of its own, and who looks at it has a connection of its own. Limits are those of safety, with a second on
-//! top for a machine that is busy.
+//! Drives stop and remain stopped after any failure of the host, its connections or its window during motion. The drive is
+//! a separate process, and it is observed over a separate connection. The limits are those of safety, plus a second for a
+//! busy computer.
 
 mod watched;
 mod wires;
@@ -20,18 +20,18 @@ use encoder_studio::worker::{Event, Session, Worker};
 use super::support::{Bench, Simulated, ended, signal};
 use wires::{Transport, Wires};
 
-/// What a machine that is busy may add.
+/// Additional time on a busy computer.
 const BUSY: Duration = Duration::from_secs(1);
-/// Without a word from the person.
+/// Time without a report from the user interface.
 const FROZEN: Duration = Duration::from_millis(300);
 /// Slow enough for a machine that is busy.
 const RPI: &str = "rpi=50";
-/// Eight intervals, and the way in which it brakes.
+/// Eight intervals, and the braking distance.
 const WATCHDOG: Duration = Duration::from_millis(500);
 const FAST: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
 const JOG: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FAST, outward: false };
 
-/// A drive that somebody looks at.
+/// A drive with an observer.
 struct Drive {
     bench: Bench,
     simulated: Simulated,
@@ -68,7 +68,7 @@ impl Drive {
         }
     }
 
-    /// It stands before the time is up, and half a second later it is where it was.
+    /// Checks that it stops within the limit, and has the same position half a second later.
     #[track_caller]
     fn stands_within(&mut self, limit: Duration) {
         let until = Instant::now() + limit + BUSY;
@@ -124,7 +124,7 @@ impl Host {
         let mut act = 0;
         while drive.actual().speed <= 100 {
             assert!(Instant::now() < until, "it does not move: {:?}", self.motion);
-            // A machine that is busy may have held the hand up.
+            // A busy computer may have delayed the refreshes.
             let over = self.motion.view().drives[0].ended.is_some_and(|(number, _)| number >= act);
             if act == 0 || over {
                 act = self.motion.intend(DriveNumber::FIRST, JOG);
@@ -145,10 +145,10 @@ fn a_frozen_window() {
     let mut drive = Drive::start();
     let host = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     host.jogs(&mut drive);
-    // Nobody says anything any more.
+    // No further report is sent.
     drive.stands_within(FROZEN + WATCHDOG);
     assert_eq!(host.ended(), Some(Ended::Stale));
-    // Whoever comes back holds the same button still: nothing.
+    // A returned window with the same button still pressed causes no motion.
     let stood = drive.actual().position;
     host.holds(Duration::from_millis(500));
     assert_eq!(drive.actual().position, stood);
@@ -159,7 +159,7 @@ fn a_frozen_window() {
     assert_eq!(host.ended(), Some(Ended::Stopped));
 }
 
-/// The window is closed: the session is let go.
+/// The window is closed: the session is dropped.
 #[test]
 fn an_end_without_a_word() {
     let mut drive = Drive::start();
@@ -168,7 +168,7 @@ fn an_end_without_a_word() {
     assert!(host.worker.close(Duration::from_secs(5)));
     drive.stands_within(Duration::ZERO);
     assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault: it was told");
-    // Nobody has it: the next one may take it.
+    // The drive is free: the next host may take it.
     let next = Host::in_control(&drive.bench, &drive.simulated.place.clone());
     assert!(next.motion.is_open());
 }
@@ -180,7 +180,7 @@ fn a_wire_for_parameters_that_is_cut() {
     let host = Host::in_control(&drive.bench, &wires.place());
     host.jogs(&mut drive);
     wires.cut_stream();
-    // An idle session looks every half second.
+    // An idle session checks every half second.
     let holding = host.motion.clone();
     let held = std::thread::spawn(move || {
         for _ in 0..100 {
@@ -206,7 +206,8 @@ fn wires_for_packets_that_are_cut() {
         host.jogs(&mut drive);
         ways.iter().for_each(|way| wires.cut(*way));
         drive.stands_within(WATCHDOG);
-        // Where only the way back is cut, the drive is told; else its watchdog stops it, and it is a fault.
+        // If only the return direction is cut, the drive receives the stop; otherwise its watchdog stops it, which is a
+        // fault.
         let faulty = drive.actual().status.state() == State::Fault;
         assert_eq!(faulty, !told, "{ways:?}");
         let until = Instant::now() + Duration::from_secs(5);
@@ -215,7 +216,7 @@ fn wires_for_packets_that_are_cut() {
             sleep(Duration::from_millis(10));
         }
         assert!(matches!(host.motion.view().lost, Some(CyclicLost::Silent { .. })), "{ways:?}");
-        // Mended: it stays as it is, whoever holds the button.
+        // Restored: it remains stopped, even if the button is held.
         ways.iter().for_each(|way| wires.mend(*way));
         let stood = drive.actual().position;
         host.motion.intend(DriveNumber::FIRST, JOG);
@@ -224,7 +225,7 @@ fn wires_for_packets_that_are_cut() {
     }
 }
 
-/// Garbage at both ends, as fast as it goes: a release is a stop all the same.
+/// Garbage in both directions at full speed: a release still stops the drive.
 #[test]
 fn a_flood() {
     let mut drive = Drive::start();
@@ -240,7 +241,7 @@ fn a_flood() {
     assert!(figures.malformed > 0, "{figures:?}");
 }
 
-/// `move` that runs in a process of its own.
+/// Starts `move` in a separate process.
 fn moving(drive: &mut Drive) -> Child {
     let link = format!("enip:{}?{RPI}", drive.simulated.place);
     let arguments = ["move", "hiperdrive", "30000000", "--yes", "--link", &link];
@@ -283,8 +284,8 @@ fn an_interrupt() {
     assert_eq!(drive.actual().status.word() & 0x000F, 0, "off, and no fault");
 }
 
-/// Issue 21.1: whatever the system ends a command with, also twice, the drive stands, is off, and its watchdog has nothing to
-/// say.
+/// Issue 21.1: after any signal that ends a command, also twice, the drive is at standstill and off, and its watchdog does
+/// not report a fault.
 #[test]
 fn signals_that_end_a_command() {
     for (name, times) in [("TERM", 1), ("HUP", 1), ("TERM", 2), ("INT", 2)] {

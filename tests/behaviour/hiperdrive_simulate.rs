@@ -1,4 +1,4 @@
-//! `simulate hiperdrive`, examined by clients that are not our program: one written from the reference, and pycomm3.
+//! `simulate hiperdrive`, checked by foreign clients: one written from the reference, and pycomm3.
 
 use super::support::{Bench, Simulated, foreign_host, foreign_host_with, pycomm3, python};
 
@@ -10,7 +10,7 @@ fn drives(bench: &Bench, arguments: &[&str]) -> Simulated {
     Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat())
 }
 
-/// Things with what the client is to say of each.
+/// Runs steps with the expected output of the client for each.
 #[track_caller]
 fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     let (things, expected): (Vec<&str>, Vec<&str>) = walk.iter().copied().unzip();
@@ -19,7 +19,7 @@ fn walk(place: &str, options: &[&str], walk: &[(&str, &str)]) {
     assert_eq!(said, expected, "{pairs:?}");
 }
 
-/// Reference 4 and 7: limits are 511 turns of 65536 steps, 33488896; the category; what is refused, and how.
+/// Reference 4 and 7: limits are 511 turns of 65536 steps, 33488896; the category; refusals and their codes.
 #[test]
 fn parameters_are_read_and_written() {
     let bench = Bench::new();
@@ -53,7 +53,7 @@ fn parameters_are_read_and_written() {
     port.end("INT");
 }
 
-/// Reference 3 and 9: words and their states; a move there and back; hold-to-run ends where it was let go.
+/// Reference 3 and 9: words and their states; a move and back; hold-to-run ends at release.
 #[test]
 fn a_drive_is_led_moved_and_jogged() {
     let bench = Bench::new();
@@ -100,7 +100,7 @@ fn a_drive_of_a_hub_moves_alone() {
     port.end("INT");
 }
 
-/// Reference 7: a lost master ends the motion within its time-out; fault 8601 = 34305 tells it.
+/// Reference 7: a lost master ends the motion within its time-out; fault 8601 = 34305 reports it.
 #[test]
 fn a_drive_stands_when_its_master_falls_silent() {
     let bench = Bench::new();
@@ -111,12 +111,12 @@ fn a_drive_stands_when_its_master_falls_silent() {
     let steps =
         [("open", "00020001"), ("begin:33000000", "done"), ("hush", "moved stands silent"), ("get:108", "34305")];
     walk(&port.place, &[], &steps);
-    // Another master takes it over, and finds the fault: 2AB8, with the set-point acknowledged (bit 12).
+    // Another master takes control, and finds the fault: 2AB8, with the set-point acknowledged (bit 12).
     walk(&port.place, &[], &[("open", "00020002"), ("until:8:8", "3AB8"), ("close", "done")]);
     port.end("INT");
 }
 
-/// Garbage over both ways disturbs neither what moves nor who asks.
+/// Garbage in both directions disturbs neither the motion nor other requests.
 #[test]
 fn garbage_is_let_pass() {
     let bench = Bench::new();
@@ -138,7 +138,7 @@ fn garbage_is_let_pass() {
     port.end("INT");
 }
 
-/// What was saved is there with the next client behind a loss of power; half of what was being saved is.
+/// Saved values exist for the next client after a loss of power; of an interrupted save, half of the values do.
 #[test]
 fn a_save_is_cut_where_it_was_asked_for() {
     let bench = Bench::new();
@@ -149,7 +149,7 @@ fn a_save_is_cut_where_it_was_asked_for() {
     walk(&port.place, &[], &[("set:166=200", "done"), ("set:47=1", "done"), ("get:47", "1")]);
     let second = [("set:152=0", "done"), ("set:186=10", "done"), ("get:47", "0"), ("set:47=1", "done")];
     walk(&port.place, &[], &second);
-    // It is gone before the next one connects, and comes back with that.
+    // The power is lost before the next client connects, and returns with it.
     std::thread::sleep(std::time::Duration::from_millis(500));
     let after = [("get:17", "7"), ("get:166", "200"), ("get:152", "0"), ("get:186", "20"), ("set:47=-3", "done")];
     walk(&port.place, &[], &after);
@@ -196,7 +196,7 @@ fn what_cannot_be_served_is_said() {
     bench.run(&["simulate", "hiperdrive", "--listen", "[::1]:0"]).fails(1, &["::1", "127.0.0.1:4001"]);
     let taken = drives(&bench, &[]);
     bench.run(&["simulate", "hiperdrive", "--listen", &taken.place]).fails(1, &["in use by another program"]);
-    // The port is free for TCP alone.
+    // The port is free for TCP only.
     let datagrams = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let place = datagrams.local_addr().unwrap().to_string();
     bench.run(&["simulate", "hiperdrive", "--listen", &place]).fails(1, &["in use by another program"]);

@@ -1,4 +1,4 @@
-//! What goes to a device over TCP, seen from between: every CIP request in hex, as it was sent.
+//! The requests to a device over TCP, recorded in between: every CIP request in hex, as sent.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -7,19 +7,19 @@ use std::thread;
 
 use super::support::{Bench, Ran, Simulated};
 
-/// One of our virtual devices with somebody who listens in front of it.
+/// A virtual device with a recording proxy in front of it.
 pub(crate) struct Tapped {
     device: Simulated,
     url: String,
     heard: Arc<Mutex<Vec<String>>>,
 }
 
-/// Length of the header of a frame (reference 7), and of what stands before a request in SendRRData.
+/// Length of the header of a frame (reference 7), and of the part before a request in SendRRData.
 const HEADER: usize = 24;
 const BEFORE_REQUEST: usize = 16;
 
 impl Tapped {
-    /// Arguments behind `simulate hiperdrive --listen …`.
+    /// Starts it; `arguments` follow `simulate hiperdrive --listen …`.
     pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let device = Simulated::start(bench, &[&["hiperdrive", "--listen", "127.0.0.1:0"], arguments].concat());
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
@@ -43,17 +43,17 @@ impl Tapped {
         std::mem::take(&mut self.heard.lock().unwrap())
     }
 
-    /// Those of them that set something (service 10h).
+    /// Returns those that set a value (service 10h).
     pub(crate) fn sets(&self) -> Vec<String> {
         self.heard().into_iter().filter(|request| request.starts_with("10 ")).collect()
     }
 
-    /// The program with the link to it, and JSON.
+    /// Runs the program with the link to it, and JSON.
     pub(crate) fn ask(&self, bench: &Bench, words: &[&str]) -> Ran {
         bench.run(&[words, &["--link", &self.url, "--json"]].concat())
     }
 
-    /// Sends a request as another host would, past the one who listens; its reply.
+    /// Sends a request as another host would, around the proxy; returns the reply.
     pub(crate) fn request(&self, request: &[u8]) -> Vec<u8> {
         let mut device = TcpStream::connect(&self.device.place).unwrap();
         let mut send = |command: u16, session: [u8; 4], data: &[u8]| {
@@ -77,7 +77,7 @@ impl Tapped {
         send(0x6F, session, &data).1.split_off(BEFORE_REQUEST)
     }
 
-    /// Past the one who listens.
+    /// Returns the link around the proxy.
     pub(crate) fn url(&self) -> String {
         format!("enip:{}", self.device.place)
     }

@@ -1,4 +1,4 @@
-//! What is written into virtual HIPERDRIVE drives: request by request, as somebody between sees it, save by save.
+//! Writing into virtual HIPERDRIVE drives: checked request by request at a proxy, and save by save.
 
 use serde_json::{Value, json};
 
@@ -23,11 +23,11 @@ fn a_parameter_is_written_and_saved_once() {
     assert_eq!(device.sets(), ["10 03 20 65 24 01 30 9E C0 BD F0 FF", SAVE]);
     assert_eq!(device.ask(&bench, &["read", "hiperdrive", "158"]).json()["value"], json!(-1_000_000));
     device.heard();
-    // Once more: it is so already.
+    // Repeated: the values are already equal.
     let again = device.ask(&bench, &["write", "hiperdrive", "158", "-1000000", "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
     assert_eq!(device.sets(), Vec::<String>::new());
-    // The before-image brings it back.
+    // The before-image restores it.
     let backup = told["backup"].as_str().unwrap();
     let undone = device.ask(&bench, &["restore", backup, "--yes"]).json();
     assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(1), &json!(1)), "{undone}");
@@ -45,7 +45,7 @@ fn what_is_not_kept_is_not_saved() {
     assert_eq!(device.sets(), ["10 03 20 66 24 01 30 AA 64 00 00 00"]);
 }
 
-/// A spindle of 4 mm in steps of 0.01 mm: 400 steps a turn are 400/256 (reference 5); at 2.5 turns the drive stands at 1000.
+/// A spindle of 4 mm in steps of 0.01 mm: 400 steps per turn are 400/256 (reference 5); at 2.5 turns the drive is at 1000.
 #[test]
 fn a_restore_writes_scale_then_limits_and_saves_once() {
     let bench = Bench::new();
@@ -79,7 +79,7 @@ fn a_restore_writes_scale_then_limits_and_saves_once() {
     assert_eq!(device.sets(), expected);
     let place = device.ask(&bench, &["position", "hiperdrive"]).json();
     assert_eq!((&place["raw"], &place["turns"], &place["steps"]), (&json!(1000), &json!(2), &json!(200)), "{place}");
-    // Nothing differs but the reference, which is never restored: nothing is written, nothing is saved.
+    // Only the reference differs, which is never restored: nothing is written, nothing is saved.
     device.heard();
     let again = device.ask(&bench, &["restore", &file, "--yes", "--with-mounting"]).json();
     assert_eq!((&again["written"], &again["unchanged"], &again["write_cycles"]), (&json!(0), &json!(7), &json!(0)));

@@ -1,4 +1,4 @@
-//! Everything that can be wrong with what is typed, with the gateway and with the encoder: one clear sentence each.
+//! Faults of the input, the gateway and the encoder: one clear sentence each.
 
 use super::support::{Bench, Foreign, Ran};
 
@@ -40,7 +40,8 @@ fn what_cannot_be_understood_is_wrong_usage() {
     bench.run(&["identify", "biss", "--link", "modbus:127.0.0.1:1"]).fails(2, &["modbus"]);
 }
 
-/// Before anything is sent where nothing has to be asked, else before anything is set; both limits stand there.
+/// Refused before anything is sent if nothing has to be read, otherwise before anything is set; the message has both
+/// limits.
 #[test]
 fn what_is_out_of_range_names_both_limits() {
     let bench = Bench::new();
@@ -74,7 +75,7 @@ fn what_is_out_of_range_names_both_limits() {
     assert!(told.iter().all(|line| !line.starts_with("STORE") && !line.starts_with("W 4")), "{told:?}");
 }
 
-/// The encoder's own refusal (reference 2), and the way back from it.
+/// The encoder's own refusal (reference 2), and the return to its mode.
 #[test]
 fn an_encoder_that_refuses_is_told_with_its_word_and_led_back() {
     let bench = Bench::new();
@@ -167,7 +168,7 @@ fn a_profile_that_is_wrong_or_of_another_kind_is_told() {
     bench.run(&["diff", &file, biss]).fails(1, &["biss", "interbus"]);
 }
 
-/// What ships is of its kind, and can be restored onto a virtual encoder.
+/// The ready-made profiles are of their kind, and can be restored onto a virtual encoder.
 #[test]
 fn the_ready_made_profiles_are_planned_for_an_encoder() {
     let bench = Bench::new();

@@ -1,5 +1,5 @@
-//! The host's side of the handshake against a gateway and a K3 encoder that are not our program, with every trouble that
-//! these can make. What the encoder stored is told by its own log.
+//! The host's side of the handshake against a foreign gateway and a foreign K3 encoder with all their possible faults. The
+//! encoder's own log shows what it stored.
 
 use encoder_studio::devices::interbus::jobs::{
     Change, Commit, Interbus, InterbusJob, InterbusOutput, JobError, Prepared, open,
@@ -47,7 +47,7 @@ fn commit(session: &mut Session<Interbus>, prepared: Prepared) -> Result<u64, Jo
     }
 }
 
-/// Words that the encoder got, and what it stored.
+/// Returns the words that the encoder received, and what it stored.
 fn log(foreign: &Foreign) -> Vec<String> {
     foreign.requests().into_iter().filter(|line| line != "R").collect()
 }
@@ -116,7 +116,7 @@ fn what_the_encoder_or_another_master_does_wrong_is_told() {
     assert_eq!(error.to_string(), expected);
 }
 
-/// Other cams in these programs, cam 0 among them.
+/// Returns the other cams in these programs, cam 0 among them.
 fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Interbus>, Prepared) {
     let mut session = session(bench, foreign, "?cycle=1");
     let parameters = match session.run_inline(InterbusJob::Survey).unwrap() {
@@ -140,7 +140,7 @@ fn other_cams(bench: &Bench, foreign: &Foreign, programs: usize) -> (Session<Int
 }
 
 /// Issue 22.1: the processing word may carry any data, those sent or those of the word before, and a word that is replaced
-/// while it is processed is not taken. Eight programs of eight cams are written at one store each.
+/// during processing is not accepted. Eight programs of eight cams are written with one store each.
 #[test]
 fn cam_0_is_written_through_a_gateway_that_is_busy() {
     let bench = Bench::new();
@@ -158,7 +158,7 @@ fn cam_0_is_written_through_a_gateway_that_is_busy() {
     }
 }
 
-/// Issue 22.2: an echo that comes 0.4 to 0.8 s late, or was never asked for (manual 5.3 shows C2000100), ends nothing.
+/// Issue 22.2: an echo that comes 0.4 to 0.8 s late, or was never requested (manual 5.3 shows C2000100), ends nothing.
 #[test]
 fn stale_echoes_are_waited_out() {
     let bench = Bench::new();
@@ -171,7 +171,7 @@ fn stale_echoes_are_waited_out() {
     }
 }
 
-/// Issue 22.2: what a gateway's lag costs is counted in changes of OUT, each of which takes the lag once. A parameter is
+/// Issue 22.2: the cost of a gateway's lag is counted in changes of OUT, each of which takes the lag once. A parameter is
 /// set, stored, read back and left: four of them.
 #[test]
 fn a_parameter_takes_four_times_the_lag() {
@@ -186,10 +186,10 @@ fn a_parameter_takes_four_times_the_lag() {
     assert_eq!(commit(&mut session, prepared).unwrap(), 1);
     let words = log(&foreign);
     let set = words.iter().position(|line| line == "W 0A000063").unwrap();
-    // 00000000 behind 80000000 changes nothing that has to be waited for.
+    // 00000000 after 80000000 needs no wait.
     let own: Vec<&str> = words[set..].iter().map(String::as_str).filter(|line| line.starts_with('W')).collect();
     assert_eq!(own, ["W 0A000063", "W 80000000", "W 00000000", "W 20210005", "W 00000000"]);
-    // Who it is and its base are read for the plan, and once more before it is carried out.
+    // Identity and base are read for the plan, and again before it is carried out.
     let questions = words[..set].iter().filter(|line| line.starts_with("W 2021")).count();
     assert_eq!(questions, (1 + 6 + 2) + (1 + 1 + 5));
 }

@@ -1,4 +1,4 @@
-//! INTERBUS without a device: words of the process data explained.
+//! INTERBUS without a device: words of the process data are decoded.
 
 use serde_json::{Value, json};
 
@@ -80,12 +80,12 @@ fn what_must_not_be_sent_and_what_is_no_word_is_refused() {
     ] {
         bench.run(&out(mode, word)).fails(1, words);
     }
-    // It may be the encoder's word as well, where the direction is not known.
+    // If the direction is not known, it may be the encoder's word as well.
     let told = bench.run(&["decode", "interbus", "46000015", "--mode", "position", "--json"]).json();
     let readings = told["frames"][0]["readings"].as_array().unwrap();
     let legal: Vec<&Value> = readings.iter().map(|reading| &reading["legal"]).collect();
     assert_eq!(legal, [&json!(false), &json!(true)], "{told}");
-    // What is good beside it is told.
+    // The valid words in the same command are printed.
     let mixed = bench.run(&["decode", "interbus", "--direction", "out", "80000000", "10000000", "--json"]).json_with(1);
     let valid: Vec<&Value> = mixed["frames"].as_array().unwrap().iter().map(|frame| &frame["valid"]).collect();
     assert_eq!(valid, [&json!(true), &json!(false)]);

@@ -1,5 +1,4 @@
-//! What is read of a K3 encoder that is not our program, behind a gateway that is not either; and that reading changes
-//! nothing.
+//! Reading a foreign K3 encoder at a foreign gateway; reading changes nothing.
 
 use serde_json::{Value, json};
 
@@ -13,12 +12,13 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// OUT words since the last time, and what was stored or preset.
+/// Returns the OUT words since the last call, and what was stored or preset.
 fn done(encoder: &Foreign) -> Vec<String> {
     encoder.requests().into_iter().filter(|line| line != "R").collect()
 }
 
-/// Only read-outs (reference 3, 5), the selection of a program, run and normal running; and nothing is stored.
+/// Checks that only read-outs (reference 3, 5), the selection of a program, run and normal running were sent, and nothing
+/// was stored.
 #[track_caller]
 fn only_read(encoder: &Foreign) {
     for line in done(encoder) {
@@ -78,7 +78,7 @@ fn every_item_is_read_by_its_name() {
         assert_eq!(told.get("unit").and_then(Value::as_str), unit, "{told}");
     }
     only_read(&encoder);
-    // In position mode, as it was found, and OUT is 0.
+    // In position mode, as before, and OUT is 0.
     assert_eq!(encoder_mode(&bench, &encoder), "K3");
 }
 
@@ -86,7 +86,7 @@ fn encoder_mode(bench: &Bench, encoder: &Foreign) -> String {
     ask(bench, encoder, &["identify", "interbus"]).json()["mode"].as_str().unwrap().to_owned()
 }
 
-/// Reference 7: 12345 steps of the disc are 542 of 360 a turn: turn 1, 182 steps of 360, which are 182°.
+/// Reference 7: 12345 steps of the disc are 542 of 360 per turn: turn 1, 182 steps of 360, which are 182°.
 #[test]
 fn a_position_lies_within_the_programmed_turns() {
     let bench = Bench::new();
@@ -105,7 +105,7 @@ fn a_position_lies_within_the_programmed_turns() {
     assert!(table.out.trim_end().ends_with(",542,1,182,182,true"), "{table:?}");
 }
 
-/// Reference 5: position 1000 of 3600 under the window, cam 3 from 900 on; speed; and an encoder that has an error.
+/// Reference 5: position 1000 of 3600 under the window, cam 3 from 900 on; speed; and an encoder with an error.
 #[test]
 fn what_is_no_position_is_not_taken_for_one() {
     let bench = Bench::new();
@@ -116,7 +116,7 @@ fn what_is_no_position_is_not_taken_for_one() {
     // 2276 · 3600 / 8192 = 1000.2; 1000 = 3E8h.
     assert_eq!((&told["raw"], &told["position"]), (&json!(0x0003_E808), &json!(1000)), "{told}");
     assert_eq!((&told["mode"], &told["cams"], &told["valid"]), (&json!("cam 2"), &json!([3]), &json!(true)));
-    // It is in the program in which it was found.
+    // It is in the same program as before.
     assert_eq!(encoder_mode(&bench, &encoder), "cam 2");
     only_read(&encoder);
     let Some(encoder) = bench.gateway(&["--mode=2", "--rpm=120"]) else { return };
@@ -165,7 +165,7 @@ fn what_is_saved_is_what_is_there() {
     assert_eq!(ask(&bench, &encoder, &["diff", &file]).json()["equal"], json!(true));
     only_read(&encoder);
     assert_eq!(encoder_mode(&bench, &encoder), "cam 3", "as it was found");
-    // What a profile does not say is not read: no program is selected.
+    // Values that the profile does not contain are not read: no program is selected.
     let short = bench.write(
         "short.ron",
         r#"(schema: 1, device: "interbus", parameters: (steps: 3600, revolutions: 1, direction: "ccw", preset: 500,
@@ -181,7 +181,7 @@ fn what_is_saved_is_what_is_there() {
     assert_eq!((&told["compared"], told["missing"].as_array().map(Vec::len)), (&json!(5), Some(1 + 8 * 9)), "{told}");
 }
 
-/// The virtual encoder in this process and the same served over TCP say the same.
+/// The virtual encoder in this process and the same one over TCP return the same values.
 #[test]
 fn the_virtual_encoder_is_read_either_way() {
     use super::support::Simulated;
@@ -199,8 +199,8 @@ fn the_virtual_encoder_is_read_either_way() {
     port.end("INT");
 }
 
-/// Issue 22.31: reading cam programs switches live outputs. On a terminal it asks first; without one it goes on for what
-/// names it in its help.
+/// Issue 22.31: reading cam programs switches live outputs. On a terminal the program asks first; without one it continues
+/// for the commands that name it in their help.
 #[test]
 fn cam_programs_are_read_once_the_machine_stands_still() {
     let bench = Bench::new();
@@ -221,7 +221,7 @@ fn cam_programs_are_read_once_the_machine_stands_still() {
     for command in commands {
         // Without a terminal.
         let ran = bench.run(command);
-        // Other programs are only in the encoder: `diff` tells them.
+        // Other programs are only in the encoder: `diff` reports them.
         assert!(matches!(ran.status, Some(0 | 3)) && ran.err.contains("outputs of the encoder switch"), "{ran:?}");
         assert!(selects(), "{command:?}");
         assert!(bench.run(&[command[0], "--help"]).out.contains("live outputs"), "{command:?}");
@@ -231,7 +231,7 @@ fn cam_programs_are_read_once_the_machine_stands_still() {
     }
     let ran = asked(&bench, commands[3], "y\n");
     assert!(ran.status == Some(0) && ran.out.contains("0..0"), "{ran:?}");
-    // What selects no program asks nothing.
+    // A command that selects no program asks nothing.
     let ran = asked(&bench, &["do", "interbus", "check", "--link", &url], "");
     assert!(ran.status == Some(0) && !ran.out.contains("stand still?"), "{ran:?}");
 }

@@ -1,5 +1,5 @@
-//! `simulate interbus`, examined by a master that is not our program, with the words of the reference; and the foreign
-//! encoder, which has to answer that master in the same way.
+//! `simulate interbus`, checked by a foreign master with the words of the reference; and the foreign encoder, which has to
+//! answer that master in the same way.
 
 use super::support::{Bench, Simulated, foreign_host, python};
 
@@ -20,8 +20,8 @@ const WORKED: [(&str, &str); 9] = [
     ("00000000", "00000000"),
 ];
 
-/// Reference 5, over 4096 steps of a turn: position 2500 lies under the window, cam 3 from 21 to 531 is off there; then from
-/// 2001 on, behind 531, which is over the end of the range.
+/// Reference 5, over 4096 steps per turn: position 2500 lies under the window, cam 3 from 21 to 531 is off there; then from
+/// 2001 on, past 531, which is over the end of the range.
 const CAMS: [(&str, &str); 21] = [
     ("20800001", "E0800001"),
     ("46000015", "C6000015"),
@@ -131,7 +131,7 @@ fn registers_unit_and_order_are_those_asked_for_and_what_is_wrong_is_an_exceptio
     port.end("INT");
 }
 
-/// An encoder that has lost its power comes back with the next client, without what it was storing.
+/// An encoder that has lost its power is powered again with the next client, without the value that it was storing.
 #[test]
 fn faults_are_those_asked_for() {
     let bench = Bench::new();

@@ -1,4 +1,4 @@
-//! What is written into a K3 encoder that is not our program: word by word, store by store.
+//! Writing into a foreign K3 encoder: checked word by word, store by store.
 
 use std::fmt::Write as _;
 
@@ -12,18 +12,18 @@ fn ask(bench: &Bench, encoder: &Foreign, words: &[&str]) -> Ran {
     bench.run(&[words, &["--link", &encoder.url, "--json"]].concat())
 }
 
-/// Words that set something, and what came of them, since the last time; without what reads, selects and ends.
+/// Returns the words that set a value, and their effects, since the last call; without those that read, select and end.
 fn written(encoder: &Foreign) -> Vec<String> {
     let reads = ["R", "W 2021", "W 2020", "W 2080", "W 80000000", "W 00000000"];
     encoder.requests().into_iter().filter(|line| !reads.iter().any(|begin| line.starts_with(begin))).collect()
 }
 
-/// Cam c of program p, as start and stop, by arithmetic alone.
+/// Returns the cam c of program p, as start and stop, by arithmetic alone.
 fn edges(program: u32, cam: u32) -> (u32, u32) {
     (100 * cam + program, 100 * cam + program + 49)
 }
 
-/// All 64 cams, but for those that `other` moves, for the foreign encoder and as a profile; every mask is FFh.
+/// Returns all 64 cams, except for those that `other` moves, for the foreign encoder and as a profile; every mask is FFh.
 fn cams(other: impl Fn(u32, u32) -> Option<(u32, u32)>) -> (String, String) {
     let (mut json, mut ron) = (String::new(), String::new());
     for program in 1..=8 {
@@ -49,7 +49,7 @@ fn profile(serial_number: &str, parameters: &str, programs: &str) -> String {
 
 const PARAMETERS: &str = r#"steps: 3600, revolutions: 1, direction: "cw", preset: 0, zero_shift: 0"#;
 
-/// The issue: 64 cams and 8 masks into an encoder that has 60 of the cams already.
+/// The issue: 64 cams and 8 masks into an encoder that already has 60 of the cams.
 #[test]
 fn a_full_set_of_cams_touches_what_differs_and_stores_once_a_program() {
     let bench = Bench::new();
@@ -77,7 +77,7 @@ fn a_full_set_of_cams_touches_what_differs_and_stores_once_a_program() {
         {"item": "cam:8:1 start", "old": "108", "new": "0", "write_cycles": 0},
         {"item": "cam program 8", "old": null, "new": "stored", "write_cycles": 1},
     ]);
-    // An edge that is there already is left out.
+    // An edge that already exists is left out.
     let expected: Vec<&Value> = expected.as_array().unwrap().iter().filter(|own| own["old"] != own["new"]).collect();
     assert_eq!(dry["operations"].as_array().unwrap().iter().collect::<Vec<_>>(), expected);
     assert!(written(&encoder).is_empty());
@@ -100,17 +100,17 @@ fn a_full_set_of_cams_touches_what_differs_and_stores_once_a_program() {
     ];
     assert_eq!(written(&encoder), words);
     assert_eq!(ask(&bench, &encoder, &["verify", &file]).json()["equal"], json!(true));
-    // Once more: nothing differs, nothing is set, nothing is kept.
+    // Repeated: nothing differs, nothing is set, nothing is kept.
     let again = ask(&bench, &encoder, &["restore", &file, "--yes"]).json();
     assert_eq!((&again["written"], &again["write_cycles"], &again["backup"]), (&json!(0), &json!(0), &Value::Null));
-    // The before-image is a profile of what was touched, and brings it back.
+    // The before-image is a profile of the changed values, and restores them.
     let backup = told["backup"].as_str().unwrap();
     let undone = ask(&bench, &encoder, &["restore", backup, "--yes"]).json();
     assert_eq!((&undone["written"], &undone["write_cycles"]), (&json!(4), &json!(3)), "{undone}");
     assert_eq!(written(&encoder).len(), 8);
 }
 
-/// Reference 3: one parameterisation, in an order in which each number is legal; the preset is stored and not fired.
+/// Reference 3: one parameterisation, in an order in which each number is legal; the preset is stored and not applied.
 #[test]
 fn parameters_are_one_store_and_a_preset_is_not_fired_by_a_restore() {
     let bench = Bench::new();
@@ -144,7 +144,7 @@ fn each_item_is_written_by_its_name() {
         assert_eq!(written(&encoder), words, "{item}");
         assert_eq!(ask(&bench, &encoder, &["read", "interbus", item]).json()["value"], value, "{item}");
     }
-    // Cams that nobody has read may lie outside it a shorter range.
+    // Cams that were not read may be outside a shorter range.
     let shorter = ask(&bench, &encoder, &["write", "interbus", "steps", "2048", "--yes"]);
     assert!(shorter.status == Some(0) && shorter.err.contains("may be outside it"), "{shorter:?}");
     assert_eq!(written(&encoder), ["W 02000800", "STORE parameters"]);
@@ -182,7 +182,7 @@ fn the_default_is_experimental() {
     assert_eq!(written(&encoder)[..1], ["W 0E000000"]);
 }
 
-/// Issue 22.19: an encoder that sends an error word after it was led back has not recovered.
+/// Issue 22.19: an encoder that sends an error word after the return to its mode has not recovered.
 #[test]
 fn leading_back_fails_where_the_encoder_sends_an_error() {
     let bench = Bench::new();
@@ -194,7 +194,8 @@ fn leading_back_fails_where_the_encoder_sends_an_error() {
     assert_eq!(ask(&bench, &encoder, &["do", "interbus", "lead-back"]).json()["done"], json!("lead-back"));
 }
 
-/// Issue 22.9: a profile of a multiturn encoder, for one that counts no turns: named, and refused without a permit of its own.
+/// Issue 22.9: a profile of a multiturn encoder for an encoder that counts no turns: named, and refused without explicit
+/// permission.
 #[test]
 fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
     let bench = Bench::new();
@@ -210,7 +211,7 @@ fn an_encoder_of_another_type_needs_a_permit_of_its_own() {
     let dry = ask(&bench, &encoder, &[&restore[..], &["--dry-run"]].concat());
     assert!(dry.err.contains("multiturn") && dry.err.contains("single turn"), "{dry:?}");
     assert_eq!((dry.status, written(&encoder)), (Some(0), vec![]));
-    // `verify` says it, too.
+    // `verify` reports it, too.
     let ran = ask(&bench, &encoder, &["verify", &file]);
     assert!(ran.err.contains("single turn"), "{ran:?}");
     // It keeps its mounting.
@@ -247,7 +248,7 @@ fn nothing_is_written_without_consent_or_into_another_encoder() {
     let told = ask(&bench, &encoder, &["restore", &file, "--yes", "--allow-other-device", "--with-mounting"]).json();
     assert_eq!(told["written"], json!(2));
     assert_eq!(written(&encoder), ["W 08000009", "W 0A000003", "STORE parameters"]);
-    // It was in the mode in which it is.
+    // The mode is unchanged.
     assert_eq!(ask(&bench, &encoder, &["identify", "interbus"]).json()["mode"], json!("K3"));
 }
 
@@ -282,7 +283,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     wear_to(200);
     let told = write(&[]);
     assert!(told.status == Some(0) && told.err.contains("201") && told.err.contains("specifies only 200"), "{told:?}");
-    // On a terminal one is asked for the plan, and beyond 200 once more.
+    // On a terminal the program asks about the plan, and beyond 200 again.
     encoder.requests();
     let typed = ["write", "interbus", "zero-shift", "5", "--link", &encoder.url];
     for no in ["n\n", "y\nn\n"] {
@@ -304,7 +305,7 @@ fn the_stores_of_an_eeprom_are_counted() {
     assert_eq!(Logbook::open(&log).unwrap().write_cycles(&device).unwrap(), 450);
 }
 
-/// In three places of the writing: what was written is told, with the backup, within the time of a vanished gateway.
+/// At three points of the writing: the written values are reported, with the backup, within the time-out of a lost gateway.
 #[test]
 fn a_gateway_that_is_gone_in_the_middle_is_told_with_the_backup() {
     let bench = Bench::new();

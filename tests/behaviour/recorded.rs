@@ -1,8 +1,8 @@
-//! What scripts rely on: exit status and JSON of every command as in the recordings under `tests/fixtures/cli`, one file a
-//! kind of device. A recording is its own list of commands: `$` begins one, `=` tells its status, JSON follows. What a
-//! person reads is not in it.
+//! The interface that scripts rely on: exit status and JSON of every command as in the recordings under
+//! `tests/fixtures/cli`, one file per kind of device. A recording is its own list of commands: `$` begins one, `=` gives
+//! its status, JSON follows. Text for users is not in it.
 //!
-//! With `ENCODER_STUDIO_RECORD=1` the files are written anew: only where the contract is meant to grow.
+//! With `ENCODER_STUDIO_RECORD=1` the files are written again: only if the contract is meant to grow.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -49,18 +49,18 @@ fn assert_recorded(kind: &str) {
     assert_eq!(text, recorded, "{kind}");
 }
 
-/// Without what another run has otherwise: times, and the names of backups.
+/// Removes the values that differ between runs: times, and the names of backups.
 fn steady(value: Value) -> Value {
     match value {
         Value::Object(entries) => entries.into_iter().map(|(key, value)| steady_entry(key, value)).collect(),
         Value::Array(items) => items.into_iter().map(steady).collect(),
-        // A time that was measured, in words.
+        // A measured time in a sentence.
         Value::String(text) if text.contains(" ms") => without_numbers(&text).into(),
         other => other,
     }
 }
 
-/// With a sign for each number, of however many digits: how many those are depends on how busy the computer is.
+/// Replaces each number, with any number of digits, by a sign: their lengths depend on how busy the computer is.
 fn without_numbers(text: &str) -> String {
     let mut signs = String::new();
     for sign in text.chars() {
@@ -113,7 +113,7 @@ fn what_is_of_no_kind_is_as_recorded() {
     assert_recorded("common");
 }
 
-/// Every way to a device, as kind and beginning of a link.
+/// Every connection to a device, as kind and beginning of a link.
 const LINKS: [&str; 16] = [
     "hiperface sim:",
     "hiperface serial:none",
@@ -133,7 +133,7 @@ const LINKS: [&str; 16] = [
     "hiperdrive enip:none",
 ];
 
-/// The parameters of links and the settings of virtual devices, which stand in people's scripts and in their settings.
+/// The parameters of links and the settings of virtual devices, which are in users' scripts and settings.
 #[test]
 fn links_take_the_recorded_parameters() {
     let (path, bench) = (fixtures().join("links.txt"), Bench::new());

@@ -1,4 +1,4 @@
-//! The virtual sine/cosine source beside the analysis: what is set in one is found by the other.
+//! The virtual sine/cosine source with the analysis: the settings of one are the results of the other.
 
 use encoder_studio::analysis::Time;
 use encoder_studio::analysis::diagnosis::{Diagnosis, FindingKind, Record, diagnose};
@@ -9,7 +9,7 @@ use encoder_studio::analysis::signal_analysis::{Analysis, AnalysisError};
 use encoder_studio::analysis::wiring::{Wire, Wires};
 use encoder_studio::sim::sine_cosine::{References, Settings, Source};
 
-/// A second and a half of a revolution a second, 512 periods each, 50 kHz.
+/// Returns a second and a half of one revolution per second, 512 periods each, 50 kHz.
 fn recorded(settings: Settings) -> (Vec<f64>, Wires) {
     let settings = Settings { periods: 512.0, rate_hz: 50_000.0, ..settings };
     let source = Source::new(settings.checked().unwrap(), Time::ORIGIN);
@@ -45,7 +45,7 @@ fn the_parameters_come_back() {
         ..Settings::default()
     });
     let ellipse = analysis.unwrap().ellipse;
-    // 0.5 mV on 75 000 samples: σ·√(2/n) = 2.6 µV; five of them, and as shares of 0.5 V.
+    // 0.5 mV on 75 000 samples: σ·√(2/n) = 2.6 µV; the limit is five of them, and as parts of 0.5 V.
     near(ellipse.amplitude_v, 0.48, 1.3e-5);
     near(ellipse.offset_sine_v, 0.015, 1.3e-5);
     near(ellipse.offset_cosine_v, -0.01, 1.3e-5);

@@ -28,7 +28,8 @@ fn family(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// Gray over everything, parity, both words of a repetition, wires exchanged, an error bit that speaks when it is 0.
+/// Returns an unusual layout: Gray over everything, parity, both words of a repetition, exchanged wires, an error bit that
+/// is active at 0.
 fn unusual() -> Layout {
     Layout::new(Descriptor {
         clocks: 51,
@@ -72,7 +73,7 @@ fn layouts() -> Vec<(String, Layout)> {
     all
 }
 
-/// Positions of the layout, disturbed ones, and any bits.
+/// Returns the positions of the layout, disturbed ones, and any bits.
 fn frames(layout: &Layout) -> Vec<u64> {
     let mut rng = fastrand::Rng::with_seed(11);
     let mut frames = vec![0, u64::MAX, 0xFF_FFFE, 0x0F_FFFE];
@@ -129,7 +130,7 @@ fn the_exported_c_decodes_as_the_program_does() {
     }
 }
 
-/// `EXPECT=write` writes the file anew, to be read before it is committed.
+/// `EXPECT=write` writes the file again, to be reviewed before it is committed.
 #[test]
 fn the_exported_structured_text_is_the_reviewed_one() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/vectors/ssi_ahs36.st");

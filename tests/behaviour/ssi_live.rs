@@ -1,4 +1,4 @@
-//! An SSI encoder behind an adapter that is not our program: position and status, and what can be typed wrongly about them.
+//! An SSI encoder at a foreign adapter: position and status, and invalid input about them.
 
 use std::io::{BufRead, BufReader, Read};
 use std::time::{Duration, Instant};
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::support::{Bench, Foreign, Ran, ended, signal};
 
-/// A foreign adapter that can SSI and nothing else, with an encoder of this format.
+/// Starts a foreign adapter that supports only SSI, with an encoder of this format.
 fn adapter(bench: &Bench, format: &str, more: &[&str]) -> Option<Foreign> {
     bench.adapter(&[&["--capabilities", "1", "--ssi", format], more].concat())
 }
@@ -21,7 +21,7 @@ fn lines(ran: &Ran) -> Vec<Value> {
     ran.out.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// The shaft stands at turn 1234h, 270°: of ATM60 that is turn 234h of 4096, step 1800h of 8192.
+/// The shaft is at turn 1234h, 270°: for ATM60 that is turn 234h of 4096, step 1800h of 8192.
 #[test]
 fn the_position_has_turns_steps_and_degrees() {
     let bench = Bench::new();
@@ -82,7 +82,7 @@ fn error_bits_are_told_as_they_appear_and_counted() {
     assert!(good.out.contains("errors    none") && good.out.contains("step 196608"), "{good:?}");
 }
 
-/// Reference 6.7: ones alone are a fault of a safety encoder, a broken wire of another; zeros a line that is stuck.
+/// Reference 6.7: all ones are a fault of a safety encoder, and a broken wire for another; all zeros are a stuck line.
 #[test]
 fn a_line_that_does_not_move_is_told() {
     let bench = Bench::new();
@@ -104,7 +104,8 @@ fn a_line_that_does_not_move_is_told() {
     assert!(said.contains("line stuck low: 1 time"), "{said}");
 }
 
-/// How words are taken: as the link says, else as the profile, else slowly. The times of the encoder are looked at.
+/// Words are read with the clock and pause of the link, otherwise of the profile, otherwise slowly. The times of the
+/// encoder are checked.
 #[test]
 fn clock_and_pause_are_those_of_the_link_or_the_profile() {
     let bench = Bench::new();
@@ -135,7 +136,7 @@ fn an_adapter_that_cannot_do_it_is_told() {
     position(&bench, "atm60", &gone.url, &[]).fails(1, &["cannot be reached"]);
 }
 
-/// The plug is pulled, or the user ends it, in the middle: what was counted until then is told all the same.
+/// The cable is unplugged, or the user cancels, during the measurement: the counts so far are printed.
 #[test]
 fn an_end_in_the_middle_is_told_with_what_was_counted() {
     let bench = Bench::new();

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::support::Bench;
 
-/// A layout as a person would write it down: 4 + 8 bits in Gray, an error bit behind them.
+/// A layout as a user would write it: 4 + 8 bits in Gray, followed by an error bit.
 const LAYOUT: &str = r#"(
     schema: 1,
     device: "ssi",
@@ -35,7 +35,7 @@ fn a_layout_is_saved_and_used_like_its_family() {
         };
         assert_eq!(run(&file), run(spec));
     }
-    // The text on the way and back is the same, and so is that of another layout.
+    // The exported and reimported text is the same, and so is that of another layout.
     let exported = bench.run(&["ssi", "export", "--layout", &file, "--format", "profile"]);
     assert_eq!(exported.out, text);
     let again = bench.file("again.ron");
@@ -60,7 +60,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     }
     let source = bench.run(&["ssi", "export", "--layout", &file, "--format", "c"]).out;
     assert!(source.starts_with("/* SSI decoder: feeder\n"), "{source}");
-    // How it is read is the profile's, and its times are its family's.
+    // The profile defines how it is read, and its family the times.
     bench.run(&["ssi", "export", "--layout", &file, "--format", "timing"]).fails(2, &["times", "family"]);
     let with_family = LAYOUT.replace("frame:", "family: \"ahm36\", frame:");
     let file = bench.write("with-family.ron", &with_family);
@@ -75,7 +75,7 @@ fn a_layout_written_by_hand_is_used_from_anywhere() {
     assert!(faster.out.contains("13 clocks, 13.00 µs"), "{faster:?}");
 }
 
-/// Whoever writes a layout by hand finds its entries in the help: each of those that stand there is understood.
+/// The help names the entries of a layout, each of which can be used in a file.
 #[test]
 fn the_help_names_entries_that_can_be_written() {
     let bench = Bench::new();
@@ -83,7 +83,7 @@ fn the_help_names_entries_that_can_be_written() {
     let entry = |name: &str| {
         let at = help.find(&format!("{name}: ")).unwrap_or_else(|| panic!("{name} is not in\n{help}"));
         let value = &help[at..];
-        // Up to two blanks, behind which the entry is explained, or the end of its line.
+        // Up to two blanks, after which the entry is explained, or the end of its line.
         let end = value.find("  ").into_iter().chain(value.find('\n')).min().unwrap();
         value[..end].to_owned()
     };
@@ -130,7 +130,7 @@ fn the_profiles_that_ship_are_their_families_as_delivered() {
         let shipped = format!("{folder}/{key}.ron");
         assert_eq!(bench.run(&["diff", &shipped, &delivered]).status, Some(0), "{key}");
     }
-    // 12 bits of turns, 12 within one: 5A5h and 91Ah one after the other, and nothing else.
+    // 12 bits of turns, 12 within one turn: 5A5h and 91Ah one after the other, and nothing else.
     let short = format!("{folder}/atm60-tree-24-bit-controller.ron");
     let words = ["ssi", "encode", "--json", "--layout", &short, "--turns", "0x5A5", "--steps", "0x91A"];
     assert_eq!(bench.run(&words).json(), json!({ "bits": "010110100101100100011010", "hex": "5A591A" }));

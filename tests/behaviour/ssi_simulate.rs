@@ -9,7 +9,7 @@ fn told(path: &str, actions: &[&str]) -> Vec<Value> {
     lines.iter().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// Bridge reference 2 to 4; the shaft stands at turn 1234h, 270°: turn 234h of 4096, step 1800h of 8192, in Gray.
+/// Bridge reference 2 to 4; the shaft is at turn 1234h, 270°: turn 234h of 4096, step 1800h of 8192, in Gray.
 fn examine(path: &str) {
     let actions =
         ["word", "hello", "ssi:25:1500000:30", "word", "ssi:27:400000:200", "word", "ssi:12:400000:200", "word"];
@@ -17,7 +17,7 @@ fn examine(path: &str) {
     assert_eq!((&said[0]["error"], &said[0]["op"]), (&json!(2), &json!(0x11)), "not configured");
     assert_eq!((&said[1]["version"], said[1]["capabilities"].as_u64().unwrap() & 1), (&json!(1), 1));
     assert_eq!((&said[2], &said[3]["raw"]), (&json!({"clock_hz": 1_500_000}), &json!("65D400")));
-    // Zeros behind the frame; its first bits alone.
+    // Zeros after the frame; its first bits only.
     assert_eq!((&said[5]["raw"], &said[7]["raw"]), (&json!("1975000"), &json!("32E")));
     assert_eq!((&said[8]["error"], &said[9]["error"]), (&json!(2), &json!(2)));
     assert_eq!(said[10]["raw"], json!("32E"), "a setting that is refused changes nothing");
@@ -40,8 +40,8 @@ fn words_come_on_a_terminal_and_on_a_port() {
     assert!(!bench.path("adapter").is_symlink());
 }
 
-/// 20 000 words a second: none is missing, each has its time, and its place on a shaft that turns ten times a second: 81 920
-/// steps a second are 4.096 a word.
+/// 20 000 words per second: none is missing, and each has its time, and its position on a shaft that turns ten times per
+/// second: 81 920 steps per second are 4.096 per word.
 #[test]
 fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     let bench = Bench::new();
@@ -58,7 +58,7 @@ fn a_stream_of_twenty_thousand_words_a_second_has_no_gap() {
     }
     assert_eq!((&stream["period_us"], &stream["ended"]), (&json!(50), &json!(true)), "{stream}");
     assert_eq!((&stream["least_move"], &stream["greatest_move"]), (&json!(4), &json!(5)), "{stream}");
-    // On a busy machine the host may start to count late; what it counts is without a gap all the same.
+    // On a busy computer the host may start to count late; the counted words have no gap even then.
     assert!(stream["words"].as_u64() > Some(30_000), "{stream}");
     assert!(said[3]["raw"].is_string(), "single words again when the stream has ended");
     // 25 clocks at 400 kHz are 62.5 µs, and 200 µs of pause: whole microseconds.
@@ -77,7 +77,7 @@ fn the_encoder_is_as_its_layout_says() {
         let port = Simulated::start(&bench, &[&["ssi", "--listen", "127.0.0.1:0"], arguments].concat());
         told(&format!("tcp:{}", port.place), actions)
     };
-    // AFS60: 18 bits of step 30000h, ERRSI on clock 20 for good, ERRSYNC on 21 in the first transfer alone.
+    // AFS60: 18 bits of step 30000h, ERRSI on clock 20 permanently, ERRSYNC on 21 only in the first transfer.
     let actions = ["ssi:21:1000000:30", "word", "word"];
     let said = with(&["--layout", "afs60", "--set", "ssi-error=ERRSI,ERRSYNC"], &actions);
     assert_eq!((&said[1]["raw"], &said[2]["raw"]), (&json!("180003"), &json!("180002")));

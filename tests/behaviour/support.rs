@@ -1,4 +1,4 @@
-//! A bench: a folder of its own, the built program, and foreign encoders and hosts (`tests/foreign`).
+//! Test support: a separate folder, the built program, and foreign encoders and hosts (`tests/foreign`).
 
 use std::fs;
 use std::io::{BufRead, BufReader, Write};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Longer than anything that ends by itself: a program that still runs then hangs.
+/// Time limit longer than any program that ends normally: a program that still runs then hangs.
 const HANGS: Duration = Duration::from_secs(60);
 
 /// A folder with everything that a test touches.
@@ -38,7 +38,7 @@ impl Bench {
         self.folder.path().join(name)
     }
 
-    /// Path of a file as an argument.
+    /// Returns the path of a file as an argument.
     pub(crate) fn file(&self, name: &str) -> String {
         self.path(name).to_str().unwrap().to_owned()
     }
@@ -52,7 +52,7 @@ impl Bench {
         fs::read_to_string(self.path(name)).unwrap()
     }
 
-    /// The program, about to be started.
+    /// Returns the program, about to be started.
     pub(crate) fn program(&self, arguments: &[&str]) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_encoder-studio"));
         command
@@ -71,41 +71,41 @@ impl Bench {
         finish(self.program(arguments))
     }
 
-    /// Everything in all files below the folder, of those that are text.
+    /// Returns everything in all files below the folder, of those that are text.
     pub(crate) fn everything_kept(&self) -> String {
         let mut text = String::new();
         collect(self.folder.path(), &mut text);
         text
     }
 
-    /// A text without the folder's random name.
+    /// Returns a text without the folder's random name.
     pub(crate) fn without_folder(&self, text: &str) -> String {
         text.replace(self.folder.path().to_str().unwrap(), "")
     }
 
-    /// Starts a foreign HIPERFACE encoder; `None`, and a line that says so, where that is not possible.
+    /// Starts a foreign HIPERFACE encoder; prints a line and returns `None` if that is not possible.
     pub(crate) fn encoder(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("encoder.py", "serial:", arguments)
     }
 
-    /// Starts a foreign kit encoder with UBICOM; `None`, and a line that says so, where that is not possible.
+    /// Starts a foreign kit encoder with UBICOM; prints a line and returns `None` if that is not possible.
     pub(crate) fn kit(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("ubicom_encoder.py", "serial:", arguments)
     }
 
-    /// Starts a foreign adapter on a pseudo-terminal, with the kit encoder behind it.
+    /// Starts a foreign adapter on a pseudo-terminal, with the kit encoder connected to it.
     pub(crate) fn adapter_on_terminal(&self, arguments: &[&str]) -> Option<Foreign> {
         self.on_terminal("bridge_adapter.py", "bridge:", arguments)
     }
 
-    /// Starts a foreign adapter on a TCP port, with the kit encoder behind it.
+    /// Starts a foreign adapter on a TCP port, with the kit encoder connected to it.
     pub(crate) fn adapter(&self, arguments: &[&str]) -> Option<Foreign> {
         let mut foreign = self.foreign("bridge_adapter.py", arguments)?;
         foreign.url = format!("bridge:tcp:{}", foreign.place);
         Some(foreign)
     }
 
-    /// Starts a foreign gateway with a K3 encoder behind it.
+    /// Starts a foreign gateway with a K3 encoder connected to it.
     pub(crate) fn gateway(&self, arguments: &[&str]) -> Option<Foreign> {
         let mut foreign = self.foreign("interbus_gateway.py", arguments)?;
         foreign.url = format!("modbus:{}", foreign.place);
@@ -120,7 +120,7 @@ impl Bench {
         Some(foreign)
     }
 
-    /// The same, whose drives take time to move, are told at run time what to do wrong, and keep a record of each packet.
+    /// Starts the same with drives that take time to move, receive their faults at run time, and record each packet.
     pub(crate) fn moving_target(&self, arguments: &[&str]) -> Option<Foreign> {
         let record = self.file("record");
         self.foreign("moving_target.py", &[&["--record", &record], arguments].concat())
@@ -157,7 +157,7 @@ impl Bench {
 fn collect(folder: &Path, text: &mut String) {
     for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
         let kind = entry.file_type().unwrap();
-        // The foreign encoder's own log holds what really went over the line.
+        // The foreign encoder's own log contains the real data of the line.
         let foreign = entry.file_name().to_str().is_some_and(|name| name.starts_with("log"));
         if kind.is_dir() {
             collect(&entry.path(), text);
@@ -174,9 +174,9 @@ pub(crate) fn finish(mut command: Command) -> Ran {
     ended(child, begun)
 }
 
-/// Waits for a program and takes what it said.
+/// Waits for a program and takes its output.
 pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
-    // What is printed fits into the pipes, except where a test polls for long; then a thread reads along.
+    // The output fits into the pipes, except if a test polls for long; then a thread reads it meanwhile.
     let reader = |pipe: Option<Box<dyn std::io::Read + Send>>| {
         std::thread::spawn(move || {
             let mut text = Vec::new();
@@ -196,27 +196,28 @@ pub(crate) fn ended(mut child: Child, begun: Instant) -> Ran {
         sleep(Duration::from_millis(5));
     };
     let took = begun.elapsed();
-    // A foreign encoder notices a client that goes and comes only if some milliseconds lie between.
+    // A foreign encoder notices that a client disconnects and connects only with some milliseconds in between.
     sleep(Duration::from_millis(20));
     Ran { status: status.code(), out: out.join().unwrap(), err: err.join().unwrap(), took }
 }
 
 impl Ran {
-    /// The one JSON object that was printed; it ended well.
+    /// Returns the one JSON object of the output; checks that the program succeeded.
     #[track_caller]
     pub(crate) fn json(&self) -> Value {
         assert_eq!(self.status, Some(0), "{self:?}");
         self.json_with(0)
     }
 
-    /// The one JSON object that was printed.
+    /// Returns the one JSON object that was printed.
     #[track_caller]
     pub(crate) fn json_with(&self, status: i32) -> Value {
         assert_eq!(self.status, Some(status), "{self:?}");
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
     }
 
-    /// Ended with this status, without output and with one to four lines on stderr that hold all these words.
+    /// Checks that it ended with this status, without output and with one to four lines on stderr that hold all these
+    /// words.
     #[track_caller]
     pub(crate) fn fails(&self, status: i32, words: &[&str]) {
         assert_eq!(self.status, Some(status), "{self:?}");
@@ -224,7 +225,7 @@ impl Ran {
         self.says(words);
     }
 
-    /// One to four lines on stderr, besides warnings in the log, that hold all these words.
+    /// Checks that one to four lines on stderr, besides warnings in the log, hold all these words.
     #[track_caller]
     pub(crate) fn says(&self, words: &[&str]) {
         let lines: Vec<&str> = self.err.lines().filter(|line| !line.trim_start().starts_with("WARN")).collect();
@@ -241,7 +242,7 @@ impl Ran {
 pub(crate) struct Foreign {
     child: Child,
     said: BufReader<ChildStdout>,
-    /// For `--link`.
+    /// The link for `--link`.
     pub(crate) url: String,
     /// The symbolic link to its terminal, or its address.
     pub(crate) place: String,
@@ -249,15 +250,15 @@ pub(crate) struct Foreign {
 }
 
 impl Foreign {
-    /// What was asked since the last time, a line each: of HIPERFACE the frames in hex, of BiSS the registers, of INTERBUS the
-    /// words.
+    /// Returns the requests since the last call, a line each: for HIPERFACE the frames in hex, for BiSS the registers, for
+    /// INTERBUS the words.
     pub(crate) fn requests(&self) -> Vec<String> {
         let text = fs::read_to_string(&self.log).unwrap_or_default();
         fs::write(&self.log, "").unwrap();
         text.lines().map(str::to_owned).collect()
     }
 
-    /// Registers written since the last time: `0x24:0x10 AA`.
+    /// Returns the registers written since the last call: `0x24:0x10 AA`.
     pub(crate) fn registers_written(&self) -> Vec<String> {
         self.requests().iter().filter_map(|line| line.strip_prefix("W ")).map(str::to_owned).collect()
     }
@@ -268,13 +269,14 @@ impl Foreign {
         self.requests().into_iter().filter(|frame| !reads.contains(&frame.get(3..5).unwrap_or_default())).collect()
     }
 
-    /// Its replies are waited for, however busy the computer is: what is gone once it was asked for must not come too late.
+    /// Waits longer for its replies, because the computer may be busy: a reply to a request that removes data must not come
+    /// too late.
     pub(crate) fn waited_for(mut self) -> Self {
         self.url.push_str("?margin=1500");
         self
     }
 
-    /// Commands it, where it takes commands.
+    /// Sends it a command, if it takes commands.
     pub(crate) fn command(&mut self, line: &str) {
         writeln!(self.child.stdin.as_mut().unwrap(), "{line}").unwrap();
         let mut done = String::new();
@@ -300,17 +302,17 @@ impl Drop for Foreign {
     }
 }
 
-/// A foreign HIPERFACE host at a path or `tcp:HOST:PORT`: a line a reply, `-` for none.
+/// Runs a foreign HIPERFACE host at a path or `tcp:HOST:PORT`: a line per reply, `-` for none.
 pub(crate) fn host(path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host("master.py", path, arguments)
 }
 
-/// A foreign host: a line for each thing it was told to do.
+/// Runs a foreign host: a line for each action.
 pub(crate) fn foreign_host(script: &str, path: &str, arguments: &[&str]) -> Vec<String> {
     foreign_host_with(python(script).unwrap(), path, arguments)
 }
 
-/// The same with a Python that has been chosen.
+/// Runs the same with a chosen Python.
 pub(crate) fn foreign_host_with(mut command: Command, path: &str, arguments: &[&str]) -> Vec<String> {
     let options: Vec<&str> = arguments.iter().copied().filter(|argument| argument.starts_with("--")).collect();
     let frames: Vec<&str> = arguments.iter().copied().filter(|argument| !argument.starts_with("--")).collect();
@@ -320,7 +322,7 @@ pub(crate) fn foreign_host_with(mut command: Command, path: &str, arguments: &[&
     String::from_utf8(stdout).unwrap().lines().map(str::to_owned).collect()
 }
 
-/// One of our virtual devices in a process of its own.
+/// A virtual device in a separate process.
 pub(crate) struct Simulated {
     child: Option<Child>,
     /// The word after `ready KIND`.
@@ -328,7 +330,7 @@ pub(crate) struct Simulated {
 }
 
 impl Simulated {
-    /// The first argument is its kind.
+    /// Starts it; the first argument is its kind.
     pub(crate) fn start(bench: &Bench, arguments: &[&str]) -> Self {
         let mut child = bench.program(&[&["simulate"], arguments].concat()).spawn().unwrap();
         let mut line = String::new();
@@ -358,10 +360,10 @@ impl Drop for Simulated {
     }
 }
 
-/// Runs its arguments on a terminal of their own; what is typed comes from stdin.
+/// Runs its arguments on a separate terminal; the typed input comes from stdin.
 const ON_A_TERMINAL: &str = "import os, pty, sys; sys.exit(os.waitstatus_to_exitcode(pty.spawn(sys.argv[1:])))";
 
-/// The program on a terminal on which somebody types an answer.
+/// Runs the program on a terminal on which an answer is typed.
 pub(crate) fn asked(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     let program = bench.program(arguments);
     let mut command = Command::new("python3");
@@ -372,13 +374,13 @@ pub(crate) fn asked(bench: &Bench, arguments: &[&str], answer: &str) -> Ran {
     ended(child, Instant::now())
 }
 
-/// Says that a test is skipped. Where everything has to be there (`ENCODER_STUDIO_NO_SKIP`), it fails instead.
+/// Prints that a test is skipped. If everything has to be available (`ENCODER_STUDIO_NO_SKIP`), it fails instead.
 pub(crate) fn skip(why: &str) {
     assert!(std::env::var_os("ENCODER_STUDIO_NO_SKIP").is_none(), "may not be skipped: {why}");
     println!("skipped: {why}");
 }
 
-/// Python with one of the foreign programs; `None`, and a line that says so, where there is none.
+/// Returns Python with one of the foreign programs; prints a line and returns `None` if there is none.
 pub(crate) fn python(script: &str) -> Option<Command> {
     let there = Command::new("python3").arg("--version").output().is_ok_and(|output| output.status.success());
     if !there {
@@ -390,8 +392,8 @@ pub(crate) fn python(script: &str) -> Option<Command> {
     Some(command)
 }
 
-/// Python with pycomm3 and one of the foreign programs; `None`, and a line that says so, where there is none. `.ci/run` makes
-/// an environment with it and names its interpreter in `ENCODER_STUDIO_PYCOMM3`.
+/// Returns Python with pycomm3 and one of the foreign programs; prints a line and returns `None` if there is none.
+/// `.ci/run` makes an environment with it and names its interpreter in `ENCODER_STUDIO_PYCOMM3`.
 pub(crate) fn pycomm3(script: &str) -> Option<Command> {
     let Some(interpreter) = std::env::var_os("ENCODER_STUDIO_PYCOMM3") else {
         skip("ENCODER_STUDIO_PYCOMM3 names no Python with pycomm3 (.ci/run makes one)");
@@ -402,7 +404,7 @@ pub(crate) fn pycomm3(script: &str) -> Option<Command> {
     Some(command)
 }
 
-/// A frame with its checksum, the XOR of all bytes, as the foreign encoder logs it.
+/// Returns a frame with its checksum, the XOR of all bytes, as the foreign encoder logs it.
 pub(crate) fn frame(bytes: &str) -> String {
     let sum = bytes.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).fold(0, |sum, byte| sum ^ byte);
     format!("{bytes} {sum:02X}")

@@ -1,7 +1,8 @@
-"""A drive's axis that accelerates, turns and brakes: its states, its status word and its position, without I/O and without a
-clock. Written from the project's reference (protocol/hiperdrive.md, sections 2 to 5) alone, with the standard library alone.
+"""A drive's axis that accelerates, turns and brakes: its states, its status word and its position, without I/O and
+without a clock. Written from the project's reference (protocol/hiperdrive.md, sections 2 to 5) only, with the standard
+library only.
 
-Whether a control word commands motion is decided here, from the reference alone: see `Axis.commands`.
+Whether a control word commands motion is decided here, from the reference only: see `Axis.commands`.
 """
 
 import math
@@ -11,10 +12,10 @@ JOG_STEPS, CONTROL, SPEED_MODE = 0x0300, 0x0400, 0x1000
 PRESENT = 0x0A30
 FAULT, LOCK, WARNING, REACHED, ACKNOWLEDGED, STANDING, OUTSIDE = 0x0008, 0x0040, 0x0080, 0x0400, 0x1000, 0x2000, 0x8000
 LOWER, UPPER, TARGET_INVALID, TIMEOUT = 0x8304, 0x8305, 0x8503, 0x8601
-# Revolutions a minute at 100 %, and the seconds to get there from standstill.
+# Revolutions per minute at 100 %, and the seconds to reach them from standstill.
 RPM, RAMP = 35.0, 0.25
-# Where a drive has gone so many 65536ths of a turn against the commanded direction, it has turned the wrong way; so many
-# behind its target, it has passed that.
+# A drive that has moved this number of 65536ths of a turn against the commanded direction has turned the wrong way; this
+# far past its target, it has passed it.
 AWRY = 64
 
 
@@ -41,9 +42,9 @@ class Axis:
         return 3 if self.word & ENABLE else 2
 
     def commands(self, word):
-        """A word commands motion: in speed mode while bit 6 is set; in positioning with bits 4 and 5 while a job is under way
-        or where bit 6 begins one, because it differs from status bit 12; with bit 8 or 9 in any case. A word that began a motion
-        which a fault has ended still commands it. Asked before `obey`."""
+        """A word commands motion: in speed mode while bit 6 is set; in positioning with bits 4 and 5 while a job is under
+        way or if bit 6 begins one, because it differs from status bit 12; with bit 8 or 9 in any case. A word that began
+        a motion which a fault has ended still commands it. Called before `obey`."""
         if word & (CONTROL | ON | ENABLE) != CONTROL | ON | ENABLE:
             return False
         if word & JOG_STEPS:
@@ -57,7 +58,7 @@ class Axis:
         return self.is_fault and word == self.word and self.was_job
 
     def obey(self, word, speed, torque, target):
-        """What the control word makes of it: a line for the log, or None."""
+        """Applies the control word; returns a line for the log, or None."""
         before, self.word, self.percent = self.word, word, speed
         falls = before & ~word
         if self.is_fault and falls & ACKNOWLEDGE:
@@ -98,7 +99,7 @@ class Axis:
         return "START"
 
     def halt(self):
-        """Whatever moves it ends; it brakes."""
+        """Ends any motion; the axis brakes."""
         self.run, self.job, self.is_paused = 0, None, False
 
     def fail(self, code):
@@ -111,7 +112,7 @@ class Axis:
         self.velocity = 0.0
 
     def wanted(self):
-        """The commanded velocity in steps a second, and the target where there is one."""
+        """Returns the commanded velocity in steps per second, and the target if there is one."""
         most = RPM / 60 * self.turn * self.percent / 100
         if self.run:
             end = None if self.is_endless or self.is_unlimited else (self.upper if self.run > 0 else self.lower)
@@ -123,12 +124,12 @@ class Axis:
         return 0.0, None
 
     def direction(self):
-        """Where it is commanded to: +1, -1 or 0."""
+        """Returns the commanded direction: +1, -1 or 0."""
         velocity, _ = self.wanted()
         return (velocity > 0) - (velocity < 0)
 
     def advance(self, seconds):
-        """Time passes: lines for the log."""
+        """Lets time pass; returns lines for the log."""
         wanted, end = self.wanted()
         gain = RPM / 60 * self.turn / RAMP
         if end is not None and not self.is_reversed:
@@ -152,11 +153,11 @@ class Axis:
         return bool(self.run) and self.is_endless
 
     def blocks(self, before):
-        """A limit was crossed from inside."""
+        """Returns whether a limit was crossed from inside."""
         return self.lower <= before <= self.upper and not self.lower <= self.position <= self.upper
 
     def arrive(self, end):
-        # A run that has come to a limit stands there; a job is done, and the word that began it is harmless.
+        # A run that has reached a limit stops there; a job is done, and the word that began it is harmless.
         is_new = not self.is_standing
         self.position, self.velocity, self.is_standing = float(end), 0.0, True
         if self.job is not None:
@@ -164,7 +165,7 @@ class Axis:
         return ["STAND"] if is_new else []
 
     def strays(self):
-        """What is wrong with where it is: BEYOND a limit in the commanded direction, PAST its target, WRONG way."""
+        """Returns the error of the position: BEYOND a limit in the commanded direction, PAST its target, WRONG way."""
         direction, found = self.direction(), []
         if direction > 0 and self.position > self.upper or direction < 0 and self.position < self.lower:
             found.append("BEYOND")
@@ -185,6 +186,6 @@ class Axis:
         return word
 
     def speed(self):
-        """In tenths of a revolution a minute."""
+        """Returns the speed in tenths of a revolution per minute."""
         velocity = -self.velocity if self.is_reversed else self.velocity
         return round(velocity / self.turn * 600)

@@ -1,4 +1,4 @@
-"""Packets of the bridge protocol, from protocol/bridge.md alone, with the Python standard library alone."""
+"""Packets of the bridge protocol, from protocol/bridge.md only, with the Python standard library only."""
 
 HELLO, SUPPLY = 0x01, 0x02
 SSI_CONFIG, SSI_READ, SSI_STREAM = 0x10, 0x11, 0x12
@@ -26,7 +26,7 @@ for _byte in range(256):
 
 
 def fast_crc16(data):
-    """As crc16, for streams."""
+    """Returns the same as crc16, for streams."""
     crc = 0xFFFF
     for byte in data:
         crc = (crc << 8 & 0xFFFF) ^ TABLE[crc >> 8 ^ byte]
@@ -47,7 +47,7 @@ def stuff(data):
 
 
 def unstuff(data):
-    """None where it is broken."""
+    """Returns None if it is damaged."""
     out, at = bytearray(), 0
     while at < len(data):
         code = data[at]
@@ -66,7 +66,7 @@ def emit(seq, op, body=b""):
 
 
 def parse(stuffed):
-    """Sequence number, operation, body; None where the packet is broken."""
+    """Returns sequence number, operation, body; None if the packet is damaged."""
     data = unstuff(stuffed)
     if data is None or len(data) < 4 or fast_crc16(data[:-2]) != int.from_bytes(data[-2:], "little"):
         return None
@@ -78,7 +78,7 @@ def text(words):
 
 
 def crc6(data, bits):
-    """Of a position frame: x6 + x + 1, from 0 on, sent inverted."""
+    """Returns the CRC of a position frame: x6 + x + 1, from 0 on, sent inverted."""
     crc = 0
     for bit in range(bits - 1, -1, -1):
         feedback = crc >> 5 ^ data >> bit & 1
@@ -90,6 +90,6 @@ assert crc6(0x1234 << 19 | 0x18000 << 2 | 3, 35) == 0x0F  # biss.md 2
 
 
 def frame(multiturn, singleturn, error, warning):
-    """The 41 bits of a position, right-justified."""
+    """Returns the 41 bits of a position, right-justified."""
     data = multiturn << 19 | singleturn << 2 | (not error) << 1 | (not warning)
     return data << 6 | crc6(data, 35)

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""An adapter that speaks the bridge protocol on a TCP port or a pseudo terminal, with the kit encoder and an SSI encoder on
-its shaft behind it, for tests against a process that is not our program.
+"""An adapter with the bridge protocol on a TCP port or a pseudo terminal, with the kit encoder and an SSI encoder on the
+same shaft, for tests against a separate process with separate code.
 
-Written from protocol/bridge.md, biss.md and ssi.md alone, with the Python standard library alone; what the encoder does is in
-kit.py, what an SSI word is in ssi.py. It prints one line "ready ADDRESS" and serves one client after the other until SIGTERM (or the end of stdin,
---stdin-eof).
+Written from protocol/bridge.md, biss.md and ssi.md only, with the Python standard library only; the encoder is in kit.py,
+SSI words are in ssi.py. It prints one line "ready ADDRESS" and serves one client after the other until SIGTERM (or the
+end of stdin, --stdin-eof).
 """
 
 import argparse
@@ -91,7 +91,7 @@ class Adapter:
         if op == bridge.REG_WRITE:
             if self.encoder.write(place, body[2]) is None:
                 raise Refused(bridge.NO_ANSWER, "no answer")
-            # The register is given back in the control frame that writes it; a command may restart the encoder then.
+            # The control frame that writes a register returns its value; a command may restart the encoder then.
             value = self.encoder.read(place) if self.encoder.answers() else body[2]
         else:
             value = self.encoder.read(place)
@@ -100,7 +100,7 @@ class Adapter:
         return bytes([value])
 
     def supply(self, on, millivolt):
-        """HELLO does not switch it, nor does a host that goes."""
+        """Keeps the supply: HELLO does not switch it, nor does a host that disconnects."""
         self.encoder.note(f"S {millivolt}" if on else "S off")
         if on and not self.encoder.supplied:
             self.encoder.restart()
@@ -129,7 +129,7 @@ class Adapter:
         return self.clock(moment) + self.word().to_bytes(8, "little")
 
     def word(self):
-        """The bits of an SSI burst: those of the frame, and zeros behind them."""
+        """Returns the bits of an SSI burst: those of the frame, followed by zeros."""
         position = self.encoder.position()
         if self.options.line in ("open", "high") or position is None:
             return (1 << self.clocks) - 1
@@ -137,7 +137,7 @@ class Adapter:
             return 0
         form = self.options.ssi
         self.words += 1
-        # The last of the error bits is one that a transfer clears.
+        # The last of the error bits is cleared by a transfer.
         error = self.options.ssi_error and self.words % self.options.ssi_error == 0
         frame = form.frame(position[0], position[1], 17, int(error))
         return frame << self.clocks - form.bits if self.clocks >= form.bits else frame >> form.bits - self.clocks
@@ -146,7 +146,7 @@ class Adapter:
         return int((moment - self.began) * 1e6).to_bytes(8, "little")
 
     def frame(self):
-        """Status and bits of a position frame."""
+        """Returns status and bits of a position frame."""
         if self.options.line != "good":
             return {"open": (1, 0), "low": (2, 0), "high": (3, (1 << self.bits) - 1)}[self.options.line]
         position = None if self.encoder.supplied is False else self.encoder.position()
@@ -162,7 +162,7 @@ class Adapter:
         return None if self.stream is None else 0.01
 
     def push(self):
-        """Frames that are due, at most as many as fit into a packet."""
+        """Returns the frames that are due, at most as many as fit into a packet."""
         while self.stream:
             period, start, sent, is_ssi = self.stream
             count = min(int((time.monotonic() - start) * 1e6 / period) - sent, 60)
@@ -183,7 +183,7 @@ class Adapter:
 
 
 def supplied(options):
-    """The encoder; with None its supply is no matter of the adapter."""
+    """Returns the encoder; with None the adapter does not control its supply."""
     encoder = kit.Kit(options)
     encoder.supplied = {None: None, "off": False, "on": True}[options.supply]
     return encoder

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
-"""A host of the bridge protocol: carries out what its arguments say and prints a line of JSON for each.
+"""A host of the bridge protocol: carries out its arguments and prints a line of JSON for each.
 
-Written from protocol/bridge.md, biss.md and ssi.md alone, with the Python standard library alone, so that it can examine our own
-simulated adapter.
+Written from protocol/bridge.md, biss.md and ssi.md only, with the Python standard library only, so that it can check the
+program's virtual adapter.
 
   bridge_host.py tcp:127.0.0.1:4000 hello config:2000000:35:6:18 frame reg:66 reg:40=02 reg:05 stream:50:1.0
 
   hello                       config:CLOCK_HZ:DATA_BITS:CRC_BITS:TIMEOUT_US      frame     one position frame
   reg:HEX[=HEX]               read or write a register                          wait:S    waits
-  stream:PERIOD_US:SECONDS    counts frames, gaps, wrong CRCs                   raw:HEX   bytes as they are
+  stream:PERIOD_US:SECONDS    counts frames, gaps, wrong CRCs                   raw:HEX   bytes unchanged
   ssi:CLOCKS:CLOCK_HZ:PAUSE_US                                                  word      one SSI word
   words:PERIOD_US:SECONDS:FORMAT    counts words and gaps, and how far the position moves from one to the next; FORMAT is
                                     that of ssi.py: bits of turns, of steps, code, error bits
 
-Every argument but stream, words and raw waits for one reply, at most half a second.
+Every argument except stream, words and raw waits for one reply, at most half a second.
 """
 
 import argparse
@@ -36,7 +36,7 @@ class Host:
         self.wire.send(b"\x00")  # what stood before is nobody's
 
     def ask(self, op, body=b""):
-        """The reply's operation and body; None where none came."""
+        """Returns the reply's operation and body; None without a reply."""
         self.seq = (self.seq + 1) % 256
         self.wire.send(bridge.emit(self.seq, op, body))
         deadline, answer = time.monotonic() + 0.5, None
@@ -103,7 +103,7 @@ class Host:
         return {}
 
     def count(self, op, period, seconds, examine):
-        """Starts a stream, takes what comes, ends it; everything is looked at afterwards."""
+        """Starts a stream, reads it and ends it; everything is checked afterwards."""
         self.stream = []
         body, told = self.reply(op, period.to_bytes(4, "little"))
         if told:

@@ -1,5 +1,5 @@
-"""EtherNet/IP frames and CIP messages as a target sees them, from the project's reference (protocol/hiperdrive.md, section 7)
-alone, with the Python standard library alone."""
+"""EtherNet/IP frames and CIP messages on the side of a target, from the project's reference (protocol/hiperdrive.md,
+section 7) only, with the Python standard library only."""
 
 import struct
 
@@ -11,7 +11,7 @@ NOT_SETTABLE, TOO_SHORT, NO_ATTRIBUTE, TOO_LONG = 0x0E, 0x13, 0x14, 0x15
 
 
 class Refused(Exception):
-    """A request is not done."""
+    """A request that is refused."""
 
     def __init__(self, status, *extended):
         super().__init__(status)
@@ -23,7 +23,7 @@ def frame(command, session, context, data=b"", status=0):
 
 
 def take(buffer):
-    """The next whole frame: command, session, context, data; None where there is none yet."""
+    """Returns the next complete frame: command, session, context, data; None if there is none yet."""
     if len(buffer) < HEADER.size:
         return None
     command, length, session, _status, context, _options = HEADER.unpack(buffer[:HEADER.size])
@@ -49,7 +49,7 @@ def parse_items(data):
 
 
 def parse_request(message):
-    """Service, {class, instance, attribute}, data."""
+    """Returns service, {class, instance, attribute}, data."""
     service, words = message[0], message[1]
     path, data = message[2:2 + 2 * words], message[2 + 2 * words:]
     numbers, at = {}, 0
@@ -75,6 +75,6 @@ def socket_address(port, address="0.0.0.0"):
 
 
 def identity(vendor, product, serial, name):
-    """Attributes 1 to 7 of the identity object."""
+    """Returns attributes 1 to 7 of the identity object."""
     name = name.encode("ascii")
     return struct.pack("<HHHBBHI", vendor, 0x2B, product, 1, 2, 0x0030, serial) + bytes([len(name)]) + name

@@ -1,9 +1,8 @@
-"""The HIPERFACE encoder behind encoder.py, without its line: bytes of a request in, bytes of the reply out.
+"""The HIPERFACE encoder of encoder.py, without its line: takes the bytes of a request, returns those of the reply.
 
-Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" alone, with the Python standard library alone. Where
-the manual is silent the usual behaviour is taken: an error frame is the reply to 50h with one code, D0h where more
-codes wait; what is refused is checked in the order checksum, command, length, argument, field, range, code, write
-enable, size.
+Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" only, with the Python standard library only. Where the
+manual is silent it behaves as usual: an error frame is the reply to 50h with one code, D0h if more codes wait; a request
+is checked in the order checksum, command, length, argument, field, range, code, write enable, size.
 """
 
 import json
@@ -26,7 +25,7 @@ def xor(data):
 
 
 class Refused(Exception):
-    """The request is answered with an error frame carrying this code."""
+    """An error: the request is answered with an error frame with this code."""
 
     def __init__(self, code):
         super().__init__(code)
@@ -51,7 +50,7 @@ def settings_valid(byte):
 
 
 class Encoder:
-    """The encoder without its line: a request's bytes in, a reply's bytes or None out."""
+    """The encoder without its line: takes the bytes of a request and returns those of the reply, or None."""
 
     def __init__(self, options):
         self.options = options
@@ -69,7 +68,7 @@ class Encoder:
             self.add_field(field)
         if options.state and os.path.exists(options.state):
             self.load(options.state)
-        # Argument bytes (None: checked by the command) and what to do with them.
+        # Argument bytes (None: checked by the command) and the functions of the commands.
         self.commands = {
             0x42: (0, self.read_position), 0x43: (5, self.set_position), 0x44: (1, self.read_analogue),
             0x46: (0, self.read_counter), 0x47: (0, self.increment), 0x49: (1, self.clear_counter),
@@ -134,7 +133,7 @@ class Encoder:
     # Data fields
 
     def place(self, number):
-        """Status and start of a data field within its memory; field FFh is the extended label."""
+        """Returns status and start of a data field within its memory; field FFh is the extended label."""
         if number == 0xFF and self.options.label:
             return 0x88 | (len(self.options.label) // BLOCK - 1), 0, self.options.label
         need(number < len(self.fields), NO_FIELD)
@@ -225,7 +224,7 @@ class Encoder:
         need(settings_valid(settings), ARGUMENT)
         return bytes([settings])
 
-    # What is kept without power
+    # Persistent content
 
     def add_field(self, field):
         status, content = int(field["status"], 16), bytes.fromhex(field.get("bytes", ""))

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""A HIPERFACE encoder on a pseudo terminal, for tests against a process that is not our program.
+"""A HIPERFACE encoder on a pseudo terminal, for tests against a separate process with separate code.
 
-Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" alone, with the Python standard library alone. This
-file is the line and the options; what the encoder does is in device.py.
+Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" only, with the Python standard library only. This file
+has the line and the options; the encoder is in device.py.
 
-It opens a pty, prints one line "ready PATH" and answers until SIGTERM (or the end of stdin, --stdin-eof). A request
-ends with 6 ms of silence (4.6 ms on a real line). A client that closes the line is noticed if it stays away for some
+It opens a pty, prints one line "ready PATH" and answers until SIGTERM (or the end of stdin, --stdin-eof). A request ends
+with 6 ms of silence (4.6 ms on a real line). A client that closes the line is noticed if it stays away for some
 milliseconds. The state is JSON:
 
   {"address": "40", "settings": "E4", "codes": ["55", "55", "55", "55"], "counter": 0, "position": 918833,
@@ -31,7 +31,7 @@ READ_STATUS = 0x50
 
 
 class Line:
-    """Cuts what arrives into frames, and answers them."""
+    """Splits the received bytes into frames, and answers them."""
 
     def __init__(self, encoder, options):
         self.encoder, self.options = encoder, options
@@ -86,7 +86,7 @@ class Line:
             self.terminal.write(reply)
 
     def answer_status(self, how, reply):
-        """As a line or a device server spoils a reply to 50h."""
+        """Damages a reply to 50h as a line or a device server may."""
         before, self.last_status = self.last_status, reply
         time.sleep(self.options.delay)
         parts = {

@@ -1,21 +1,22 @@
 #!/usr/bin/env python3
-"""A master of HIPERDRIVE drives over EtherNet/IP: does one thing after the other and prints a line for each.
+"""A master of HIPERDRIVE drives over EtherNet/IP: carries out its arguments one after the other and prints a line for
+each.
 
-Written from the project's reference of the drive's manual and of the packets alone, with the Python standard library alone.
+Written from the project's reference of the drive's manual and of the packets only, with the Python standard library only.
 
-  get:N  set:N=V       a parameter by its number, as `--drive` 1 has it; set takes negative numbers too; a refusal is `status 09`
+  get:N  set:N=V       a parameter by its number for `--drive` 1; set takes negative numbers too; a refusal is `status 09`
   raw:HEX              a CIP request; the reply in hex
   frame:COMMAND:HEX    an encapsulation frame in the session; the status of its reply, or `silence`
-  identity, shout      who is there, over TCP or UDP: vendor, code, serial number, name
+  identity, shout      the devices in the network, over TCP or UDP: vendor, code, serial number, name
   open  open:RPI:MULT  the cyclic connection, of RPI ms (default 10) and a time-out of RPI * 4 * 2**MULT (default 1)
   word:STW             this control word for five intervals; the status word
-  until:MASK:VALUE     goes on until the status word is so; the status word, or `late`
-  move:TARGET          leads the drive to enabled and moves it there; the position that it has reached
-  begin:TARGET         the same, and does not wait
-  jog:MS               runs clockwise in speed mode as long, stops, waits for the standstill: `moved` and `stands`, or what else
-  hush                 sends nothing more for as long as the time-out and half a second, and says whether the drive stands
+  until:MASK:VALUE     waits for this status word; the status word, or `late`
+  move:TARGET          leads the drive to enabled and moves it there; the reached position
+  begin:TARGET         the same, without waiting
+  jog:MS               runs clockwise in speed mode for MS, stops, waits for the standstill: `moved` and `stands`, or an error
+  hush                 sends nothing for the time-out and half a second; then whether the drive is at standstill
   flood:N              N datagrams of garbage, and half of N streams of it
-  leave                closes the TCP connection and makes another, while cyclic data go on
+  leave                closes the TCP connection and opens another, while cyclic data continue
   close, end           ForwardClose; UnRegisterSession
 """
 
@@ -38,7 +39,7 @@ ENABLED = (0x0000, 0x0400, 0x0401, 0x0409, 0x0439)
 
 
 class Refused(Exception):
-    """A reply that says no."""
+    """A refusal by the target."""
 
 
 def frame(command, session, data=b"", context=b"python\0\0"):
@@ -69,7 +70,7 @@ class Target:
         return data
 
     def ask(self, command, data=b""):
-        """Status, session and data of the reply."""
+        """Returns status, session and data of the reply."""
         self.tcp.sendall(frame(command, self.session, data))
         got, length, session, status, context, _ = struct.unpack("<HHII8sI", self.take(24))
         if (got, context) != (command, b"python\0\0"):
@@ -77,7 +78,7 @@ class Target:
         return status, session, self.take(length)
 
     def message(self, request, sockets=b""):
-        """A CIP request; its reply, and the items behind it."""
+        """Sends a CIP request; returns its reply, and the items after it."""
         count = 2 + (1 if sockets else 0)
         data = struct.pack("<IHHHHHH", 0, 0, count, 0, 0, 0xB2, len(request)) + request + sockets
         status, _, reply = self.ask(RR_DATA, data)
@@ -88,7 +89,7 @@ class Target:
         return reply[16:16 + length], reply[16 + length:]
 
     def done(self, request, sockets=b""):
-        """The data of a reply that says yes, and the items behind it."""
+        """Returns the data of a successful reply, and the items after it."""
         reply, rest = self.message(request, sockets)
         assert reply[0] == request[0] | 0x80, reply.hex(" ")
         if reply[2]:
@@ -98,7 +99,7 @@ class Target:
 
 
 class Cyclic(threading.Thread):
-    """The cyclic connection: sends its set-point every interval and keeps what comes back."""
+    """The cyclic connection: sends its set-point every interval and keeps the received data."""
 
     def __init__(self, target, options, rpi_ms, multiplier):
         super().__init__(daemon=True)
@@ -163,7 +164,7 @@ class Cyclic(threading.Thread):
             self.status, _, self.position = struct.unpack("<Hhi", packet[at:at + 8])
 
     def wait(self, condition):
-        """Five packets go by at least, so that what comes is an answer to what was sent."""
+        """Waits for at least five packets, so that the received ones are an answer to the sent ones."""
         begin, came = time.monotonic(), self.came
         while time.monotonic() - begin < PATIENCE:
             if self.came >= came + 5 and condition():
@@ -211,7 +212,7 @@ class Master:
         cyclic = self.cyclic
         for control in ENABLED:
             cyclic.word(control)
-        # Bit 6 is to differ from bit 12 of the status word.
+        # Bit 6 has to differ from bit 12 of the status word.
         cyclic.out[3] = target
         cyclic.word(0x0439 if cyclic.status & 0x1000 else 0x0479)
 
@@ -225,7 +226,7 @@ class Master:
         cyclic.out[0] = 0x1419
         stands = cyclic.wait(lambda: cyclic.status & 0x2000)
         moved = cyclic.position > began
-        # Out of speed mode over "ready", so that no old target is a new job; then nothing moves.
+        # From speed mode through "ready", so that no old target is a new job; then nothing moves.
         cyclic.word(0x0400)
         where, cyclic.out[1] = cyclic.position, 100
         for control in ENABLED[2:]:

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""pycomm3, a client of EtherNet/IP that others have written, at HIPERDRIVE drives: prints a line for each thing it does.
+"""Runs pycomm3, a client of EtherNet/IP by other authors, with HIPERDRIVE drives: prints a line for each action.
 
-  identity             ListIdentity: vendor, serial number, name
-  get:WAY:N            parameter N of drive 1, its data in hex; WAY is plain, wrapped (Unconnected_Send) or connected
-  set:WAY:N:HEX        sets it
-  all                  Get_Attributes_All of the identity object
+identity             ListIdentity: vendor, serial number, name
+get:WAY:N            parameter N of drive 1, its data in hex; WAY is plain, wrapped (Unconnected_Send) or connected
+set:WAY:N:HEX        sets it
+all                  Get_Attributes_All of the identity object
 """
 
 import logging
@@ -41,7 +41,7 @@ def carry_out(driver, place, thing):
 
 
 def main():
-    # What is refused is printed here, not logged.
+    # Refusals are printed here, not logged.
     logging.disable(logging.CRITICAL)
     place, things = sys.argv[1], sys.argv[2:]
     with CIPDriver(place) as driver:

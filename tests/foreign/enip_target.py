@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""An EtherNet/IP target with HIPERDRIVE parameters in a dictionary, with the troubles that are asked for.
+"""An EtherNet/IP target with HIPERDRIVE parameters in a dictionary, with faults on request.
 
-Written from the project's reference (protocol/hiperdrive.md) and the manual's table (6.2) alone, with the Python standard
-library alone. Explicit messages over TCP, ListIdentity and cyclic data over UDP at the same port. Its drives are where they are
-told to be at once. The log has a line for what happens: `SET 158 -65536`, `STORE`, `RESET`, `NETWORK 3`, `OPEN 16`, `STW 1 0479`, `CLOSE`, `LOST`.
+Written from the project's reference (protocol/hiperdrive.md) and the manual's table (6.2) only, with the Python standard
+library only. Explicit messages over TCP, ListIdentity and cyclic data over UDP at the same port. Its drives reach their
+targets at once. The log has a line for each event: `SET 158 -65536`, `STORE`, `RESET`, `NETWORK 3`, `OPEN 16`, `STW 1
+0479`, `CLOSE`, `LOST`.
 """
 
 import argparse
@@ -41,7 +42,8 @@ DRIVE = {
     190: (U32, 38400, True, True, (9600, 19200, 38400)), 192: (U16, 50, True, True, 0, 65535), 197: (U8, 0, True, False, 0, 0),
     198: (I32, 0, True, True, LEAST, MOST), 199: (U8, 0, True, False, 0, 1),
 }
-# Turns either way (section 5), of variants 1 to 12 and of 13; what is a step of the keys is no longer than both ways together.
+# Turns either way (section 5), of variants 1 to 12 and of 13; a step of the keys is no longer than both directions
+# together.
 TURNS = {**{variant: 512 for variant in range(1, 13)}, 13: 16000}
 REACH = {158: 1, 160: 1, 198: 1, 170: 2, 176: 2}
 NUMBERS = {1: {True: I8, False: U8}, 2: {True: I16, False: U16}, 4: {True: I32, False: U32}}
@@ -79,7 +81,7 @@ class Station:
         return drive, base, row
 
     def kind(self, number, row):
-        """As it is read: of the manual's length, unless another one is asked for."""
+        """Returns the value as read: with the length of the manual, unless another one is requested."""
         length = self.options.lengths.get(number)
         return NUMBERS[length][row[0].islower()] if length else row[0]
 
@@ -131,7 +133,7 @@ class Station:
             self.values[number] = value
 
     def reach(self, drive, base):
-        """The most steps either way, of a parameter that turns bound; of another as far as a number goes."""
+        """Returns the most steps either way for a parameter that the turns limit; for another the range of its type."""
         if base not in REACH:
             return 2**32
         turns = REACH[base] * TURNS[self.of(drive, 120)]
@@ -149,7 +151,7 @@ class Station:
         self.busy_until = time.monotonic() + self.options.busy / 1000
 
     def obey(self, drive, word, target):
-        """Process data: what is wanted is so at once."""
+        """Handles process data: commanded values are reached at once."""
         self.note_word(drive, word)
         self.values[101 + 100 * (drive - 1)] = word
         status = 0x0A30 | 0x2000
@@ -195,7 +197,7 @@ class Target:
         return cip.frame(cip.LIST_IDENTITY, 0, context, cip.items((0x0C, item)))
 
     def take(self, frame, peer):
-        """The bytes that come back; None: the target is gone."""
+        """Returns the bytes of the reply; None: the target disconnects."""
         command, session, context, data = frame
         if command == cip.LIST_IDENTITY:
             return self.list_identity(context)
@@ -359,7 +361,7 @@ def serve(options):
                     if answer is None:
                         return
                     if target.station.answers_after:
-                        # What is asked meanwhile is answered meanwhile.
+                        # Requests that arrive meanwhile are answered meanwhile.
                         waiting.append((time.monotonic() + target.station.answers_after, client, answer))
                         target.station.answers_after = 0.0
                         continue

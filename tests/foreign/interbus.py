@@ -1,8 +1,8 @@
-"""A K3 encoder: what an OUT word does and what its IN word is then.
+"""A K3 encoder: the effect of an OUT word, and the resulting IN word.
 
-Written from the project's reference of POSITAL's manual UME-IB (protocol/interbus.md) alone, with the Python standard
-library alone. Where the manual is silent: a store is spent whenever something was written, an encoder that is reading out
-goes on where it was, and what means nothing gets no reaction.
+Written from the project's reference of POSITAL's manual UME-IB (protocol/interbus.md) only, with the Python standard
+library only. Where the manual is silent: a store is spent whenever a value was written, an encoder that ends a read-out
+continues as before, and an undefined word has no effect.
 """
 
 import copy
@@ -16,7 +16,7 @@ DATA = 0x01FFFFFF
 
 
 def add_options(add):
-    """What an encoder can be told to be and to do wrong."""
+    """Settings and faults of an encoder."""
     def number(text):
         return int(text, 0)
 
@@ -82,7 +82,7 @@ class K3:
         self.at = None
 
     def now(self):
-        """The moment at which a word arrives, where a gateway passes it on late."""
+        """Sets the time at which a word arrives, if a gateway passes it on late."""
         return time.monotonic() if self.at is None else self.at
 
     # Position
@@ -179,7 +179,7 @@ class K3:
             self.echo(word, taken, "parameters")
 
     def echo(self, word, error, what):
-        """The IN word after something was set, or not."""
+        """Returns the IN word after a value was set, or refused."""
         self.sets += 1
         error = dict(self.options.error).get(self.sets, error)
         self.state = SETTING
@@ -210,7 +210,7 @@ class K3:
             self.state, self.fixed = SETTING, 0xE0800000 | number
 
     def parameter(self, code, data):
-        """The error word, or None."""
+        """Returns the error word, or None."""
         steps, turns = self.gear
         gear = {1: (data + (self.options.flags & 1), turns), 2: (steps, data)}.get(code)
         if gear is not None:

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""A Modbus/TCP gateway with a K3 encoder behind it (interbus.py), with the troubles that are asked for.
+"""A Modbus/TCP gateway with a K3 encoder (interbus.py), with faults on request.
 
-Written from the project's references (protocol/interbus.md; the links of the command line) alone, with the Python standard
-library alone. Several masters may be connected at once. The log has a line for what happens: `W 020000FF` a new OUT word,
+Written from the project's references (protocol/interbus.md; the links of the command line) only, with the Python standard
+library only. Several masters may be connected at once. The log has a line for each event: `W 020000FF` a new OUT word,
 `R` an IN word read, `STORE parameters`, `STORE program 1`, `PRESET 100`.
 """
 
@@ -25,7 +25,7 @@ class Gateway:
         self.encoder = interbus.K3(options, self.note)
         self.random = random.Random(options.seed)
         self.requests = self.writes = 0
-        # OUT as the gateway holds it, and the words that have not come to the encoder yet.
+        # OUT as the gateway holds it, and the words that have not arrived at the encoder yet.
         self.out, self.coming = 0, collections.deque()
 
     def note(self, line):
@@ -65,7 +65,7 @@ class Gateway:
         self.pass_on()
 
     def pass_on(self):
-        """Words arrive in their order, each so late that IN answers after the lag."""
+        """Queues words: they arrive in their order, with a delay so that IN answers after the lag."""
         while self.coming and self.coming[0][0] <= time.monotonic():
             self.encoder.at, word = self.coming.popleft()
             self.encoder.write(word)
@@ -83,7 +83,7 @@ class Gateway:
         return bytes([function, 2 * count]) + b"".join(register.to_bytes(2, "big") for register in registers)
 
     def take(self, transaction, unit, pdu):
-        """The bytes that come back; None: the gateway is gone."""
+        """Returns the bytes of the reply; None: the gateway disconnects."""
         self.requests += 1
         options = self.options
         if options.vanish_after is not None and self.requests > options.vanish_after:
@@ -142,7 +142,7 @@ def main():
         return int(text, 0)
 
     def every(read):
-        """VALUE or VALUE:N, every Nth time."""
+        """Parses VALUE or VALUE:N, for every Nth time."""
         return lambda text: (read(text.partition(":")[0]), int(text.partition(":")[2] or 1))
 
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)

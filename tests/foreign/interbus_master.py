@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""A master of a K3 encoder behind a Modbus/TCP gateway: does one thing after the other and prints a line for each.
+"""A master of a K3 encoder at a Modbus/TCP gateway: carries out its arguments one after the other and prints a line for
+each.
 
-Written from the project's reference of POSITAL's manual UME-IB alone, with the Python standard library alone.
+Written from the project's reference of POSITAL's manual UME-IB only, with the Python standard library only.
 
-  WORD          writes the OUT word and waits for what belongs to it: the exact echo of what sets, the value of a
+  WORD          writes the OUT word and waits for its reply: the exact echo for a word that sets, the value of a
                 read-out, a word without bit 31 for everything else; prints the IN word, or `IN late` with the last one
-  in, out       prints the IN word (function 4), or the OUT word as it stands (function 3)
+  in, out       prints the IN word (function 4), or the current OUT word (function 3)
   raw:HEX       sends a PDU and prints the reply's, or `exception 02`
-  other:THING   one of these as another client beside this one
+  other:THING   one of these as another simultaneous client
 """
 
 import argparse
@@ -38,7 +39,7 @@ class Master:
         self.client.write(self.options.output, self.order([word >> 16, word & 0xFFFF]))
 
     def belongs(self, out, word):
-        """The IN word is what was waited for, or an error."""
+        """Returns whether the IN word is the expected one, or an error."""
         echo, runs = out | 0xC0000000, word >> 31 == 0
         if word >> 29 == 0b100 or word >> 24 == 0xA4:
             return True
@@ -69,8 +70,8 @@ class Master:
             reads += 1
             since = since + 1 if word == last else 0
             last = word
-            # What belongs to a word stands still for two cycles. What stood there before, and a position, cannot be told
-            # from what is new, so that it is given time.
+            # The reply to a word is stable for two cycles. The previous word, and a position, cannot be distinguished from
+            # a new one, so that they are given time.
             told_apart = word >> 31 and word != before
             settled = since >= 1 if told_apart else reads > 8 and time.monotonic() - began > SETTLES
             if self.belongs(out, word) and settled:

@@ -1,9 +1,9 @@
-"""The kit encoder behind ubicom_encoder.py and bridge_adapter.py, without its lines: registers, banks, device modes, the
+"""The kit encoder of ubicom_encoder.py and bridge_adapter.py, without its lines: registers, banks, device modes, the
 procedures.
 
-Written from the project's references of the manual "IXARC kit encoders with BiSS C" (protocol/biss.md, ubicom.md) alone,
-with the Python standard library alone. Where the manual is silent: a write that cannot be is refused, what is not
-described reads 00 and cannot be written, a mode is entered from operation only.
+Written from the project's references of the manual "IXARC kit encoders with BiSS C" (protocol/biss.md, ubicom.md) only,
+with the Python standard library only. Where the manual is silent: an invalid write is refused, undocumented registers
+read 00 and cannot be written, a mode is entered from operation only.
 """
 
 import json
@@ -16,7 +16,7 @@ MOTOR, OEM = range(0x04, 0x24), range(0x24, 0x44)
 
 
 def add_options(add):
-    """What an encoder can be told to be."""
+    """Settings of an encoder."""
     def number(text):
         return int(text, 0)
 
@@ -67,7 +67,7 @@ class Kit:
         self.leave()
 
     def leave(self):
-        """What was begun and not saved is forgotten."""
+        """Discards unsaved changes."""
         self.command = {"calibration": 0, "wiegand": 0, "data": 0, "filter": 0, "preset": 0}
         self.run = None  # (end, status after it, seconds-free check)
         self.status = {"calibration": 0, "wiegand": 0, "filter": 0, "preset": 0}
@@ -89,7 +89,7 @@ class Kit:
         self.offset, self.began, self.rpm = self.steps(), time.monotonic(), rpm
 
     def position(self):
-        """Multiturn, singleturn, error, warning; None while the encoder starts."""
+        """Returns multiturn, singleturn, error, warning; None while the encoder starts."""
         self.note("P")
         if not self.answers(registers=False):
             return None
@@ -130,7 +130,7 @@ class Kit:
                 log.write(line + "\n")
 
     def read(self, place):
-        """The value; None where nothing answers."""
+        """Returns the value; None without an answer."""
         self.note(f"R {name(place)}")
         if not self.answers():
             return None
@@ -178,7 +178,7 @@ class Kit:
                 0x25: self.status["filter"]}.get(address, 0)
 
     def write(self, place, value):
-        """True: taken, False: refused, None: nothing answers."""
+        """Returns True: accepted, False: refused, None: no answer."""
         self.note(f"W {name(place)} {value:02X}")
         if not self.answers():
             return None
@@ -297,7 +297,7 @@ class Kit:
 
 
 def sheet_common():
-    """Bank 2 as delivered, with its checksum."""
+    """Returns bank 2 with factory settings, with its checksum."""
     sheet = bytearray(BANK)
     for offset, value in {0x00: 0x01, 0x01: 0x02, 0x02: 0x04, 0x03: 0x43, 0x05: 0x1C, 0x06: 0x30, 0x0C: 0x20,
                           0x0E: 0x01, 0x0F: 0xF4, 0x10: 0x01, 0x11: 0x01, 0x14: 0x03, 0x15: 0x23, 0x17: 0x21}.items():
@@ -307,7 +307,7 @@ def sheet_common():
 
 
 def sheet_encoder():
-    """Bank 3 as delivered, with its checksum."""
+    """Returns bank 3 with factory settings, with its checksum."""
     sheet = bytearray(BANK)
     for offset, content in {0x00: "0101", 0x02: "6129", 0x04: "0102", 0x06: "FF", 0x0A: "10", 0x0C: "11",
                             0x1C: "00000021", 0x2C: "2EE0", 0x30: "00E9", 0x32: "017A", 0x34: "1388", 0x36: "2EE0",

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """A HIPERFACE host: sends frames given in hex, prints every reply in hex, or "-" for none.
 
-Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" (tables of commands and "Dialog Timing") alone, with
-the Python standard library alone, so that it can examine our own simulated encoder.
+Written from SICK 8010701 "HIPERFACE - Beschreibung / Description" (tables of commands and "Dialog Timing") only, with the
+Python standard library only, so that it can check the program's virtual encoder.
 
   master.py PATH FRAME...          PATH: a serial device, a pty, or tcp:HOST:PORT
   master.py ./encoder "40 42 02" "FF 50 AF"
   master.py --sum tcp:127.0.0.1:4000 "40 42"
 
-Nothing is corrected on the way: frames go out as they are given, replies are printed as they come.
+Nothing is corrected: frames are sent as given, and replies are printed as received.
 """
 
 import argparse
@@ -27,7 +27,7 @@ LONGEST_REPLY = 3 + 3 + 128
 
 
 class Host:
-    """Dead times, waiting times, and the converter's echo."""
+    """The times of the line: dead times, waiting times, and the converter's echo."""
 
     def __init__(self, wire, options):
         self.wire, self.options = wire, options
@@ -35,7 +35,7 @@ class Host:
         self.silence = 44 / options.baud
 
     def ask(self, frame):
-        """Sends a frame and returns what came before the line was silent again."""
+        """Sends a frame and returns the bytes before the line was silent again."""
         self.wire.send(frame)
         command = frame[1] & 0x7F if len(frame) > 1 else 0
         first = len(frame) * self.character + self.silence + MAX_MS.get(command, 250) / 1000 + self.options.margin

@@ -1,4 +1,4 @@
-"""Modbus/TCP frames, both sides, for the gateway and the master of these tests. Python standard library alone."""
+"""Modbus/TCP frames, both sides, for the gateway and the master of these tests. Python standard library only."""
 
 import socket
 import struct
@@ -8,7 +8,7 @@ READ_HOLDING, READ_INPUT, WRITE_ONE, WRITE_MANY = 3, 4, 6, 16
 
 
 class Refused(Exception):
-    """An exception code."""
+    """An exception with its code."""
 
     def __init__(self, code):
         super().__init__(f"exception {code:02X}")
@@ -20,7 +20,7 @@ def frame(transaction, unit, pdu):
 
 
 def take(buffer):
-    """Takes a frame off the beginning of a bytearray: transaction, unit, PDU; None while it is not whole."""
+    """Removes a frame from the beginning of a bytearray: transaction, unit, PDU; returns None if it is not complete."""
     if len(buffer) < 7:
         return None
     transaction, protocol, length, unit = struct.unpack(">HHHB", buffer[:7])
@@ -34,7 +34,7 @@ def take(buffer):
 
 
 def parse(pdu):
-    """Function, first register, count, values (None where it reads)."""
+    """Returns function, first register, count, values (None for reading)."""
     function, rest = pdu[0], pdu[1:]
     if function in (READ_HOLDING, READ_INPUT):
         if len(rest) != 4 or not 1 <= (count := int.from_bytes(rest[2:4], "big")) <= 125:
@@ -62,7 +62,7 @@ class Client:
         self.unit, self.transaction, self.buffer = unit, 0, bytearray()
 
     def ask(self, pdu):
-        """What stands behind the function of the reply."""
+        """Returns the part of the reply after the function."""
         self.transaction = self.transaction % 0xFFFF + 1
         self.socket.sendall(frame(self.transaction, self.unit, pdu))
         while (reply := take(self.buffer)) is None:

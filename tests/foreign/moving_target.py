@@ -1,22 +1,23 @@
 #!/usr/bin/env python3
 """An EtherNet/IP target whose HIPERDRIVE drives take time to move, and that keeps a record of every cyclic packet.
 
-enip_target.py with the axes of axis.py: they accelerate, turn, brake, have limits and faults. What they are to do wrong is
-told at run time, a command a line on stdin; each is answered by a line `done NANOSECONDS` on stdout.
+enip_target.py with the axes of axis.py: they accelerate, turn, brake, have limits and faults. Their faults are set at run
+time, one command per line on stdin; each is answered by a line `done NANOSECONDS` on stdout.
 
-    place N            the drive is there                      limits LOWER UPPER
+    place N            sets the position                       limits LOWER UPPER
     reverse on|off     it turns the wrong way                  unlimited on|off   it ignores its limits
     overrun on|off     it does not stop at a target            pauseless on|off   it does not obey a pause
-    drive N            what follows is about this drive, not about the first one
+    drive N            the following commands are for this drive instead of the first one
     fault CODE         it fails now, with a hexadecimal code
-    tcp answer|silent|garbage|reset|fin                        what becomes of explicit messages
-    udp answer|silent|garbage                                  what becomes of cyclic data to the master
-    pause MS           no cyclic data for so long, then again  delay MS           each cyclic packet comes so much later
+    tcp answer|silent|garbage|reset|fin                        handling of explicit messages
+    udp answer|silent|garbage                                  handling of cyclic data to the master
+    pause MS           no cyclic data for this time            delay MS           delays each cyclic packet by this time
 
-The record (--record FILE) has a line a packet, `P TIME SEQUENCE WORD STATUS POSITION MOTION DRIVE`, where MOTION is 1 if the
-control word commands motion (`Axis.commands`), and a line an event, `E TIME NAME`: START and STAND of the drive, FAULT, OPEN, CLOSE,
-LOST of the connection, and BEYOND, PAST or WRONG with the first packet that tells the master of a position beyond a limit, behind
-the target, or against the commanded direction. Times are nanoseconds of CLOCK_MONOTONIC; those of packets are the kernel's.
+The record (--record FILE) has a line per packet, `P TIME SEQUENCE WORD STATUS POSITION MOTION DRIVE`, where MOTION is 1
+if the control word commands motion (`Axis.commands`), and a line per event, `E TIME NAME`: START and STAND of the drive,
+FAULT, OPEN, CLOSE, LOST of the connection, and BEYOND, PAST or WRONG with the first packet that tells the master of a
+position beyond a limit, past the target, or against the commanded direction. Times are nanoseconds of CLOCK_MONOTONIC;
+those of packets are the kernel's.
 """
 
 import select
@@ -30,12 +31,12 @@ import cip
 import enip_target
 from axis import TIMEOUT, Axis
 
-# Linux: the kernel says when a datagram came, on its real-time clock.
+# Linux: the kernel returns the arrival time of a datagram, on its real-time clock.
 SO_TIMESTAMPNS = 35
 
 
 def arrival(ancillary):
-    """When a datagram came, in nanoseconds of CLOCK_MONOTONIC."""
+    """Returns the arrival time of a datagram, in nanoseconds of CLOCK_MONOTONIC."""
     now = time.monotonic_ns()
     for level, kind, data in ancillary:
         if level == socket.SOL_SOCKET and kind == SO_TIMESTAMPNS:
@@ -57,13 +58,13 @@ class Station(enip_target.Station):
             self.record.write(f"E {when or time.monotonic_ns()} {name}\n")
 
     def turn(self):
-        """All axes, up to now."""
+        """Updates all axes to the current time."""
         now = time.monotonic()
         seconds, self.turned = now - self.turned, now
         for drive, axis in self.axes.items():
             axis.lower, axis.upper = self.of(drive, 158), self.of(drive, 160)
             axis.turn = 256 * self.of(drive, 154) / self.of(drive, 156)
-            # A busy computer wakes this seldom: what is longer than a step of 10 ms is taken in several.
+            # A busy computer calls this rarely: an interval longer than 10 ms is divided into several steps.
             steps = max(1, round(seconds / 0.01))
             for _ in range(steps):
                 for line in axis.advance(seconds / steps):
@@ -84,7 +85,7 @@ class Station(enip_target.Station):
             self.axes[number // 100].place(self.values[number])
 
     def command(self, drive, output, sequence, when):
-        """A drive's part of a cyclic packet."""
+        """Returns a drive's part of a cyclic packet."""
         word, speed, torque, target = struct.unpack(self.options.struct + "HBBi", output)
         axis = self.axes[drive]
         moves = axis.commands(word)
@@ -106,14 +107,14 @@ class Station(enip_target.Station):
         return image + bytes(8 if with_words else 0)
 
     def tell_strays(self):
-        """With the packet that shows them to the master."""
+        """Records position errors, with the packet that shows them to the master."""
         found = {(drive, name) for drive, axis in self.axes.items() for name in axis.strays()}
         for _, name in sorted(found - self.is_astray):
             self.tell(name)
         self.is_astray = found
 
     def lose(self):
-        """The drives' own watchdog."""
+        """Runs the drives' own watchdog."""
         for axis in self.axes.values():
             self.tell(axis.fail(TIMEOUT))
 
@@ -154,7 +155,7 @@ class Target(enip_target.Target):
             self.station.command(drive, data[8 * (drive - 1):8 * drive], sequence, when)
 
     def turn(self):
-        """What is due is sent: seconds until something is due again."""
+        """Sends the due packets: returns the seconds until the next one."""
         connection, now = self.connection, time.monotonic()
         self.station.turn()
         if connection is None:
@@ -165,7 +166,7 @@ class Target(enip_target.Target):
             self.connection = None
             return 0.01
         if now >= connection["next"]:
-            # A deadline that was missed is not made up for.
+            # A missed deadline is not made up for.
             connection["next"] = max(connection["next"] + connection["interval"], now)
             connection["sequence"] += 1
             address = struct.pack("<II", connection["back"], connection["sequence"])
@@ -199,7 +200,7 @@ class Server:
         while True:
             wait = self.target.turn()
             ready, _, _ = select.select([self.listener, self.udp, sys.stdin, *self.buffers], [], [], wait)
-            # Packets first: nothing else may keep them waiting.
+            # Packets first: nothing else may delay them.
             if self.udp in ready:
                 packet, ancillary, _, sender = self.udp.recvmsg(2048, 128)
                 self.target.packet(packet, sender, arrival(ancillary))
@@ -228,7 +229,7 @@ class Server:
             self.buffers.pop(client, None)
 
     def hear_commands(self):
-        """False: nobody commands any more."""
+        """Handles a command; returns False if stdin has ended."""
         data = sys.stdin.buffer.raw.read(4096)
         if not data:
             return False

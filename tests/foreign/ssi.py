@@ -1,5 +1,5 @@
-"""Frames of an SSI encoder, from protocol/ssi.md (sections 1 to 4) alone, with the Python standard library alone: turns and
-steps side by side, left-aligned, in binary or Gray, with error bits behind them that no code goes over."""
+"""Frames of an SSI encoder, from protocol/ssi.md (sections 1 to 4) only, with the Python standard library only: turns and
+steps one after the other, left-aligned, in binary or Gray, followed by error bits outside the code."""
 
 
 def gray(number):
@@ -19,7 +19,7 @@ assert ungray(0xFFFFFE) == 0xAAAAAB
 
 
 class Format:
-    """multiturn bits, singleturn bits, code, error bits: "12,13,gray,0"."""
+    """Parses multiturn bits, singleturn bits, code, error bits: "12,13,gray,0"."""
 
     def __init__(self, text):
         multiturn, singleturn, self.code, errors = text.split(",")
@@ -27,13 +27,13 @@ class Format:
         self.bits = self.multiturn + self.singleturn + self.errors
 
     def frame(self, turns, part, of_bits, errors=0):
-        """The frame of a shaft at so many turns and parts of 2^of_bits of one, right-justified."""
+        """Returns the frame of a shaft at a number of turns and of parts of 2^of_bits of one, right-justified."""
         steps = part << self.singleturn >> of_bits
         number = (turns & (1 << self.multiturn) - 1) << self.singleturn | steps
         return (gray(number) if self.code == "gray" else number) << self.errors | errors
 
     def read(self, word, clocks):
-        """Position and error bits of a word of so many clocks."""
+        """Returns position and error bits of a word with a number of clocks."""
         frame = word >> clocks - self.bits if clocks >= self.bits else word << self.bits - clocks
         number = frame >> self.errors
         return ungray(number) if self.code == "gray" else number, frame & (1 << self.errors) - 1

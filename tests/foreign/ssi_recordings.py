@@ -1,8 +1,9 @@
-"""Recordings of turning SSI encoders, for the search for the layout: fifteen encoders of different makers' habits, each with
-an uneven shaft, noise and disturbed frames. From protocol/ssi.md (sections 1 to 4) alone, with the Python standard library
-alone; nothing of the program is used. Run as a program it writes tests/vectors/ssi_find/*.txt anew, always the same.
+"""Recordings of turning SSI encoders, for the search for the layout: fifteen encoders in the style of different makers,
+each with an uneven shaft, noise and disturbed frames. From protocol/ssi.md (sections 1 to 4) only, with the Python
+standard library only; nothing of the program is used. Run as a program it writes tests/vectors/ssi_find/*.txt again,
+always the same.
 
-A line of a recording: the bits of a frame in clock order, the position that the encoder meant, a - for a disturbed frame."""
+A line of a recording: the bits of a frame in clock order, the intended position, a - for a disturbed frame."""
 
 import math
 import pathlib
@@ -16,13 +17,13 @@ def bits(number, width):
 
 
 def excess(steps):
-    """Bits of a Gray excess word, and the number that stands for position 0 (section 2)."""
+    """Returns the bits of a Gray excess word, and the number of position 0 (section 2)."""
     width = (steps - 1).bit_length()
     return width, (2**width - steps) // 2
 
 
 def shaft(rng, frames, speed, start, noise):
-    """Positions of a shaft whose speed changes slowly, in steps, not yet around the end."""
+    """Returns positions of a shaft whose speed changes slowly, in steps, without the wrap at the end of the range."""
     angle, phase, positions = float(start), rng.random() * math.tau, []
     for at in range(frames):
         angle += speed * (1 + 0.25 * math.sin(phase + at / 90))
@@ -51,7 +52,7 @@ def excess_bits(position, steps, clocks):
     return [0] * (clocks - width) + bits(gray(position + offset), width)
 
 
-# Name, what a frame is made of, positions in all, steps a frame, first position, noise in steps.
+# Name, parts of a frame, positions in all, steps per frame, first position, noise in steps.
 ENCODERS = [
     ("ahm36_gray", lambda p: gray_bits(p, 26) + [0], 2**26, 2.3, 9_000_000, 0.4),
     ("tree_8_8_gray", lambda p: [0] * 4 + gray_bits(p, 16) + [0] * 5, 2**16, 1.7, 30_000, 0.4),
@@ -73,7 +74,7 @@ FRAMES = 900
 
 
 def recording(name, frame, whole, speed, start, noise):
-    """Lines of a recording: of a hundred frames, about two are disturbed: single bits, or all of it."""
+    """Returns the lines of a recording: of a hundred frames, about two are disturbed: single bits, or all of it."""
     rng = random.Random(name)
     lines = []
     for position in shaft(rng, FRAMES, speed, start, noise):

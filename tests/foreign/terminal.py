@@ -1,5 +1,4 @@
-"""A pseudo-terminal whose other end belongs to the client alone, for the devices of these tests. Python standard library
-alone."""
+"""A pseudo-terminal whose other end only the client opens, for the devices of these tests. Python standard library only."""
 
 import os
 import pty
@@ -22,7 +21,7 @@ class Terminal:
         os.close(slave)  # from now on the only one who holds it is the client
 
     def read(self, seconds):
-        """What the client sent; b"" when nothing came in time, None when there is no client, END at the end."""
+        """Returns the bytes of the client; b"" if none came in time, None without a client, END at the end."""
         watched = [self.master] + ([sys.stdin.fileno()] if self.stdin_eof else [])
         ready, _, _ = select.select(watched, [], [], seconds)
         if sys.stdin.fileno() in ready and not os.read(sys.stdin.fileno(), 4096):
@@ -41,13 +40,13 @@ class Terminal:
             pass  # the client has gone
 
     def hang_up(self):
-        """The client has gone: no late reply for the next one."""
+        """Handles a disconnected client: no late reply for the next one."""
         termios.tcflush(self.master, termios.TCIOFLUSH)
         tty.setraw(self.master)
         time.sleep(0.002)
 
     def serve(self, link, run):
-        """Makes the symbolic link, says "ready PATH" and runs until the end."""
+        """Creates the symbolic link, prints "ready PATH" and runs until the end."""
         signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))
         try:
             if link:

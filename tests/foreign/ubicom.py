@@ -1,4 +1,4 @@
-"""UBICOM frames, from protocol/ubicom.md alone, with the Python standard library alone."""
+"""UBICOM frames, from protocol/ubicom.md only, with the Python standard library only."""
 
 SYNC, NODE = 0x80, 0x01
 READ, WRITE, POSITION = 0x01, 0x02, 0x03
@@ -15,7 +15,7 @@ def frame(command, payload):
 
 
 def take(buffer):
-    """The first whole frame and what is left; None while there is none. What belongs to no frame is dropped."""
+    """Returns the first complete frame and the rest; None while there is none. Bytes outside a frame are dropped."""
     while buffer:
         if buffer[0] != SYNC or (len(buffer) > 1 and buffer[1] != NODE):
             buffer = buffer[1:]
@@ -32,7 +32,7 @@ def take(buffer):
 
 
 def place(number):
-    """The register of a global address, as bank (None: direct) and address."""
+    """Returns the register of a global address, as bank (None: direct) and address."""
     if number < 0x40:
         return None, number + 0x40
     return (number - 0x40) // 0x40, (number - 0x40) % 0x40

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""A kit encoder with UBICOM on a pseudo terminal, for tests against a process that is not our program.
+"""A kit encoder with UBICOM on a pseudo terminal, for tests against a separate process with separate code.
 
-Written from protocol/ubicom.md alone, with the Python standard library alone; what the encoder does is in kit.py. It
-prints one line "ready PATH" and answers until SIGTERM (or the end of stdin, --stdin-eof). A frame that pauses for 20 ms is
-over.
+Written from protocol/ubicom.md only, with the Python standard library only; the encoder is in kit.py. It prints one line
+"ready PATH" and answers until SIGTERM (or the end of stdin, --stdin-eof). A frame ends with a pause of 20 ms.
 """
 
 import argparse

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """A UBICOM host: sends frames given in hex, prints every reply in hex, or "-" for none.
 
-Written from protocol/ubicom.md alone, with the Python standard library alone, so that it can examine our own simulated
+Written from protocol/ubicom.md only, with the Python standard library only, so that it can check the program's virtual
 encoder.
 
   ubicom_host.py PATH FRAME...          PATH: a serial device, a pty, or tcp:HOST:PORT
   ubicom_host.py ./enc "80 01 01 02 00 26 00 55" "80 01 03 01 00 01 79"
 
-Frames go out as they are given, replies are printed as they come; "wait:SECONDS" waits.
+Frames are sent as given, and replies are printed as received; "wait:SECONDS" waits.
 """
 
 import argparse

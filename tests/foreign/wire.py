@@ -1,4 +1,4 @@
-"""A serial line or a TCP connection, for the hosts of these tests. Python standard library alone."""
+"""A serial line or a TCP connection, for the hosts of these tests. Python standard library only."""
 
 import os
 import select
@@ -11,7 +11,7 @@ BIT_RATES = {600: termios.B600, 1200: termios.B1200, 2400: termios.B2400, 4800: 
 
 
 class Wire:
-    """A file descriptor to the encoder, whatever is behind it."""
+    """A file descriptor to the encoder, for either connection."""
 
     def __init__(self, path, baud, parity):
         self.socket = None
@@ -43,7 +43,7 @@ class Wire:
             data = data[os.write(self.fd, data):]
 
     def receive(self, seconds):
-        """Bytes that arrive within the time; none when it runs out, None when the other end has closed."""
+        """Returns the bytes that arrive within the time; none when it is up, None when the other side has closed."""
         ready, _, _ = select.select([self.fd], [], [], max(0.0, seconds))
         if not ready:
             return b""

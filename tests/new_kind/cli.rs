@@ -1,4 +1,4 @@
-//! The kind on the command line: this binary runs it in processes of its own.
+//! The kind on the command line: this binary runs it in separate processes.
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
@@ -11,7 +11,7 @@ use super::desk::program;
 /// Arguments, one a line.
 const ARGUMENTS: &str = "NEW_KIND_ARGUMENTS";
 
-/// What a process that was started as below does instead of testing; without arguments the program wishes the window.
+/// Runs the program in a process that was started as below; without arguments the program requests the window.
 #[test]
 fn the_program() {
     let arguments = std::env::var(ARGUMENTS).unwrap_or_default();
@@ -23,7 +23,7 @@ fn the_program() {
     }
 }
 
-/// Starts the program with these arguments, in a folder of its own.
+/// Starts the program with these arguments, in a separate folder.
 fn start(home: &Path, arguments: &[&str]) -> Child {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "cli::the_program", "--nocapture"]).env(ARGUMENTS, arguments.join("\n"));
@@ -31,7 +31,7 @@ fn start(home: &Path, arguments: &[&str]) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Status, result and remarks of a command.
+/// Returns the status, result and remarks of a command.
 fn run(home: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output = start(home, arguments).wait_with_output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

@@ -14,7 +14,7 @@ use encoder_studio::store::Store;
 use super::novo::NOVO;
 use super::novo::state::{Action, Encoder};
 
-/// The program with it behind its own kinds.
+/// Returns the program with the kind added after its own.
 pub(crate) fn program() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[], &[], &[]))
@@ -35,7 +35,7 @@ impl Desk {
         Desk { studio: Studio::new(world, Arc::new(|| ())), folder }
     }
 
-    /// The virtual encoder is connected and read.
+    /// Creates a connected virtual encoder, which is read.
     pub(crate) fn connected(query: &str) -> Self {
         let mut desk = Desk::new();
         desk.open(query);
@@ -106,7 +106,7 @@ impl Desk {
         found(self).unwrap()
     }
 
-    /// Writes what the review shows.
+    /// Writes the plan of the review.
     #[track_caller]
     pub(crate) fn write(&mut self) -> Stage {
         let Stage::Ready(plan) = self.until_stage(|stage| matches!(stage, Stage::Ready(_))) else { panic!("no plan") };

@@ -1,4 +1,4 @@
-//! What the studio and the window do with the kind.
+//! The kind in the studio and the window.
 
 use eframe::{App, Frame};
 use egui::Role;
@@ -20,7 +20,7 @@ use super::novo::profile::NovoProfile;
 use super::novo::protocol::Values;
 use super::novo::state::Encoder;
 
-/// What the virtual encoder keeps when it is delivered.
+/// Factory values of the virtual encoder.
 const DELIVERED: Values = [0, 3, 0, 65535];
 
 #[test]
@@ -46,7 +46,7 @@ fn it_is_offered_and_connects_from_the_dialog() {
 
 #[test]
 fn it_is_polled_and_recorded() {
-    // A turn of 4096 steps a second.
+    // A turn of 4096 steps per second.
     let mut desk = Desk::connected("?rpm=60");
     desk.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
     let positions = |desk: &Desk| {
@@ -59,7 +59,7 @@ fn it_is_polled_and_recorded() {
     desk.command(DeviceCommand::Poll(None));
     let whole = |value| if let Value::Whole(steps) = value { steps } else { panic!("{value:?}") };
     let positions: Vec<(i64, i64)> = positions(&desk).into_iter().map(|(time, value)| (time, whole(value))).collect();
-    // It was there before it was heard of.
+    // The position is older than its reception.
     assert!(positions.iter().all(|(time, steps)| *steps as f64 <= *time as f64 * 1e-9 * 4096.0 + 1.0));
     assert!(positions.is_sorted() && positions.first().unwrap().1 < positions.last().unwrap().1, "{positions:?}");
 }
@@ -88,7 +88,7 @@ fn edits_are_undone_reviewed_written_and_restored() {
     assert_eq!(before, Body::new(NovoProfile { serial: 1001, values: DELIVERED }));
     assert_eq!(desk.encoder().read().unwrap().values, [100, 3, 0, 65535], "read back");
     assert!(!desk.shown().is_dirty() && !desk.shown().can_undo());
-    // The shaft stands at 0, which is 100 steps below the zero of 65536.
+    // The shaft is at 0, which is 100 steps below the zero of 65536.
     desk.command(DeviceCommand::ReadPosition);
     desk.until("a position", |desk| desk.encoder().last.is_some());
     assert_eq!(desk.encoder().last.unwrap().1, 65436);
@@ -142,7 +142,7 @@ fn a_profile_is_saved_opened_and_edited_and_goes_into_no_other_encoder_unasked()
     desk.until("it is read back", |desk| desk.encoder().read().unwrap().values == [0, 7, 0, 65535]);
     desk.until_ready();
     desk.review(ReviewAction::Close);
-    // Another one needs a permit.
+    // Another one needs a permission.
     desk.studio.act(StudioAction::CloseSession(id));
     desk.open("?serial=5");
     let other = desk.shown().id();

@@ -1,4 +1,4 @@
-"""What ends a motion, event by event, for motion_table.py: how the motion is begun, what happens, and what could begin it
+"""Events that end a motion, for motion_table.py: how the motion begins, the event, and the actions that could start it
 again while the pad or the key is still held."""
 
 import dataclasses
@@ -10,7 +10,7 @@ import typing
 from rig import Failed, Rig
 
 HOLD = 0.4
-# In steps. Far enough that no job arrives meanwhile; and a limit that a jog reaches within seconds, a target before it.
+# In steps. Far enough that no job reaches it meanwhile; and a limit that a jog reaches within seconds, a target before it.
 FAR, LIMIT, NEAR = "13107200", 12_000, "8000"
 
 
@@ -25,17 +25,17 @@ class Event:
     begin: typing.Callable[[Rig], None]
     fire: typing.Callable[[Rig], typing.Optional[int]]
     afterwards: typing.Callable[[Rig], None] = nothing
-    # What is to be begun anew after it: "", "studio" or "all", which is the X server as well.
+    # The parts to restart after it: "", "studio" or "all", which includes the X server.
     destroys: str = ""
     prepare: typing.Callable[[Rig], None] = nothing
-    # Nothing has to move before it.
+    # Whether no motion is required before it.
     may_rest: bool = False
     is_timed: bool = True
-    # That nothing began means something only if a fresh act begins it: Failed, where it does not.
+    # A check for rows without motion: a new act has to begin motion, otherwise the trial fails.
     control: typing.Callable[[Rig], None] = nothing
 
 
-# How motion begins.
+# Starts of motion
 
 def wait_until_it_moves(rig, since):
     until = time.monotonic() + 4
@@ -62,13 +62,14 @@ def by_mouse(rig):
 
 
 def focus_pad(rig):
-    """From the entry before the pads the keyboard goes on to them. A pad takes a key only after it has seen it released."""
+    """Moves the keyboard focus from the entry before the pads to the pads. A pad accepts a key only after it has been
+    released."""
     rig.click("torque")
     time.sleep(0.1)
     for key in ("Tab", "Tab", "space", "Return"):
         rig.screen.press(key)
         time.sleep(0.1)
-    # The pointer is in the way of nothing.
+    # The pointer is outside all controls.
     rig.at("nowhere")
     time.sleep(0.1)
 
@@ -100,7 +101,7 @@ def by_run(rig):
     wait_until_it_moves(rig, since)
 
 
-# What happens.
+# Events
 
 def up(rig):
     return rig.screen.button(False)
@@ -140,7 +141,7 @@ def keys(*names):
 
 
 def click(name, counts_down=True):
-    """The moment the button goes down on it, or up where only that counts."""
+    """Returns the time at which the button goes down on it, or up for controls that act on release."""
     def fire(rig):
         rig.at(name)
         time.sleep(0.1)
@@ -181,7 +182,7 @@ def close_window(rig):
 
 
 def told(name, seconds=6, press=None):
-    """An event of the drive's record; `press` begins the motion that leads to it."""
+    """Waits for an event in the drive's record; `press` begins the motion that leads to it."""
     def fire(rig):
         since = time.monotonic_ns()
         if press:
@@ -191,7 +192,7 @@ def told(name, seconds=6, press=None):
 
 
 def near_limit(*lines):
-    """The upper limit is a part of a turn away, and was read."""
+    """The upper limit is a part of a turn away, and has been read."""
     def prepare(rig):
         rig.drive.command("place 0")
         rig.drive.command(f"limits -6553600 {LIMIT}")
@@ -207,7 +208,7 @@ def press_go(rig):
 
 
 def overrun(rig):
-    """The drive stops neither at its target nor at the limit behind it."""
+    """The drive stops neither at its target nor at the limit after it."""
     near_limit("unlimited on", "overrun on")(rig)
     rig.text("target", NEAR)
 
@@ -218,7 +219,7 @@ def wrong_way(rig):
 
 
 def key_elsewhere(name):
-    """It goes down in another window and is still down when the keyboard comes back."""
+    """The key goes down in another window and is still down when the keyboard focus returns."""
     def begin(rig):
         focus_pad(rig)
         other_window(rig)
@@ -239,7 +240,7 @@ def key_on_other_tab(name):
 
 
 def edit(rig):
-    """A parameter is another one than in the drive, so that closing the window is asked about."""
+    """A parameter differs from the drive, so that closing the window asks a question."""
     rig.click("parameters")
     time.sleep(4.0)
     rig.click("register 24")
@@ -276,7 +277,7 @@ def event(name, motion, fire, **more):
 
 
 def losses():
-    """The link's troubles, for a jog and a job."""
+    """Returns the faults of the connection, for a jog and a job."""
     for motion in (MOUSE, JOB):
         for name, line in [
             ("TCP reset (RST)", "tcp reset"), ("TCP end (FIN)", "tcp fin"), ("explicit silence", "tcp silent"),

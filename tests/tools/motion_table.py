@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""How long after each event that ends a motion the studio goes on to command it: a table.
+"""Table of the time that the studio continues to command a motion after each event that ends it.
 
     tests/tools/motion_table.py target/release/encoder-studio --output table.md --csv trials.csv
 
-Starts Xvfb, openbox, a drive (tests/foreign/moving_target.py) and the studio; holds the jog pads, begins a job, and then does
-what ends a motion, with real pointer and key events. Needs Xvfb, openbox, libX11, libXtst and Linux; it is no part of the
-tests. The whole table takes three quarters of an hour; --only NAME,… makes some rows, --count N other numbers of trials.
+Starts Xvfb, openbox, a drive (tests/foreign/moving_target.py) and the studio; holds the jog pads, begins a job, and then
+causes the events that end a motion, with real pointer and key events. Needs Xvfb, openbox, libX11, libXtst and Linux; it
+is not part of the tests. The complete table takes three quarters of an hour; --only NAME,… makes some rows, --count N
+sets the number of trials.
 
-A trial: the motion is commanded for 0.4 s, the event happens, and the record of the drive is searched for the last packet of
-that motion. Then what could begin it again is done (the pointer comes back, the window gets the keyboard back, the process
-goes on …) while the pad or the key is still held, and a packet that commands motion within 3 s of that counts as resumed.
+A trial: the motion is commanded for 0.4 s, the event happens, and the record of the drive is searched for the last packet
+of that motion. Then the actions follow that could start it again (the pointer returns, the window gets the keyboard
+focus, the process continues …) while the pad or the key is still held, and a packet that commands motion within 3 s of
+that counts as resumed.
 """
 
 import argparse
@@ -27,15 +29,15 @@ sys.dont_write_bytecode = True
 from events import EVENTS, nothing  # noqa: E402
 from rig import MS, Failed, Rig  # noqa: E402
 
-# A motion that goes on for so long after the event is not ended by it.
+# A motion that continues for this time after the event is not ended by it.
 MOST = 8.0
-# Without a packet that commands motion for so long it has ended.
+# Time without a packet that commands motion after which the motion has ended.
 GAP = 0.35
 AFTERWARDS = 3.0
 # 250 ms and one interval of 10 ms.
 BOUND = 260.0
 
-# How the connection ended, by the drive's record.
+# How the connection ended, from the drive's record.
 CONNECTION = {"CLOSE": "closed", "LOST": "watchdog"}
 
 
@@ -45,7 +47,7 @@ class Trial:
 
 
 def last_of(packets, fired):
-    """The last packet of the motion that was under way at `fired`; whether it has ended."""
+    """Returns the last packet of the motion at `fired`, and whether the motion has ended."""
     last, quiet = fired, False
     for packet in packets:
         if packet.at < fired:
@@ -61,7 +63,7 @@ def wait_for_end(rig, fired):
     while time.monotonic() < until:
         rig.drive.read()
         last, ended = last_of(rig.drive.packets, fired)
-        # Without any packets at all it has ended as well.
+        # Without any packets it has ended as well.
         newest = rig.drive.packets[-1].at if rig.drive.packets else 0
         if ended or time.monotonic_ns() - max(newest, fired) > 2 * GAP * 1000 * MS:
             return last, True
@@ -101,7 +103,7 @@ def trial_of(rig, event):
 
 
 def trials_of(rig, event, count):
-    """As many as are asked for; the rig is begun anew after those that leave it in pieces, and after a failure."""
+    """Runs the requested number of trials; the rig is restarted after events that destroy it, and after a failure."""
     trials, failures = [], 0
     while len(trials) < count and failures < 5:
         try:
@@ -121,7 +123,7 @@ def trials_of(rig, event, count):
 
 
 def row_of(event, trials):
-    """A line of the table."""
+    """Returns a line of the table."""
     times = [trial.latency for trial in trials]
     resumed, longest = sum(bool(trial.resumed) for trial in trials), max(times)
     faults = ["late"] * (longest > BOUND) + ["resumes"] * bool(resumed)
@@ -184,7 +186,7 @@ def main():
 
 
 def earlier(path):
-    """Trials of earlier runs."""
+    """Reads trials of earlier runs."""
     if not path or not os.path.exists(path):
         return []
     by_name = {(event.name, event.motion): event for event in EVENTS}

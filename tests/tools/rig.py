@@ -1,4 +1,4 @@
-"""The studio in a window, a drive of its own and a person's hands, for motion_table.py."""
+"""The studio in a window, a separate drive and simulated user input, for motion_table.py."""
 
 import collections
 import os
@@ -14,7 +14,7 @@ from x11 import Screen
 
 FOREIGN = pathlib.Path(__file__).resolve().parent.parent / "foreign"
 SIZE = (1280, 1000)
-# Where things are in a window of that size, in English. --points has others.
+# Positions in a window of that size, in English. --points has others.
 POINTS = {
     "page": (59, 252), "take": (349, 70), "stop": (227, 78), "nowhere": (349, 753), "connect": (931, 25),
     "torque": (352, 423), "plus": (437, 475), "target": (744, 453), "go": (597, 562), "run": (652, 680),
@@ -25,7 +25,7 @@ MS = 1_000_000
 
 
 class Failed(Exception):
-    """A trial could not be made: it says nothing about the studio's motion."""
+    """A trial that failed: no result about the studio's motion."""
 
 
 class Drive:
@@ -41,7 +41,7 @@ class Drive:
         self.packets, self.events = [], []
 
     def command(self, line):
-        """When it was done."""
+        """Returns the time at which it was done."""
         self.process.stdin.write(line + "\n")
         self.process.stdin.flush()
         words = self.process.stdout.readline().split()
@@ -50,7 +50,7 @@ class Drive:
         return int(words[1])
 
     def read(self):
-        """What was recorded since."""
+        """Returns the records since then."""
         *lines, self.partial = (self.partial + self.record.read()).split("\n")
         for line in lines:
             kind, at, *rest = line.split()
@@ -62,7 +62,7 @@ class Drive:
                 self.events.append((int(at), " ".join(rest)))
 
     def event(self, name, since, seconds):
-        """When something happened; None: it did not."""
+        """Returns the time of an event; None: it did not happen."""
         until = time.monotonic() + seconds
         while True:
             self.read()
@@ -84,7 +84,7 @@ class Drive:
 
 
 def first_of_all(pid):
-    """A clock that has to wait for builds measures the builds."""
+    """With builds on the same computer, the measured times would include waiting for them."""
     try:
         os.sched_setscheduler(pid, os.SCHED_RR, os.sched_param(1))
     except (OSError, AttributeError):
@@ -92,7 +92,7 @@ def first_of_all(pid):
 
 
 def before_others():
-    """As on a computer that does nothing else: where the system allows it, other people's builds come later."""
+    """Sets priorities as on an idle computer: if the system allows it, other users' builds run later."""
     try:
         os.setpriority(os.PRIO_PROCESS, 0, -10)
     except OSError:
@@ -100,7 +100,7 @@ def before_others():
 
 
 class Rig:
-    """All of it. `points`: where things are."""
+    """The complete rig. `points`: positions of controls."""
 
     def __init__(self, binary, points, verbose):
         self.binary, self.points, self.verbose = binary, {**POINTS, **points}, verbose
@@ -111,7 +111,7 @@ class Rig:
             print(*words, file=sys.stderr, flush=True)
 
     def start(self):
-        """A fresh drive and a fresh studio in control of it, on the page Motion."""
+        """Starts a new drive and a new studio in control of it, on the page Motion."""
         self.end_studio()
         if self.screen is None:
             self.screen = Screen(priority=before_others)
@@ -152,7 +152,7 @@ class Rig:
         self.studio = self.drive = None
 
     def recover(self, destroys):
-        """After a trial: hands off, and begun anew what it has left in pieces: "", "studio" or "all"."""
+        """Ends a trial: releases all input, and restarts the destroyed parts: "", "studio" or "all"."""
         if destroys == "all":
             self.end()
         elif destroys:
@@ -186,11 +186,11 @@ class Rig:
             self.screen.button(True)
             time.sleep(0.08)
             self.screen.button(False)
-            # A slow picture shall not see it somewhere else already.
+            # A slow frame must not see it at another position yet.
             time.sleep(0.25)
 
     def text(self, name, text):
-        """Types over what an entry has."""
+        """Replaces the text of an entry."""
         self.click(name)
         self.screen.press("Control_L", "a")
         for letter in text:
@@ -199,7 +199,7 @@ class Rig:
         time.sleep(0.1)
 
     def picture(self, path):
-        """What is on the screen, where ImageMagick is there."""
+        """Takes a screenshot, if ImageMagick is available."""
         if shutil.which("import"):
             environment = {**os.environ, "DISPLAY": self.screen.name}
             subprocess.run(["import", "-window", "root", path], env=environment, check=False, timeout=20)

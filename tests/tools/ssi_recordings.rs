@@ -1,21 +1,21 @@
-//! Recordings of SSI encoders of every habit, made by bits alone: nothing of the program's own decoding is used. The same
-//! seed gives the same recording. What each encoder meant stands beside its frames, so that a layout can be judged.
+//! Recordings of SSI encoders with many kinds of frames, made from bits: nothing of the program's own decoding is used. The
+//! same seed gives the same recording. The intended position is next to each frame, so that a layout can be checked.
 
 use fastrand::Rng;
 
-/// Frames of one encoder, and the positions that it meant.
+/// Frames of one encoder, and the intended positions.
 pub(crate) struct Recording {
-    /// What it is made of, for a message.
+    /// Description of the parts, for a message.
     pub(crate) what: String,
     /// Bits of a frame.
     pub(crate) clocks: u8,
     /// Right-justified.
     pub(crate) frames: Vec<u64>,
-    /// The position of each frame; none where it was disturbed.
+    /// The position of each frame; `None` if it was disturbed.
     pub(crate) meant: Vec<Option<u64>>,
 }
 
-/// How positions become bits.
+/// The encoding of positions.
 enum Word {
     Binary,
     Gray,
@@ -27,19 +27,19 @@ enum Word {
     },
 }
 
-/// What comes behind the position.
+/// The bits after the position.
 enum Behind {
     Constant(Vec<bool>),
     Parity {
         even: bool,
     },
-    /// It is 1 now and then.
+    /// Rarely 1.
     Error,
-    /// It is 1 for a long while.
+    /// 1 for long periods.
     LongError,
-    /// It changes with each frame.
+    /// A bit that changes with each frame.
     Alive,
-    /// So many bits that follow from the position, but are no position.
+    /// A number of bits that depend on the position, but are no position.
     Check(u32),
     /// One that follows from nothing.
     Noise,
@@ -49,7 +49,7 @@ fn bits_of(number: u64, width: u32) -> Vec<bool> {
     (0..width).rev().map(|at| number >> at & 1 == 1).collect()
 }
 
-/// Neighbours differ in one bit: each bit beside the one above it.
+/// Encodes in Gray: each bit combined with the next higher one, so that neighbours differ in one bit.
 fn gray(number: u64, width: u32) -> Vec<bool> {
     let bits = bits_of(number, width);
     let above = std::iter::once(&false).chain(&bits);
@@ -61,7 +61,7 @@ fn width_of(positions: u64) -> u32 {
 }
 
 impl Recording {
-    /// The recording of this number.
+    /// Creates the recording of this number.
     pub(crate) fn of(seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed ^ 0x5851_F42D_4C95_7F2D);
         let (word, positions) = word(&mut rng);
@@ -169,7 +169,8 @@ fn behind(rng: &mut Rng) -> Behind {
     }
 }
 
-/// Steps of a shaft that is not yet around the end: slow or fast, even or not, steady, swinging, or to and fro.
+/// Returns steps of a shaft without the wrap at the end of the range: slow or fast, even or not, steady, swinging, or to
+/// and fro.
 fn shaft(rng: &mut Rng, count: usize, positions: u64) -> Vec<i128> {
     let most = positions as f64 / 3.0;
     let fastest = if rng.u8(..3) == 0 { most } else { most.min(40.0) };

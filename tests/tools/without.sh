@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Shows that a kind of device can be deleted: takes its folder, its line in the list of kinds, its assets, profiles and
-# tests out of a copy of the tree, runs the tests of the library there and opens the window.
+# Shows that a kind of device can be deleted: removes its folder, its line in the list of kinds, its assets, profiles and
+# tests from a copy of the tree, runs the tests of the library there and opens the window.
 #
 #   tests/tools/without.sh DEVICE        hiperface, biss, ssi, interbus or hiperdrive
 #
-# What is built goes to target/without, for all devices. The window needs Xvfb; without it that part is skipped.
+# The build goes to target/without, for all devices. The window needs Xvfb; without it that part is skipped.
 set -euo pipefail
 
 device=${1:?usage: without.sh DEVICE}
@@ -14,7 +14,7 @@ copy=$(mktemp -d)
 display=
 trap 'kill ${display:-} 2>/dev/null || true; rm -rf "$copy"' EXIT
 
-# As it stands, edits that are in no commit included.
+# The working tree, including uncommitted edits.
 (cd "$root" && git ls-files -z --cached --others --exclude-standard | tar --null --ignore-failed-read -T - -cf -) 2>/dev/null |
     tar -xf - -C "$copy"
 cd "$copy"
@@ -23,7 +23,7 @@ cd "$copy"
 rm -r "src/devices/$device"
 sed -i "/^pub mod $device;\$/d" src/devices/mod.rs
 sed -i "/^    crate::devices::$device::KIND,\$/d" src/kinds.rs
-# What belongs to it beside the code. Tests of the whole list count the kinds; the others are not built here.
+# The files of the kind besides the code. Tests of the complete list count the kinds; the others are not built here.
 rm -rf "assets/texts/$device.ron" "assets/devices/$device" "profiles/$device"
 rm -r src/kinds/tests src/kinds/tests.rs
 sed -i '/^#\[cfg(test)\]$/,/^mod tests;$/d' src/kinds.rs
@@ -32,9 +32,9 @@ left=$(grep -rnE "(devices|super)::$device\b" src || true)
 [ -z "$left" ] || { echo "$device is still named:"; echo "$left"; exit 1; }
 
 export CARGO_TARGET_DIR=$root/target/without CARGO_PROFILE_DEV_DEBUG=0
-# Another tree at the same place: times of files tell nothing.
+# Another tree at the same path: file times are not comparable.
 find src tests -name '*.rs' -exec touch {} +
-# Warnings are about what only this kind uses of the core.
+# Warnings are about parts of the core that only this kind uses.
 if ! cargo test --locked --lib -q >"$copy/report" 2>"$copy/errors" || ! cargo build --locked -q 2>>"$copy/errors"; then
     cat "$copy/report" "$copy/errors"
     exit 1

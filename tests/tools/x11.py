@@ -1,5 +1,5 @@
-"""A screen of its own with a window manager, and real pointer and key events on it: Xvfb, openbox and the XTEST extension,
-through ctypes, so that an event is on its way within microseconds of the moment that is noted for it."""
+"""A separate screen with a window manager, and real pointer and key events on it: Xvfb, openbox and the XTEST extension,
+through ctypes, so that an event is sent within microseconds of its recorded time."""
 
 import ctypes
 import os
@@ -29,23 +29,24 @@ for library, name, result, *arguments in [
     function.restype, function.argtypes = result, arguments
 
 HANDLER = ctypes.CFUNCTYPE(INT, POINTER, POINTER)
-# A window that has gone meanwhile is no reason to end.
+# A window that was closed meanwhile is no reason to end.
 IGNORE = HANDLER(lambda *_: 0)
 
 
 class Message(ctypes.Structure):
-    """XClientMessageEvent, with the room of an XEvent."""
+    """XClientMessageEvent, with the size of an XEvent."""
     _fields_ = [("type", INT), ("serial", ctypes.c_ulong), ("send_event", INT), ("display", POINTER), ("window", LONG),
                 ("message", LONG), ("format", INT), ("data", LONG * 5), ("room", LONG * 24)]
 
 
 class Screen:
-    """Xvfb with openbox; `priority` runs in both before they begin. Keys repeat after `delay` milliseconds, every `interval`."""
+    """Xvfb with openbox; `priority` runs in both before they begin. Keys repeat after `delay` milliseconds, every
+    `interval`."""
 
     def __init__(self, size="1500x1150", delay=250, interval=30, priority=None):
         options = ["-screen", "0", f"{size}x24", "-nolisten", "tcp", "-ardelay", str(delay), "-arinterval", str(interval)]
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "preexec_fn": priority}
-        # It takes a number that is free, and says which.
+        # The server selects a free number, and reports it.
         number, told = os.pipe()
         self.server = subprocess.Popen(["Xvfb", "-displayfd", str(told), *options], pass_fds=[told], **quiet)
         os.close(told)
@@ -66,7 +67,7 @@ class Screen:
             time.sleep(0.05)
 
     def end(self):
-        """Ends the server and all that it shows."""
+        """Ends the server and all its windows."""
         for process in (self.server, self.manager):
             if process.poll() is None:
                 os.kill(process.pid, signal.SIGCONT)
@@ -74,7 +75,7 @@ class Screen:
             process.wait()
 
     def let_go_of_display(self):
-        """Before the server is killed: Xlib would end this process with it."""
+        """Closes the connection before the server is killed: otherwise Xlib would end this process with it."""
         X.XCloseDisplay(self.display)
         self.display = None
 
@@ -82,7 +83,7 @@ class Screen:
         return X.XInternAtom(self.display, name.encode(), 0)
 
     def property(self, window, name):
-        """A window's property of 32-bit numbers."""
+        """Returns a window's property of 32-bit numbers."""
         kind, form, count, left, data = LONG(), INT(), ctypes.c_ulong(), ctypes.c_ulong(), POINTER()
         out = [ctypes.byref(one) for one in (kind, form, count, left, data)]
         X.XGetWindowProperty(self.display, window, self.atom(name), 0, 1024, 0, 0, *out)
@@ -93,7 +94,7 @@ class Screen:
         return numbers
 
     def window_of(self, pid, seconds=40):
-        """The window of a process, as soon as it is managed."""
+        """Returns the window of a process, as soon as it is managed."""
         until = time.monotonic() + seconds
         while time.monotonic() < until:
             for window in self.property(self.root, "_NET_CLIENT_LIST"):
@@ -115,7 +116,7 @@ class Screen:
         return self.property(self.root, "_NET_ACTIVE_WINDOW") == [window]
 
     def another(self):
-        """A second window, of this process; the window manager gives it the keyboard."""
+        """Opens a second window, of this process; the window manager gives it the keyboard focus."""
         if self.other is None:
             self.other = X.XCreateSimpleWindow(self.display, self.root, 1300, 600, 150, 150, 1, 0, 0xFFFFFF)
             X.XStoreName(self.display, self.other, b"another window")
@@ -124,7 +125,7 @@ class Screen:
             time.sleep(0.3)
         return self.other
 
-    # What is an event. Each gives the moment just before it was sent, in nanoseconds of CLOCK_MONOTONIC.
+    # Events. Each returns the time just before it was sent, in nanoseconds of CLOCK_MONOTONIC.
 
     def flush(self, when):
         X.XSync(self.display, 0)
@@ -149,7 +150,7 @@ class Screen:
         return self.flush(when)
 
     def press(self, *names):
-        """All of them, one after the other, then up: the moment the last one went down."""
+        """Presses all keys, one after the other, then releases them; returns the time of the last press."""
         downs = [self.key(name, True) for name in names]
         for name in reversed(names):
             self.key(name, False)
@@ -167,7 +168,7 @@ class Screen:
         X.XSync(self.display, 0)
 
     def ask_manager(self, window, name, *data):
-        """What a panel asks of the window manager."""
+        """Sends the request of a panel to the window manager."""
         when = time.monotonic_ns()
         event = Message(type=33, window=window, message=self.atom(name), format=32, data=(LONG * 5)(*data))
         X.XSendEvent(self.display, self.root, 0, 0x180000, ctypes.byref(event))

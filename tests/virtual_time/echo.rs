@@ -1,4 +1,4 @@
-//! Converters that give our own bytes back: learned where it can be learned, and never a value by mistake.
+//! Converters that echo our own bytes: detected where possible, and never mistaken for a value.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, Value};
 use encoder_studio::devices::hiperface::procedures::{Echo, Station};
@@ -31,7 +31,7 @@ fn echo_is_learned_and_stripped() {
     }
 }
 
-/// Told wrongly, every answer is refused; no byte of it is shown as a value.
+/// With a wrong setting, every answer is refused; no byte of it is shown as a value.
 #[test]
 fn a_wrong_setting_gives_errors_and_no_values() {
     for (echoes, setting) in [(true, Echo::Off), (false, Echo::On)] {
@@ -55,7 +55,7 @@ fn a_wrong_setting_gives_errors_and_no_values() {
     }
 }
 
-/// The replies to 47h and 67h are the requests once more: from them nobody can learn.
+/// The replies to 47h and 67h equal their requests: the echo cannot be detected from them.
 #[test]
 fn nothing_is_learned_from_a_reply_that_is_its_request() {
     for echoes in [true, false] {
@@ -64,7 +64,7 @@ fn nothing_is_learned_from_a_reply_that_is_its_request() {
         assert_eq!(desk.tap().sent[0][1], Command::ReadTypeLabel.byte(), "learned with a reading command first");
         assert_eq!(desk.session.station().line.echo, if echoes { Echo::On } else { Echo::Off });
     }
-    // With nobody at the other end, an echo alone is no reply to either.
+    // Without an encoder, an echo alone is no reply to either.
     let mut desk = desk(true, Echo::Unknown, "&fault=silent-after:0");
     desk.run(HiperfaceJob::ConfigureForNow(LineSettings::FACTORY)).unwrap_err();
     assert_eq!(desk.session.station().line.echo, Echo::Unknown);

@@ -1,4 +1,4 @@
-//! Finding encoders whose settings nobody remembers: all of them, with 52h alone, and not a byte on a line that is in use.
+//! Searching encoders with unknown settings: all are found, with 52h only, and no byte is sent on a busy line.
 
 use std::time::Duration;
 
@@ -82,7 +82,7 @@ fn nobody_is_found_on_an_empty_line() {
     assert_eq!(desk.tap().sent.len(), 7 * 3 * 32);
 }
 
-/// Whoever comes on while the search waits is caught in the window in which it listens at factory settings.
+/// An encoder that is switched on while the search waits is found during its window at factory settings.
 #[test]
 fn a_power_cycle_opens_the_default_window() {
     for (settings, one_encoder) in [(0xB5, true), (0x80, true), (0xE6, false)] {
@@ -106,7 +106,7 @@ fn a_power_cycle_opens_the_default_window() {
     }
 }
 
-/// A device server has its own speed: nobody here changes it, so that trying others would find the same encoder 21 times.
+/// A device server has its own speed, which the program cannot change: other speeds would find the same encoder 21 times.
 #[test]
 fn through_a_device_server_each_encoder_is_found_once() {
     let mut desk = Desk::new("address=0x43&encoders=2");
@@ -116,10 +116,10 @@ fn through_a_device_server_each_encoder_is_found_once() {
     assert_eq!(desk.tap().sent.len(), 32, "each address once");
 }
 
-/// Whoever ends a search sees what has answered, and our side of the line is as before.
+/// A cancelled search returns the encoders found so far, and the line format of the computer is restored.
 #[test]
 fn an_interrupted_search_tells_what_it_found() {
-    // 40h is asked first, at the encoders' own settings.
+    // 40h is requested first, at the encoders' own settings.
     let mut desk = Desk::new("encoders=2&address=0x4A");
     for (questions, expected) in [(0, vec![]), (10, vec![]), (11, vec![0x4A]), (12, vec![0x4A, 0x4B])] {
         desk.tap().sent.clear();
@@ -133,7 +133,7 @@ fn an_interrupted_search_tells_what_it_found() {
     }
 }
 
-/// Each encoder is told as it answers, before the end.
+/// Each encoder is reported when it answers, before the end.
 #[test]
 fn encoders_are_told_as_they_answer() {
     let mut desk = Desk::new("encoders=3&address=0x52");

@@ -1,4 +1,4 @@
-//! The dead-man against virtual drives: what a person does, what goes wrong, and that the drive stands each time.
+//! The dead-man with virtual drives: user actions, faults, and the stop of the drive after each.
 
 mod any;
 mod bench;
@@ -29,7 +29,7 @@ fn to(target: i32) -> MotionRequest {
     MotionRequest::Move { target, effort: FULL }
 }
 
-/// The words that were sent, each once, in the order of their sending.
+/// Returns the words that were sent, each once, in the order of their sending.
 fn words(bench: &mut Bench) -> String {
     let words: Vec<String> = bench.take_words().iter().map(|word| format!("{word:04X}")).collect();
     words.join(" ")
@@ -120,12 +120,12 @@ fn a_job_waits_and_goes_on() {
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), Ended::Arrived);
     assert_eq!(bench.position(), 3 * TURN);
-    // There is nothing to pause now, nor to resume.
+    // There is nothing to pause or resume now.
     bench.act(MotionRequest::Pause);
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToPause));
     bench.act(MotionRequest::Resume);
     assert_eq!(bench.until_over(), Ended::Refused(Refusal::NothingToResume));
-    // One that is stopped while it waits is gone.
+    // A waiting job that is stopped is discarded.
     bench.act(to(0));
     bench.run(1000);
     bench.act(MotionRequest::Pause);
@@ -142,7 +142,7 @@ fn a_job_waits_and_goes_on() {
     assert_eq!(bench.man.phase(), Phase::Idle);
 }
 
-/// What is refused here never reaches the drive.
+/// A request that is refused here never reaches the drive.
 #[test]
 fn what_may_not_be_is_refused() {
     let none = Effort { speed: Percent::NONE, ..FULL };
@@ -180,7 +180,7 @@ fn what_may_not_be_is_refused() {
     assert_eq!(words(&mut bench), "0400 0401 0409 1439 1479");
 }
 
-/// A fault ends what runs. Nothing moves until a person has acknowledged it, and nothing by that alone.
+/// A fault ends the motion. Nothing moves until the user has acknowledged it, and the acknowledgement alone moves nothing.
 #[test]
 fn a_fault_is_acknowledged_before_anything_moves() {
     let mut bench = Bench::new();
@@ -206,7 +206,7 @@ fn a_fault_is_acknowledged_before_anything_moves() {
     assert_eq!(bench.until_over(), Ended::Arrived);
 }
 
-/// Something stands in the way.
+/// An obstacle blocks the drive.
 #[test]
 fn a_blocked_drive_ends_the_act() {
     let mut bench = Bench::new();
@@ -225,12 +225,12 @@ fn a_run_ends_with_the_range() {
     assert_eq!(bench.until_over(), Ended::RangeEnd);
     bench.run(500);
     assert_eq!((bench.position(), bench.status(), bench.man.phase()), (TURN, 0x2A31, Phase::Idle));
-    // Once more, where there is nowhere to go.
+    // Again, with no range left.
     bench.act(MotionRequest::Run { direction: Direction::Clockwise, end: RunEnd::RangeEnd, effort: FULL });
     assert_eq!(bench.until_over(), Ended::RangeEnd);
 }
 
-/// Switch S3 points to a drive: the bus leads nowhere.
+/// Switch S3 points to a drive: the commands on the bus have no effect.
 #[test]
 fn a_drive_that_does_not_follow_is_told() {
     let mut bench = Bench::new();
@@ -243,7 +243,7 @@ fn a_drive_that_does_not_follow_is_told() {
     assert_eq!((bench.status(), bench.position()), (0x2A30, 0));
 }
 
-/// A drive that loses its supply for a moment comes back with the words still on the wire.
+/// A drive that loses its supply for a moment restarts while the old words are still being sent.
 #[test]
 fn a_drive_that_starts_anew_does_not_take_up_its_job() {
     for after in [100, 110, 500, 1500] {

@@ -1,5 +1,5 @@
-//! A restore that is cancelled, or cut off, or robbed of its power at every single transaction: what the encoder then
-//! holds is described, nothing else has changed, and a second run completes it.
+//! A restore that is cancelled, cut off, or interrupted by a power loss at every single transaction: the report describes
+//! the content of the encoder, nothing else has changed, and a second run completes it.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Committed, JobError, Prepared};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -10,8 +10,8 @@ use encoder_studio::link::Cancel;
 
 use crate::support::{Desk, Fields, backup, bytes, restore_of};
 
-/// An encoder with a write-protected field guarded by a code of its own, and the profile it is to become: several runs
-/// in field 0, the protected field, a plain one, and a new one that is to be protected.
+/// Returns an encoder with a write-protected field guarded by its own code, and the target profile: several runs in field
+/// 0, the protected field, a plain one, and a new one that is to be protected.
 fn scene() -> (Desk, HiperfaceProfile) {
     let mut desk = Desk::new("codes=2:66");
     desk.know_code(2, 0x66);
@@ -32,7 +32,7 @@ fn scene() -> (Desk, HiperfaceProfile) {
     (desk, wanted)
 }
 
-/// What the first operations of the plan make of a memory.
+/// Returns a memory after the first operations of the plan.
 fn applied(before: &Fields, ops: &[Op]) -> Fields {
     let mut fields = before.clone();
     for op in ops {
@@ -53,7 +53,7 @@ fn applied(before: &Fields, ops: &[Op]) -> Fields {
 }
 
 fn locked_again(mut fields: Fields) -> Fields {
-    // Fields 1 and 4 are the protected ones; 4 may not be there yet.
+    // Fields 1 and 4 are the protected ones; 4 may not exist yet.
     for (number, status) in [(1, 0xA8), (4, 0xA8)] {
         if let Some(field) = fields.get_mut(number) {
             field.0 = status;
@@ -89,7 +89,7 @@ fn the_plan_is_the_shortest_there_is() {
     assert_eq!(prepared.plan.write_cycles(), 12);
 }
 
-/// How a commit ended, with the memory before and after it.
+/// The end of a commit, with the memory before and after it.
 struct Ending<'a> {
     desk: &'a Desk,
     prepared: &'a Prepared,
@@ -99,7 +99,7 @@ struct Ending<'a> {
 }
 
 impl Ending<'_> {
-    /// After a wish to end: exactly the operations that are counted were carried out, and what was locked is locked.
+    /// Checks after a cancellation: exactly the counted operations were carried out, and the protected fields are locked.
     fn assert_cancelled_cleanly(&self, interrupted: &Interrupted) {
         let Ending { context, .. } = self;
         assert_eq!(interrupted.cause, Error::Cancelled, "{context}");
@@ -109,8 +109,8 @@ impl Ending<'_> {
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
     }
 
-    /// After a cut: the operations that are counted were carried out, the one in flight was or was not, and a field
-    /// that is left unlocked is named.
+    /// Checks after a lost connection: the counted operations were carried out, the one in progress was or was not, and a
+    /// field that remains unlocked is named.
     fn assert_cut_off_and_told(&self, interrupted: &Interrupted) {
         let Ending { context, .. } = self;
         let ops = &self.prepared.plan.ops;
@@ -135,7 +135,7 @@ impl Ending<'_> {
     }
 }
 
-/// From wherever it stands, the profile can be restored; and the backup gives back what was there.
+/// Checks that from any state the profile can be restored, and that the backup restores the previous content.
 fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fields, kept: Option<&HiperfaceProfile>) {
     let mut forwards = desk.copied();
     forwards.know_code(2, 0x66);
@@ -146,11 +146,11 @@ fn assert_can_be_completed(desk: &Desk, wanted: &HiperfaceProfile, before: &Fiel
     let mut backwards = desk.copied();
     backwards.know_code(2, 0x66);
     backwards.restore(kept).unwrap();
-    // A field that was created stays; restoring never deletes.
+    // A field that was created remains; restoring never deletes.
     assert_eq!(backwards.memory()[..before.len()], before[..]);
 }
 
-/// Carries the restore out on a fresh copy of the scene; `disturb` is called when the plan stands.
+/// Carries the restore out on a new copy of the scene; `disturb` is called when the plan is complete.
 fn disturbed(
     scene: &(Desk, HiperfaceProfile),
     context: String,
@@ -164,7 +164,7 @@ fn disturbed(
     let prepared = desk.prepare(restore_of(wanted)).unwrap();
     disturb(&mut desk);
     let result = desk.commit(&prepared);
-    // Whatever went wrong is over.
+    // The fault is over.
     desk.bus().set_faults(&Default::default());
     let reconnected = desk.reconnected();
     match result {
@@ -205,7 +205,7 @@ fn cancelled_at_every_transaction() {
     assert!(steps > 12, "each operation is a transaction at least: {steps}");
 }
 
-/// With a code waiting in the encoder's queue, the reply to a write announces it. The write is done all the same.
+/// If a code waits in the encoder's queue, the reply to a write announces it. The write is done nevertheless.
 #[test]
 fn cancelled_at_every_transaction_of_an_encoder_that_warns() {
     let scene = scene();
@@ -225,7 +225,7 @@ fn cancelled_at_every_transaction_of_an_encoder_that_warns() {
     }
 }
 
-/// The warning comes up in the middle: announced by the reply to a write, with the wish to end right behind it.
+/// A warning during the restore: announced by the reply to a write, immediately followed by the cancellation.
 #[test]
 fn a_warning_in_the_middle_hides_no_write() {
     let (original, wanted) = scene();
@@ -238,7 +238,7 @@ fn a_warning_in_the_middle_hides_no_write() {
             desk.session.set_cancel(Cancel::after(steps));
             let (bus, mut stores) = (desk.bus.clone(), 0);
             let mut raised = false;
-            // The trace is told of a request before it is on the line.
+            // The trace receives a request before it is sent.
             desk.session.watch(move |entry| {
                 stores += usize::from(entry.bytes.to_string().starts_with("40 4B"));
                 if stores == store && !raised {
@@ -264,7 +264,7 @@ fn cut_off_at_every_transaction() {
         ("deaf", |desk, at| desk.tap().deaf_from = Some(at)),
         ("mute", |desk, at| desk.tap().mute_from = Some(at)),
         ("silent", |desk, at| {
-            // The setting-up has used frames of its own; the fault counts them all.
+            // The setup has used some frames; the fault counts all of them.
             let already = frames_so_far(&desk.bus().clone());
             desk.bus().set_faults(&format!("silent-after:{}", already + at).parse().unwrap());
         }),
@@ -285,7 +285,8 @@ fn cut_off_at_every_transaction() {
     }
 }
 
-/// Frames an encoder has taken: the least number after which the fault "silent" has come already.
+/// Returns the number of frames an encoder has received: the least number after which the fault "silent" has already
+/// occurred.
 fn frames_so_far(bus: &encoder_studio::devices::hiperface::sim::Bus) -> usize {
     let is_silent = |frames: usize| {
         let mut probe = bus.clone();
@@ -310,7 +311,7 @@ fn power_lost_in_the_middle_of_every_store() {
         let error = desk.commit(&prepared).unwrap_err();
         let JobError::Interrupted { interrupted, backup: path, planned: 12, .. } = error else { panic!("{error:?}") };
         assert!(interrupted.cause.is_lost(), "store {store}: {interrupted:?}");
-        // Three stores into field 1, between unlocking and locking, and one into field 4, created and yet to be locked.
+        // Three stores into field 1, between unlocking and locking, and one into field 4, created and not yet locked.
         let expected = match store {
             4..=6 => vec![1],
             8 => vec![4],

@@ -1,4 +1,4 @@
-//! What a write leaves on disk, and what happens where the disk says no.
+//! Files of a write, and disks that refuse them.
 
 use std::fs;
 
@@ -23,7 +23,7 @@ fn without_a_before_image_nothing_is_written() {
         fs::write(&path, "a file").unwrap();
         let memory = desk.memory();
         let error = desk.change(store_byte(0xEE)).unwrap_err();
-        // Where there is no folder, the write cycles are not known either.
+        // Without a folder, the write cycles are not known either.
         let refused = match in_the_way {
             "data" => matches!(error, JobError::NotBegun(NotBegun::WearUnknown { cost: 1 })),
             _ => matches!(error, JobError::NotBegun(NotBegun::NotKept(_))),
@@ -33,7 +33,8 @@ fn without_a_before_image_nothing_is_written() {
     }
 }
 
-/// Issue 22.4: the write cycles so far are not known then. Only force begins a write, and what it could not note is told.
+/// Issue 22.4: then the previous write cycles are not known. Only a forced write begins, and the missing records are
+/// reported.
 #[test]
 fn a_broken_logbook_stops_a_write_that_is_not_forced() {
     for garbage in [true, false] {
@@ -71,7 +72,7 @@ fn a_backup_is_a_profile_of_what_was_there() {
     assert_eq!(desk.memory(), before);
 }
 
-/// Nothing that is kept holds an access code: the codes used here stand nowhere, in no form.
+/// No file contains an access code: the codes used here do not occur in any form.
 #[test]
 fn no_access_code_is_kept() {
     let mut desk = Desk::new("codes=0:9D,2:66");
@@ -97,7 +98,7 @@ fn no_access_code_is_kept() {
             let content = fs::read(&path).unwrap();
             let text = String::from_utf8_lossy(&content);
             for word in ["9D", "0x66", "66h", "C3"] {
-                // The name plate has bytes of its own; none of them is one of these.
+                // The name plate has other bytes; none of them equals one of these.
                 assert!(!text.split(|c: char| !c.is_ascii_alphanumeric()).any(|w| w == word), "{word} in {path:?}");
             }
         }

@@ -1,4 +1,4 @@
-//! A wire that is slower than its margin says: the reply to one request is never taken for the reply to the next.
+//! A connection slower than its margin: the reply to one request is never taken for the reply to the next.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -14,7 +14,7 @@ use encoder_studio::worker::Session;
 
 use crate::support::bus;
 
-/// Everything from the encoder comes this much later.
+/// A link on which all replies of the encoder are delayed.
 struct Slow {
     line: SimLink,
     clock: Arc<VirtualClock>,
@@ -58,7 +58,7 @@ impl ByteLink for Slow {
 #[test]
 fn a_late_reply_is_never_taken_for_the_next() {
     for delay in [0, 60, 110, 150, 300, 700] {
-        // One turn a second: a position that is a request old lies outside of what the shaft passed since.
+        // One turn per second: a position that is one request old is outside the range that the shaft has passed since.
         let bus = Arc::new(Mutex::new(bus("rpm=60")));
         let clock = Arc::new(VirtualClock::default());
         let line = SimLink::connect(bus.clone(), clock.clone());

@@ -1,5 +1,5 @@
-//! Requests and replies that get lost, one after the other: what is asked is asked again, what changes the encoder is
-//! never carried out twice.
+//! Requests and replies that are lost, one after the other: requests that read are repeated, and those that change the
+//! encoder are never carried out twice.
 
 use std::time::Duration;
 
@@ -68,7 +68,7 @@ fn an_access_code_is_changed_and_known() {
         |desk| desk.know_code(0, 0x9D),
         |desk, context| {
             assert_eq!(desk.bus().encoders()[0].memory().code(zero).byte(), 0xC3, "{context}");
-            // The session knows it as well: field 0 is guarded by it.
+            // The session knows the code as well: it guards field 0.
             assert!(desk.save().unwrap().fields[0].bytes.is_some(), "{context}");
         },
     );
@@ -102,7 +102,7 @@ fn the_position_is_set() {
     );
 }
 
-/// A position that was there before does not tell whether the tracks were aligned: nobody may say that they were.
+/// A position that equals the previous one does not prove that the tracks were aligned, so it must not be reported.
 #[test]
 fn synchronising_in_place_is_not_taken_for_done() {
     let mut desk = Desk::new("model=sel37");
@@ -118,7 +118,7 @@ fn synchronising_in_place_is_not_taken_for_done() {
     }
 }
 
-/// A failed job leaves the next one its five tries.
+/// After a failed job, the next one has its own five tries.
 #[test]
 fn patience_begins_anew_with_each_job() {
     let mut desk = Desk::new("");
@@ -149,7 +149,8 @@ fn a_silent_encoder_is_given_up_within_ten_seconds() {
     }
 }
 
-/// Issue 22.10: 50h takes a code out of the encoder: whatever reply is lost, each code is given back or counted as one that may be lost.
+/// Issue 22.10: 50h removes a code from the encoder: whichever reply is lost, each code is returned or counted as possibly
+/// lost.
 #[test]
 fn no_status_code_is_lost_without_a_word() {
     let queue = [StatusCode::TEMPERATURE, StatusCode::TOO_FAST, StatusCode::COUNTER_OVERFLOW];
@@ -176,7 +177,7 @@ fn no_status_code_is_lost_without_a_word() {
     assert!(counted > 0, "50h was among them");
 }
 
-/// Issue 22.10: a code may be lost where 50h was sent: not behind an encoder that was never asked for one.
+/// Issue 22.10: a code may be lost only if 50h was sent.
 #[test]
 fn no_code_is_said_to_be_lost_that_was_not_asked_for() {
     let mut desk = Desk::new("fault=silent-after:0");

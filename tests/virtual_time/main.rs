@@ -1,5 +1,5 @@
-//! What the worker, the procedures and the virtual encoder do together, in virtual time: the same code as at a desk, with
-//! every moment of the line in the test's hands. One module a behaviour.
+//! The worker, the procedures and the virtual encoder together, in virtual time: the same code as with real hardware, with
+//! every moment of the line under the control of the test. One module per behaviour.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::indexing_slicing, clippy::panic)]
 
 mod biss;

@@ -1,5 +1,5 @@
-//! Noise on the line: what is shown is right, or it is an error. A wrong value may only come of a frame in which nothing
-//! shows the damage, and then the trace has it.
+//! Noise on the line: a shown value is right, or there is an error. A wrong value may only result from a frame with
+//! undetectable damage, and then the trace contains it.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError, Value};
 use encoder_studio::devices::hiperface::profile::{FieldRange, HiperfaceProfile, Item};
@@ -9,7 +9,7 @@ use crate::support::{Desk, backup, bytes, exchanges, xor};
 
 const NOISE: [&str; 5] = ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.02,garbage:0.02"];
 
-/// Three fields with varied content beside the name plate; then the line becomes noisy.
+/// Returns three fields with varied content besides the name plate; then the line becomes noisy.
 fn noisy_desk(seed: u8, noise: &str) -> Desk {
     let mut desk = Desk::new(&format!("seed={seed}&codes=2:66&position={}", u32::from(seed) * 64_123));
     desk.know_code(2, 0x66);
@@ -29,7 +29,7 @@ fn mend(desk: &Desk, noise: &str) {
     desk.bus().set_faults(&noise.parse::<Faults>().unwrap());
 }
 
-/// A 42h reply that nobody can tell from a true one.
+/// Returns whether the bytes are a valid 42h reply with this position.
 fn says_position(reply: &[u8], position: u32) -> bool {
     let [a, b, c, d] = position.to_be_bytes();
     reply.len() == 7 && reply[0] == 0x40 && reply[1] & 0x7F == 0x42 && reply[2..6] == [a, b, c, d] && xor(reply) == 0
@@ -67,11 +67,11 @@ fn a_position_is_right_or_an_error_or_its_frame_was_perfect() {
     }
     println!("positions: {read} read, {failed} errors, {wrong} wrong from undetectable frames");
     assert!(read > 3000, "{read} of 4000 read");
-    // Two flips in the same bit of nine bytes, one in the head not counted: 36 · 0.02² / 8 a frame, or 0.2 %.
+    // Two flips in the same bit of nine bytes, one in the head not counted: 36 · 0.02² / 8 per frame, or 0.2 %.
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
-/// A 4Ah reply that nobody can tell from a true one, and what it says about a byte of the field.
+/// Returns the byte of the field in a valid 4Ah reply.
 fn says_byte(reply: &[u8], field: u8, at: usize) -> Option<u8> {
     let [0x40, command, f, start, count, data @ .., _] = reply else { return None };
     let right = command & 0x7F == 0x4A && *f == field && data.len() == usize::from(*count) && xor(reply) == 0;
@@ -120,7 +120,7 @@ fn a_field_is_right_or_an_error_or_its_frames_were_perfect() {
     assert!(wrong * 100 < read, "{wrong} of {read} wrong");
 }
 
-/// What a save is about: who it is, its fields, its counter.
+/// Compares the content of a save: identity, fields, counter.
 fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) {
     assert_eq!(got.identity, truth.identity, "{context}");
     assert_eq!(got.interface, truth.interface, "{context}");
@@ -131,7 +131,7 @@ fn assert_same(got: &HiperfaceProfile, truth: &HiperfaceProfile, context: &str) 
 #[test]
 fn a_save_is_right_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
-    // Little noise is the harder case: the first damage may be one that nothing shows.
+    // Little noise is the harder case: the first damage may be an undetectable one.
     for noise in ["drop:0.02", "flip:0.02", "drop:0.02,flip:0.02", "garbage:0.02", "flip:0.005", "drop:0.005"] {
         for seed in 0..60 {
             let mut desk = noisy_desk(seed, "");

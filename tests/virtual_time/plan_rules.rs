@@ -1,4 +1,4 @@
-//! The one way to write: nothing but what was planned, nothing that did not differ, nothing on another base.
+//! The one way to write: nothing but the planned changes, nothing that did not differ, nothing on another base.
 
 use encoder_studio::devices::hiperface::jobs::{Change, Commit, HiperfaceJob, JobError};
 use encoder_studio::devices::hiperface::procedures::Error;
@@ -43,7 +43,7 @@ fn a_base_that_changed_is_not_written_over() {
     }
 }
 
-/// Two new encoders have the same memory: what tells them apart is the serial number.
+/// Two new encoders have the same memory: the serial number distinguishes them.
 #[test]
 fn a_plan_is_for_one_encoder() {
     let mut desk = Desk::new("serial=A1");
@@ -93,7 +93,7 @@ fn an_empty_plan_sends_nothing() {
     assert_eq!(std::fs::read_dir(desk.folder.path()).unwrap().count(), 0, "nothing on disk");
 }
 
-/// Every byte of every 4Bh differs from what stood there, and nothing but the plan's places is written.
+/// Every byte of every 4Bh differs from the previous one, and nothing but the plan's places is written.
 #[test]
 fn only_what_differs_is_written_and_every_write_is_counted() {
     for seed in 0..20_u8 {
@@ -168,7 +168,7 @@ fn protected_fields_and_other_limits_are_refused_without_a_write() {
     assert!(matches!(ops[..], [Op::Define { field: 0, to, .. }] if !to.exists()));
 }
 
-/// Edits of several fields: one plan, one backup, each field read once, and no byte sent that stands there already.
+/// Edits of several fields: one plan, one backup, each field read once, and no byte sent that is already stored.
 #[test]
 fn several_edits_are_written_in_one_go() {
     let mut desk = Desk::new("");

@@ -1,4 +1,4 @@
-//! Polling on a session's thread: samples while no job is there, jobs first, and an end that is told once.
+//! Polling on a session's thread: samples while there is no job, jobs first, and an end that is reported once.
 
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -13,10 +13,10 @@ use crate::support::Desk;
 use crate::threads::{Bench, LONG, identify, in_real_time, in_virtual_time, until_end};
 
 pub(crate) const BACK_TO_BACK: Option<Duration> = Some(Duration::ZERO);
-/// No test waits for the second sample at this distance.
+/// An interval so long that no test gets a second sample.
 pub(crate) const SELDOM: Option<Duration> = Some(Duration::from_secs(3600));
 
-/// At least so many samples, as they come.
+/// Returns at least `count` samples.
 pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
     let started = Instant::now();
     let mut samples = Vec::new();
@@ -28,7 +28,7 @@ pub(crate) fn samples(worker: &Worker<Hiperface>, count: usize) -> Vec<Sample> {
     samples
 }
 
-/// Nothing comes any more, once what is under way has come.
+/// Checks that no further samples arrive after those in progress.
 pub(crate) fn nothing_comes(bench: &Bench) {
     let started = Instant::now();
     loop {
@@ -114,7 +114,7 @@ fn polling_that_fails_ends_and_is_told_once() {
     assert!(matches!(bench.worker.events().recv_timeout(LONG), Ok(Event::PollFailed(_))), "once each time");
 }
 
-/// A job does not wait until a silent encoder has been asked five times, and polling goes on after it.
+/// A job does not wait for five tries with a silent encoder, and polling continues after it.
 #[test]
 fn a_job_cuts_the_repetitions_of_a_sample_short() {
     let mut bench = in_real_time("fault=silent-after:0");
@@ -132,7 +132,7 @@ fn a_job_cuts_the_repetitions_of_a_sample_short() {
     assert!(matches!(told, Event::PollFailed(_)), "the sample that was due is tried again: {told:?}");
 }
 
-/// That there is no position is a sample too; another refusal is none.
+/// The report that there is no position is a sample too; another refusal is not.
 #[test]
 fn an_encoder_without_a_position_is_polled_on() {
     let mut desk = Desk::new("rpm=9000");

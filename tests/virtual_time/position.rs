@@ -1,4 +1,4 @@
-//! Setting the position: at rest only, in phase unless wished otherwise, and with a way back.
+//! Setting the position: at rest only, in phase unless requested otherwise, and reversible.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput, JobError};
 use encoder_studio::devices::hiperface::procedures::{Error, Station};
@@ -29,7 +29,7 @@ fn a_moving_shaft_is_refused_when_planning_and_when_writing() {
 
 #[test]
 fn the_five_lowest_bits_stay_unless_wished_otherwise() {
-    // SKM36: 128 · 32 · 4096 positions; it stands at 000E0531h, phase 17.
+    // SKM36: 128 · 32 · 4096 positions; it is at 000E0531h, phase 17.
     for (wanted, expected) in [(0, 17), (1, 17), (32, 17), (34, 49), (0x1234, 0x1231), (0x00FF_FFFF, 0x00FF_FFF1)] {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(wanted, false)).unwrap();
@@ -59,14 +59,14 @@ fn the_way_back_is_kept() {
     assert_eq!(entries[0].conclusion.as_ref().unwrap().cycles_spent, 1);
 }
 
-/// A shaft at rest dithers by a step. At zero that is the whole range.
+/// A shaft at rest varies by a step. At zero that is the complete range.
 #[test]
 fn zero_may_dither() {
     for tenths in 1..=600 {
         let mut desk = Desk::new("");
         let prepared = desk.prepare(set(0, true)).unwrap();
         let now = desk.clock.now();
-        // 4096 steps a turn: at 0.04/min a step takes 370 ms, about as long as from the plan to the read-back.
+        // 4096 steps per turn: at 0.04/min a step takes 370 ms, about the time from the plan to the read-back.
         desk.bus().encoder_mut(0).unwrap().set_rpm(now, -f64::from(tenths) / 10_000.0);
         let done = desk.commit(&prepared);
         let moved = matches!(done, Err(JobError::Device(Error::Moving { .. })));
@@ -81,7 +81,7 @@ fn only_a_kit_is_synchronised() {
         let error = Desk::new("").prepare(synchronise(kit)).unwrap_err();
         assert!(matches!(error, JobError::Device(Error::NotAKit { .. })), "{error:?}");
     }
-    // Its extended label does not say that it is a kit: the user does.
+    // Its extended label does not contain that it is a kit: the user confirms it.
     assert!(Desk::new("model=sel37").prepare(synchronise(false)).is_err());
     let mut desk = Desk::new("model=sel37");
     desk.change(synchronise(true)).unwrap();
@@ -89,7 +89,7 @@ fn only_a_kit_is_synchronised() {
     assert_eq!(desk.bus().encoders()[0].position(desk.clock.now()), 0x40);
 }
 
-/// The moment that comes with a position is the one at which the encoder sampled it.
+/// The time of a position is that at which the encoder sampled it.
 #[test]
 fn a_position_comes_with_its_moment() {
     for query in ["rpm=3000", "rpm=-1200&fault=delay:60", "rpm=500&fault=delay:33&echo=on", "rpm=3000&pace=worst"] {
@@ -97,7 +97,7 @@ fn a_position_comes_with_its_moment() {
         for _ in 0..50 {
             let reading = match desk.run(HiperfaceJob::Position(None)) {
                 Ok(HiperfaceOutput::Position(reading)) => reading,
-                // An encoder slower than the manual allows may be an error.
+                // An encoder slower than the manual allows may cause an error.
                 Err(_) if query.contains("delay") => continue,
                 other => panic!("{query}: {other:?}"),
             };
@@ -107,7 +107,7 @@ fn a_position_comes_with_its_moment() {
     }
 }
 
-/// Request, time-out, processing, reply and dead time are all that a cycle takes: the goal is 95 % of that rate.
+/// Request, time-out, processing, reply and dead time are the complete cycle: the goal is 95 % of that rate.
 #[test]
 fn polling_is_as_fast_as_the_protocol_allows() {
     for byte in [0xE0, 0xE4, 0xE5, 0xE6, 0xA6] {
@@ -122,7 +122,8 @@ fn polling_is_as_fast_as_the_protocol_allows() {
             desk.run(HiperfaceJob::Position(None)).unwrap();
         }
         let cycle = desk.clock.now().since(before).as_secs_f64() / 100.0;
-        // Three characters there, seven back, 11 bits each; silence before and after the reply; 10 ms of processing.
+        // A request of three characters, a reply of seven, 11 bits each; silence before and after the reply; 10 ms of
+        // processing.
         let silence = if settings.long_timeout() { 44.0 } else { 11.0 };
         let least = (10.0 * 11.0 + 2.0 * silence) / f64::from(settings.baud().unwrap().bits_per_second()) + 0.010;
         assert!(least >= cycle * 0.95, "{settings}: {cycle} s a cycle, {least} s needed");
@@ -130,7 +131,8 @@ fn polling_is_as_fast_as_the_protocol_allows() {
     }
 }
 
-/// What came while nobody listened is no part of the next reply: it costs neither a try nor the line's good name.
+/// Bytes that arrived between requests are no part of the next reply: they neither count as a try nor lower the line's
+/// quality.
 #[test]
 fn bytes_that_came_in_a_pause_are_not_taken_for_a_reply() {
     let mut desk = Desk::new("");

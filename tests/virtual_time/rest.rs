@@ -1,4 +1,4 @@
-//! The shaft at rest: position, sine and cosine read together, and only while it stands still.
+//! The shaft at rest: position, sine and cosine read together, only at standstill.
 
 use encoder_studio::devices::hiperface::jobs::{HiperfaceJob, HiperfaceOutput, JobError};
 use encoder_studio::devices::hiperface::procedures::{Error, Rest, Signals};
@@ -37,12 +37,12 @@ fn a_shaft_that_moves_or_has_no_position_is_refused() {
     assert!(matches!(&error, JobError::Device(error) if error.is_rejection(StatusCode::TOO_FAST)), "{error:?}");
 }
 
-/// Slow enough to look at rest for two tenths of a second, and not for the whole reading.
+/// Slow enough to seem at rest for two tenths of a second, but not during the complete reading.
 #[test]
 fn a_shaft_that_creeps_is_found_out_at_the_end() {
     let mut desk = Desk::new("position=100");
     let now = desk.clock.now();
-    // 6.7 steps of 1/4096 turn a second: one while the shaft is watched, two more by the end.
+    // 6.7 steps of 1/4096 turn per second: one while the shaft is watched, two more by the end.
     desk.bus().encoder_mut(0).unwrap().set_rpm(now, 6.7 * 60.0 / 4096.0);
     let error = rest(&mut desk).unwrap_err();
     assert!(matches!(error, JobError::Device(Error::Moving { .. })), "{error:?}");

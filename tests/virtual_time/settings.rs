@@ -1,4 +1,4 @@
-//! Restarts, interface settings for now and for good, and addresses.
+//! Restarts, temporary and permanent interface settings, and addresses.
 
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
 use encoder_studio::devices::hiperface::procedures::Station;
@@ -72,7 +72,7 @@ fn settings_for_now_are_in_force_at_once_and_lost_with_the_restart() {
     }
 }
 
-/// With a code waiting, the replies to 55h and 67h announce it, and the encoder is already elsewhere.
+/// If a code waits, the replies to 55h and 67h announce it, and the encoder already has the new settings.
 #[test]
 fn an_encoder_that_warns_while_it_moves_is_followed() {
     let warn = |desk: &mut Desk| desk.bus().encoder_mut(0).unwrap().report(StatusCode::TEMPERATURE);
@@ -111,7 +111,7 @@ fn warn_at(desk: &mut Desk, frame: usize) {
 #[test]
 fn codes_of_the_start_are_all_read() {
     let mut desk = Desk::new("temperature=130");
-    // Once from before the restart, once from the start itself: none is lost.
+    // One from before the restart, one from the start itself: none is lost.
     assert_eq!(reset(&mut desk), [StatusCode::TEMPERATURE; 2]);
     for code in [0x01, 0x1C, 0x1D, 0x20] {
         desk.bus().encoder_mut(0).unwrap().report(StatusCode::new(code));
@@ -122,7 +122,7 @@ fn codes_of_the_start_are_all_read() {
     assert_eq!(codes, []);
 }
 
-/// Two encoders at one address can never be told apart again.
+/// Two encoders at one address can never be distinguished again.
 #[test]
 fn an_address_that_somebody_has_is_refused() {
     let mut desk = Desk::new("encoders=3");

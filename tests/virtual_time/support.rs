@@ -1,5 +1,5 @@
-//! A desk in virtual time: a session on a virtual line, a link between them that can be told to misbehave, and all that
-//! went over it.
+//! Test support in virtual time: a session on a virtual line, a link in between with configurable faults, and a record of
+//! its data.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -25,32 +25,32 @@ use encoder_studio::worker::Session;
 /// The margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
-/// What the link does besides carrying bytes, and what it has carried.
+/// The faults of the link, and a record of its bytes.
 #[derive(Default)]
 pub(crate) struct Tap {
     /// Every frame that was handed to the link.
     pub(crate) sent: Vec<Vec<u8>>,
-    /// From this frame on (0 is the first) the link is gone.
+    /// From this frame on (0 is the first) the link is lost.
     pub(crate) lost_from: Option<usize>,
     /// From this frame on nothing reaches the encoder.
     pub(crate) deaf_from: Option<usize>,
-    /// From this frame on nothing comes back.
+    /// From this frame on no reply arrives.
     pub(crate) mute_from: Option<usize>,
     /// This frame does not reach the encoder.
     pub(crate) swallow_request: Option<usize>,
-    /// The reply to this frame does not come back.
+    /// The reply to this frame is lost.
     pub(crate) swallow_reply: Option<usize>,
     /// Every reply to a request that begins like this is damaged.
     pub(crate) broken_to: Option<Vec<u8>>,
-    /// No reply to a request that begins like this comes back.
+    /// No reply arrives to a request that begins like this.
     pub(crate) mute_to: Option<Vec<u8>>,
-    /// Bytes that somebody else sends.
+    /// Bytes from another sender.
     pub(crate) foreign: VecDeque<u8>,
-    /// The link has no speed of its own: a device server.
+    /// Whether the link has no speed of its own, as with a device server.
     pub(crate) formatless: bool,
-    /// The link says that it is gone when it is asked.
+    /// Whether the link reports on request that it is lost.
     pub(crate) unplugged: bool,
-    /// With this frame somebody wishes an end.
+    /// The frame at which the job is cancelled.
     pub(crate) cancel_at: Option<(usize, Cancel)>,
 }
 
@@ -70,7 +70,7 @@ impl Tap {
         self.sent.last().is_some_and(|last| last.starts_with(request))
     }
 
-    /// How often a command was sent.
+    /// Returns the number of times that a command was sent.
     pub(crate) fn count(&self, command: Command) -> usize {
         self.sent.iter().filter(|frame| frame[1] == command.byte()).count()
     }
@@ -160,12 +160,12 @@ pub(crate) struct Desk {
     pub(crate) session: Session<Hiperface>,
 }
 
-/// A folder for backups and the logbook: in memory where there is room for files in it, because thousands are made.
+/// Returns a folder for backups and the logbook: in memory if there is room for files, because thousands are created.
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
 }
 
-/// A virtual line as `sim:?…` describes it.
+/// Returns a virtual line as `sim:?…` describes it.
 pub(crate) fn bus(query: &str) -> Bus {
     let pairs = query.split('&').filter_map(|item| item.split_once('='));
     let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
@@ -181,7 +181,7 @@ impl Desk {
         Self::at(bus(query), &VirtualClock::default(), station)
     }
 
-    /// A desk with this line, not before the time of `clock`.
+    /// Creates a desk with this line, not before the time of `clock`.
     pub(crate) fn at(bus: Bus, clock: &VirtualClock, station: Station) -> Self {
         let own = Arc::new(VirtualClock::default());
         own.sleep_until(clock.now());
@@ -209,7 +209,7 @@ impl Desk {
         Desk { bus, clock, tap, trace, folder, session }
     }
 
-    /// The same line at the same time in a new session: a cable that was plugged in again.
+    /// Returns the same line at the same time in a new session: a cable that was plugged in again.
     pub(crate) fn reconnected(&self) -> Desk {
         let mut desk =
             Self::plugged(self.bus.clone(), self.clock.clone(), self.folder.clone(), self.session.station().clone());
@@ -217,7 +217,7 @@ impl Desk {
         desk
     }
 
-    /// A copy of all this, line and time included, with nothing kept on disk.
+    /// Returns a copy of all this, line and time included, with nothing kept on disk.
     pub(crate) fn copied(&self) -> Desk {
         let bus = self.bus.lock().unwrap().clone();
         Self::at(bus, &self.clock, self.session.station().clone())
@@ -281,7 +281,7 @@ impl Desk {
         }
     }
 
-    /// Status byte and content of every data field, looked at in the encoder.
+    /// Returns status byte and content of every data field, read directly in the encoder.
     pub(crate) fn memory(&self) -> Fields {
         let bus = self.bus();
         let memory = bus.encoders()[0].memory();
@@ -289,7 +289,7 @@ impl Desk {
         (0..memory.free().fields).map(field).collect()
     }
 
-    /// How often the encoder's EEPROM was written.
+    /// Returns the number of writes of the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
@@ -302,12 +302,12 @@ pub(crate) fn restore_of(profile: &HiperfaceProfile) -> Change {
     Change::Restore { profile: Box::new(profile.clone()), options: RestoreOptions::default() }
 }
 
-/// The profile in a backup file.
+/// Returns the profile in a backup file.
 pub(crate) fn backup(path: &std::path::Path) -> HiperfaceProfile {
     Document::parse(&read_text(path).unwrap(), program().studio.formats).unwrap().body.into_profile().unwrap()
 }
 
-/// Bytes that repeat themselves late and differ for different seeds.
+/// Returns the bytes that repeat themselves late and differ for different seeds.
 pub(crate) fn bytes(seed: u8, count: usize) -> Vec<u8> {
     assert!(count <= MAX_TRANSFER);
     (0..count).map(|at| (at as u8).wrapping_mul(37).wrapping_add(seed.wrapping_mul(101)) ^ (at >> 3) as u8).collect()
@@ -317,7 +317,7 @@ pub(crate) fn xor(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// Where access codes stand in a request, by the reference: after the two head bytes.
+/// Returns the positions of access codes in a request, according to the reference: after the two head bytes.
 fn places_of_codes(command: u8) -> &'static [usize] {
     match command {
         0x43 | 0x63 => &[6],
@@ -330,8 +330,8 @@ fn places_of_codes(command: u8) -> &'static [usize] {
     }
 }
 
-/// A request with a code shows neither it nor the checksum, and everything else; an answer to it that is shown is not
-/// the request itself.
+/// Checks that a request with a code is shown without code and checksum, but otherwise completely, and that a shown answer
+/// is not the request itself.
 fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     let shown = entry.bytes.to_string();
     let words: Vec<&str> = shown.split(' ').collect();
@@ -347,7 +347,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
             }
         }
         Direction::Received => {
-            // One byte that was read may have the value of the code: that is no secret.
+            // A byte that was read may have the value of the code: that is no secret.
             let can_leak = |sent: &&Vec<u8>| !(places_of_codes(sent[1]).is_empty() || sent[1] == 0x4A && sent[4] == 1);
             let Some(sent) = sent.filter(can_leak) else { return };
             let hex: Vec<String> = sent.iter().map(|byte| format!("{byte:02X}")).collect();
@@ -356,7 +356,7 @@ fn check_secrets(entry: &TraceEntry, sent: Option<&Vec<u8>>) {
     }
 }
 
-/// What people read names none of the codes used in these tests.
+/// Checks that a text for users contains none of the codes used in these tests.
 pub(crate) fn check_words(text: &str) {
     // A damaged reply may have any checksum.
     if text.contains("checksum") {
@@ -369,7 +369,7 @@ pub(crate) fn check_words(text: &str) {
     }
 }
 
-/// The requests that are in a trace, with the replies that were shown after them.
+/// Returns the requests that are in a trace, with the replies that were shown after them.
 pub(crate) fn exchanges(trace: &[TraceEntry]) -> Vec<(String, Vec<Vec<u8>>)> {
     let mut exchanges: Vec<(String, Vec<Vec<u8>>)> = Vec::new();
     for entry in trace {

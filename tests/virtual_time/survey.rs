@@ -1,4 +1,4 @@
-//! Everything there is to see of an encoder, in one job; and access codes that the user names later.
+//! All readable data of an encoder, in one job; and access codes that the user supplies later.
 
 use encoder_studio::analysis::check::Verdict;
 use encoder_studio::devices::hiperface::jobs::{Change, HiperfaceJob, HiperfaceOutput};
@@ -29,7 +29,7 @@ fn a_survey_shows_what_is_there_and_reads_each_byte_once() {
     assert!(reading.position.is_some());
     assert_eq!(desk.tap().count(Command::ReadData), memory.len());
     assert_eq!(desk.wear(), 0);
-    // The geometry stays known: a sample has it.
+    // The geometry is still known: a sample contains it.
     let sample = desk.session.sample().unwrap();
     assert!(matches!(&sample, Sample::Position(reading) if reading.position.is_some()), "{sample:?}");
     assert!(desk.session.station().codes_met.is_empty());
@@ -59,7 +59,7 @@ fn a_code_is_noted_without_a_byte_on_the_line_or_in_words() {
     assert!(open.fields.iter().all(|field| field.bytes.is_some()), "{:?}", open.fields);
 }
 
-/// A second data field beside the name plate.
+/// Returns an encoder with a second data field besides the name plate.
 fn two_fields() -> Desk {
     let mut desk = Desk::new("");
     desk.change(Change::CreateField { number: 1, status: DataFieldStatus::from_byte(0xC8) }).unwrap();
@@ -73,7 +73,7 @@ fn check(desk: &mut Desk) -> Vec<HiperfaceStepResult> {
     }
 }
 
-/// Issue 22.11: one field that cannot be read takes nothing else along; the line's troubles are counted.
+/// Issue 22.11: an unreadable field does not affect the rest; the errors of the line are counted.
 #[test]
 fn one_unreadable_field_leaves_the_rest_usable() {
     // 4Ah on data field 0: damaged each time, or without a reply; and 4Ch, so that not even its status is known.
@@ -99,19 +99,19 @@ fn one_unreadable_field_leaves_the_rest_usable() {
         let quality = &seen.line;
         assert!(quality.is_troubled() && quality.retries > 0, "{label}: {quality:?}");
         assert_eq!((quality.damaged > 0, quality.silent > 0), (is_broken, !is_broken), "{label}: {quality:?}");
-        // The device check goes to its end, and names the field and the line.
+        // The device check completes, and names the field and the line.
         let lines = check(&mut desk);
         let of = |step| lines.iter().find(|line| line.step == step).unwrap();
         assert_eq!(of(CheckStep::DataFields).verdict, Verdict::Bad, "{label}");
         let names = |own: &CheckFinding| matches!(own, CheckFinding::FieldUnreadable { number: 0, .. });
         assert!(of(CheckStep::DataFields).findings.iter().any(names), "{label}");
         assert_eq!(of(CheckStep::Line).verdict, Verdict::Attention, "{label}");
-        // What is kept for years is whole or not at all.
+        // A saved file is complete or does not exist.
         assert!(desk.save().is_err(), "{label}");
     }
 }
 
-/// An encoder that does not answer any more is no encoder with an unreadable field.
+/// An encoder that no longer answers is not an encoder with an unreadable field.
 #[test]
 fn an_encoder_that_falls_silent_ends_the_survey() {
     let mut desk = two_fields();
@@ -138,8 +138,8 @@ fn noted(desk: &Desk) -> Vec<String> {
     }
 }
 
-/// Issue 22.10: 50h takes a code out of the encoder, so that it is in the logbook before anything shows it: however it was
-/// read, and also where the job that read it fails.
+/// Issue 22.10: 50h removes a code from the encoder, so that it is in the logbook before it is shown: with every way to
+/// read it, and even if the job that read it fails.
 #[test]
 fn a_status_code_that_was_read_is_in_the_logbook() {
     let mut desk = Desk::new("");
@@ -159,7 +159,7 @@ fn a_status_code_that_was_read_is_in_the_logbook() {
     assert!(desk.run(HiperfaceJob::Survey).is_err());
     assert_eq!(noted(&desk)[0], "20h singleturn position unreliable");
     assert_eq!(desk.session.station().codes_met, [StatusCode::new(0x20)], "it is told as well");
-    // With a sample; a code that stays is kept once a minute, not with each sample.
+    // With a sample; a code that remains is recorded once per minute, not with each sample.
     desk.tap().mute_from = None;
     for _ in 0..5 {
         report(&desk, &[StatusCode::TEMPERATURE]);

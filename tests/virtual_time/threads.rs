@@ -14,7 +14,7 @@ use encoder_studio::worker::{Event, JobId, Session, SubmitError, Worker};
 
 use crate::support::{MARGIN, Tap, TestLink, bus};
 
-/// More than any of these takes; a hanging thread is what it is for.
+/// Time limit longer than any test, to detect a hanging thread.
 pub(crate) const LONG: Duration = Duration::from_secs(20);
 
 pub(crate) struct Bench {
@@ -55,7 +55,7 @@ fn is_end(event: &Event<Hiperface>) -> Option<JobId> {
     }
 }
 
-/// All events up to the end of a job.
+/// Returns all events up to the end of a job.
 pub(crate) fn until_end(worker: &Worker<Hiperface>) -> Vec<Event<Hiperface>> {
     let mut events = Vec::new();
     loop {
@@ -90,7 +90,7 @@ fn busy_is_refused_and_a_stop_ends_a_search_at_once() {
     assert!(stopped.elapsed() < Duration::from_secs(1), "{:?}", stopped.elapsed());
     assert!(matches!(events.first(), Some(Event::Started(started)) if *started == id));
     assert!(matches!(events.last(), Some(Event::Finished(ended, _)) if *ended == id), "{events:?}");
-    // The next job is not stopped by the old wish.
+    // The earlier cancellation does not stop the next job.
     *bench.tap.lock().unwrap() = Tap::default();
     bench.worker.submit(HiperfaceJob::Status).unwrap();
     assert!(matches!(until_end(&bench.worker).last(), Some(Event::Failed(..))), "nobody is at 40h at 9600");
@@ -110,7 +110,7 @@ fn each_job_starts_once_and_ends_once() {
     assert!(bench.worker.events().recv_timeout(Duration::from_millis(50)).is_err(), "and nothing comes after the end");
 }
 
-/// 672 steps of progress, and nobody reads: the job ends all the same, and its end is there when somebody comes.
+/// 672 steps of progress without a reader: the job ends nevertheless, and its end is available when it is read.
 #[test]
 fn nobody_reading_stops_nothing() {
     let mut bench = in_virtual_time("settings=0xE0");
@@ -132,7 +132,7 @@ fn nobody_reading_stops_nothing() {
             done = Some(progress.done);
         }
     }
-    // What is old by now does not come after the end.
+    // Outdated events do not follow the end.
     let late = bench.worker.events().recv_timeout(Duration::from_millis(100));
     assert!(late.is_err(), "{late:?}");
 }
@@ -148,7 +148,7 @@ fn a_dropped_worker_ends_its_thread_with_a_job_or_without() {
         let (clock, events) = (Arc::downgrade(&bench.clock), bench.worker.events().clone());
         drop(bench);
         let dropped = Instant::now();
-        // The session, and with it the thread's last hold on the clock, is gone.
+        // The session, and with it the thread's last reference to the clock, is dropped.
         while clock.upgrade().is_some() {
             assert!(dropped.elapsed() < Duration::from_secs(2), "the thread goes on");
             std::thread::sleep(Duration::from_millis(5));
@@ -180,7 +180,7 @@ fn a_worker_that_was_let_go_still_tells_how_its_job_ended() {
     assert_eq!(ending.events().iter().filter_map(|event| is_end(&event)).collect::<Vec<_>>(), [id]);
 }
 
-/// A stop reaches what runs, from wherever it comes, and nothing that is submitted later.
+/// A stop from any thread reaches the running job, and none that is submitted later.
 #[test]
 fn a_stop_is_for_one_job() {
     let mut bench = in_virtual_time("");
@@ -197,7 +197,7 @@ fn a_stop_is_for_one_job() {
     assert!(bench.tap.lock().unwrap().sent.len() < 32, "the search has ended early");
 }
 
-/// Whoever reads nothing is given nothing more to read.
+/// No job is accepted while events are unread.
 #[test]
 fn as_long_as_events_wait_there_is_no_new_job() {
     let mut bench = in_virtual_time("");

@@ -1,5 +1,5 @@
-//! Watched values between the positions of a polled encoder: their order, what is refused, jobs and ends in between. At
-//! which times they come is tested with the agenda itself (`worker/agenda.rs`).
+//! Watched values between the positions of a polled encoder: their order, refusals, jobs and ends in between. The times are
+//! tested with the scheduler itself (`worker/poll_scheduler.rs`).
 
 use std::time::{Duration, Instant};
 
@@ -34,11 +34,11 @@ fn at(sample: &Sample) -> Moment {
     }
 }
 
-/// What a polled worker gives once a new list is in force: from a position on, so many.
+/// Returns the samples of a polled worker after a new list takes effect: `count` of them, beginning with a position.
 fn course(worker: &Worker<Hiperface>, wished: &[Watch], count: usize) -> Vec<Option<(Watch, Option<i64>)>> {
     worker.poll(None);
     worker.watch(wished.iter().map(|what| (*what, ALWAYS)).collect());
-    // What is under way has come.
+    // The requests in progress have ended.
     std::thread::sleep(Duration::from_millis(100));
     worker.samples().drain();
     worker.poll(BACK_TO_BACK);
@@ -94,7 +94,7 @@ fn a_channel_that_is_missing_is_told_once_and_polling_goes_on() {
     );
     assert_eq!(bench.worker.watching(), [(TEMPERATURE, ALWAYS)]);
     assert!(bench.worker.events().is_empty(), "it is told as a sample");
-    // Beside another value it is not asked for again; once it was given up and wished anew it is.
+    // With another value in the list it is not requested again; after it was removed and added it is.
     course(&bench.worker, &[SINE, MISSING], 1);
     assert_eq!(bench.worker.watching(), [(SINE, ALWAYS)]);
     course(&bench.worker, &[], 1);
@@ -149,7 +149,7 @@ fn a_line_that_is_lost_ends_polling_and_is_told_once() {
     assert!(matches!(**error, JobError::Device(Error::NoReply { .. })), "{error:?}");
     assert_eq!(bench.worker.polling(), None);
     assert_eq!(bench.worker.samples().drain().0.len(), 4);
-    // While a watched value is asked for it is the same.
+    // The same during the request for a watched value.
     let bench = in_virtual_time("fault=silent-after:4");
     bench.worker.watch(vec![(TEMPERATURE, ALWAYS)]);
     bench.worker.poll(BACK_TO_BACK);

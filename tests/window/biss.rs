@@ -52,7 +52,7 @@ fn a_link_that_only_one_kind_can_open_opens_in_its_tab() {
     }
 }
 
-/// What a link does not say is remembered: an encoder with BiSS is not asked for as one with HIPERFACE.
+/// The kind of device of a link is remembered: an encoder with BiSS is not opened as one with HIPERFACE.
 #[test]
 fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     let (port, adapter) = ("serial:/dev/nowhere", "bridge:/dev/nowhere");
@@ -81,7 +81,7 @@ fn a_link_used_before_opens_in_the_tab_it_was_used_in() {
     }
 }
 
-/// Over the configuration pin a position carries no bits: the registers tell.
+/// Over the configuration pin a position has no status bits: the registers are read.
 #[test]
 fn a_position_is_marked_over_either_way() {
     for link in ["sim:", "sim:?bridge=on"] {
@@ -176,7 +176,7 @@ fn a_click_in_the_list_of_banks_goes_there_and_reads_it() {
     screen.until("it is read", is_read);
     screen.click("page.registers");
     assert_eq!(screen.studio().biss().unwrap().memory.read(at("0x04:0x3F")), None);
-    // The list stands before the table, whose heading has the same words.
+    // The list is before the table, whose heading has the same words.
     let bank = screen.harness.query_all_by_label_contains("0x04").next().expect("bank 0x04 is listed");
     assert!(bank.rect().right() < 340.0, "{:?}", bank.rect());
     bank.click();

@@ -1,4 +1,4 @@
-//! A BiSS encoder that is another one all at once, and a wire that two want.
+//! A BiSS encoder that is exchanged, and a connection that two sessions request.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -44,7 +44,7 @@ fn edits_of_one_encoder_are_never_planned_for_another() {
     });
 }
 
-/// Nothing is edited, so that nothing but the discarded plan is told of.
+/// Without edits, only the discarded plan is reported.
 #[test]
 fn a_plan_for_one_encoder_is_discarded_for_another_and_that_is_told() {
     let served = Served::new("serial=1");

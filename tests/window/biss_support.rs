@@ -12,12 +12,12 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
     text.parse().unwrap()
 }
 
-/// It is connected and read, and nothing runs.
+/// Returns whether it is connected and read, and no job runs.
 pub(crate) fn is_read(studio: &Studio) -> bool {
     studio.biss().is_some_and(|own| own.session.is_ready() && own.survey.is_some())
 }
 
-/// The BiSS tab with this link, read.
+/// Returns the BiSS tab with this link, read.
 pub(crate) fn open(link: &str) -> Desk {
     let mut desk = Desk::fresh("");
     connect(&mut desk, link);

@@ -1,4 +1,4 @@
-//! Writing into a BiSS encoder from the window: edits with their review, and procedures that a person leads.
+//! Writing into a BiSS encoder from the window: edits with their review, and procedures with a user at the motor.
 
 use crate::biss_support::command;
 use crate::tabs::Tabs as _;
@@ -74,7 +74,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         );
         let writes = encoder(&desk).session.writes.as_ref().unwrap().as_ref().unwrap();
         assert_eq!(writes[0].conclusion.as_ref().unwrap().cycles_spent, 1, "{link}");
-        // Log and list of writes tell the same: where, of which area, old and new.
+        // Log and list of writes agree: place, area, old and new value.
         let told = log(&desk.studio);
         for words in [&format!("at {link}."), "Started: Write 3 edited bytes", "read back: 3."] {
             assert!(told.contains(words), "{words}: {told}");
@@ -85,7 +85,7 @@ fn three_bytes_of_one_bank_are_three_registers_and_one_save() {
         ask(&mut desk, Biss::Check);
         desk.until("it is checked", |studio| studio.biss().unwrap().check.is_some());
         let lines = encoder(&desk).check.as_ref().unwrap();
-        // Issue 22.19: no Wiegand test is saved, so that nothing is said of the sensor.
+        // Issue 22.19: no Wiegand test is saved, so that there is no verdict about the sensor.
         let verdict = |step: &str| if step == "check.wiegand" { Verdict::Skipped } else { Verdict::Good };
         let as_expected = lines.iter().all(|line| line.verdict == verdict(line.step.id()));
         assert!(lines.len() == 8 && as_expected, "{lines:?}");

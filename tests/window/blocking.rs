@@ -1,5 +1,4 @@
-//! The window waits for nothing: a link that hangs, a disk that does not answer or does not take anything, events that
-//! nobody reads.
+//! The window never waits: a link that hangs, a disk that does not answer or is full, events that are not read.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -17,7 +16,7 @@ use encoder_studio::devices::hiperface::state::{HiperfaceAction as Hiperface, Re
 
 use crate::support::{Desk, HANGING, PORT, SLOW, is_review};
 
-/// A pipe that nobody reads or writes: whoever opens it waits for ever.
+/// Creates a pipe that is neither read nor written: opening it waits forever.
 fn pipe(path: &Path) {
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
@@ -76,7 +75,7 @@ fn a_search_on_a_link_that_hangs_can_be_ended() {
     desk.act(Action::Escape);
     assert!(!desk.studio.can_stop());
     assert!(crate::tabs::search(desk.studio.connect.as_ref().unwrap()).unwrap().end.is_some());
-    // The next search is not disturbed by it.
+    // It does not disturb the next search.
     desk.connect(Connect::Use(format!("serial:{PORT}")));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it is found", |studio| {
@@ -105,7 +104,7 @@ fn a_disk_that_does_not_answer_holds_nobody_up() {
     assert_eq!(desk.told(Severity::Warning), ["file.no_file", "file.no_file"], "a pipe is no profile");
 }
 
-/// The settings cannot be kept and nobody says so: closing waits a while, not for ever.
+/// The settings cannot be saved and there is no error: closing waits for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
@@ -123,7 +122,7 @@ fn a_disk_that_does_not_answer_does_not_keep_the_window_open() {
     assert!(desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst) > before, "the window is told to look");
 }
 
-/// The draft cannot even be looked for: closing waits a while, not for ever.
+/// The draft cannot even be searched for: closing waits for a limited time.
 #[cfg(unix)]
 #[test]
 fn a_draft_that_does_not_answer_does_not_keep_the_window_open() {
@@ -158,7 +157,7 @@ fn a_folder_that_cannot_be_written_is_told() {
     desk.until_ready();
 }
 
-/// Why an edit is not written.
+/// Returns why an edit is not written.
 fn refused(desk: &mut Desk) -> &'static str {
     desk.put(0, 0, b"X");
     desk.command(DeviceCommand::Review);
@@ -180,7 +179,8 @@ fn without_a_backup_nothing_is_written() {
     assert_eq!((desk.wire().wear(), desk.edits()), (0, vec![(0, 0, b'X')]));
 }
 
-/// Issue 22.4: the write cycles so far are not known then. The review offers to write all the same, and nothing else does.
+/// Issue 22.4: then the previous write cycles are not known. The review offers to write nevertheless, and nothing else
+/// does.
 #[test]
 fn without_a_logbook_it_is_written_only_by_a_permit_and_with_a_warning() {
     let mut desk = Desk::begun("");
@@ -198,7 +198,7 @@ fn without_a_logbook_it_is_written_only_by_a_permit_and_with_a_warning() {
     desk.until("the list says why", |studio| matches!(studio.hiperface().unwrap().session.writes, Some(Err(_))));
 }
 
-/// Waits without looking at what the studio is told.
+/// Waits without polling the studio.
 fn without_polling(condition: impl Fn() -> bool) {
     let began = Instant::now();
     while !condition() {
@@ -217,7 +217,7 @@ fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     let (dropped, positions) = (desk.encoder().record().dropped(), desk.encoder().record.positions());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");
     assert!(desk.encoder().session.trace.dropped() > 0);
-    // In between, a job is taken at once.
+    // In between, a job is accepted at once.
     desk.ask(Hiperface::ReadCounter);
     desk.until_ready();
     desk.act(Action::Stop);
@@ -232,7 +232,7 @@ fn the_end_of_a_search_that_nobody_watches_is_not_lost() {
     desk.connect(Connect::Use(format!("serial:{PORT}")));
     desk.connect(crate::tabs::search_for(FindOptions::default()));
     desk.until("it has begun", |_| wire.sent() > 0);
-    // Hundreds of tries tell how far they are.
+    // Hundreds of tries report their progress.
     without_polling(|| {
         let sent = wire.sent();
         std::thread::sleep(Duration::from_millis(150));

@@ -1,5 +1,5 @@
-//! The commutation assistant: what has to be so before, readings, the offset, both ways to keep it, and what goes wrong on
-//! the way. Numbers are those of section 5 of the sine/cosine reference, or reckoned apart.
+//! The commutation assistant: requirements, readings, the offset, both ways to store it, and failures. Numbers are those of
+//! section 5 of the sine/cosine reference, or calculated separately.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::quality::Verdict;
@@ -29,7 +29,7 @@ impl Desk {
         self.assist(Assistant::Edit(Box::new(form)));
     }
 
-    /// Everything ticked and written down, for a motor of four pole pairs.
+    /// Ticks and enters everything, for a motor of four pole pairs.
     fn prepare(&mut self) {
         self.edit(|form| {
             (form.disabled, form.uncoupled, form.released) = (true, true, true);
@@ -103,11 +103,12 @@ fn nothing_is_read_before_everything_is_ticked_and_written_down() {
 fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     let mut desk = Desk::begun(AT_REST);
     desk.prepare();
-    // Polled meanwhile: the readings come in between.
+    // Polled meanwhile: the readings take place in between.
     desk.command(DeviceCommand::Poll(Some(std::time::Duration::ZERO)));
     desk.read(Slot::OneSide);
     let reading = *desk.encoder().commutation.reading(Slot::OneSide).unwrap();
-    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V: φ = 0.749 223 64, and the middle of step 24 is 0.525 steps on.
+    // (409 − 511.5) · 5/1023 V and (511 − 511.5) · 5/1023 V: φ = 0.749 223 64, and the middle of step 24 is 0.525 steps
+    // further.
     assert!((reading.fine_periods - 100.749_223_64).abs() < 1e-8, "{reading:?}");
     let Kind::Fine { residual_periods, verdict: Verdict::Ok, .. } = reading.kind else { panic!("{reading:?}") };
     assert!((residual_periods * 32.0 - 0.524_844).abs() < 1e-6);
@@ -136,7 +137,7 @@ fn the_whole_run_ends_with_the_offset_in_the_encoder() {
     assert_eq!(marks, [(16..32, "commutation offset".to_owned())], "it belongs to the mounting");
     let found = commutation::stored(&desk.encoder().staged);
     assert!(!found[0].edited && found[0].record.unwrap().confirmed);
-    // The readings are still there: the same once more is no edit.
+    // The readings are still there: the same value again is no edit.
     desk.assist(Assistant::Store);
     assert!(desk.edits().is_empty());
     assert_eq!(desk.times_told("commutation.same"), 1);
@@ -158,7 +159,7 @@ fn a_typed_position_gives_the_offset_of_the_reference() {
     assert_eq!(desk.offset(), Err("commutation.no_reading"));
     desk.type_in(Slot::OneSide, "339.02");
     assert_eq!(desk.offset(), Ok(0x5305_1EB8));
-    // The other way round: 0.675 703 125 turns, ACFA E148h. With the vector at −30°, 1/12 turn more: 0.407 630 21.
+    // Reversed: 0.675 703 125 turns, ACFA E148h. With the vector at −30°, 1/12 turn more: 0.407 630 21.
     desk.edit(|form| form.reversed = true);
     assert_eq!(desk.offset(), Ok(0xACFA_E148));
     desk.edit(|form| (form.reversed, form.vector) = (false, Vector::UAgainstV));
@@ -208,7 +209,7 @@ fn the_second_vector_tells_what_is_wrong() {
         ("12", "4", Verdict::Ok, "commutation.fits"),
         // Over the end of the revolution.
         ("124", "4", Verdict::Fault, "commutation.exchanged"),
-        // 22.5° of the shaft are a quarter turn of four pole pairs, whatever was typed.
+        // 22.5° of the shaft are a quarter turn of four pole pairs, whatever number was typed.
         ("12", "5", Verdict::Fault, "commutation.other_pairs"),
         ("124", "2", Verdict::Fault, "commutation.exchanged_pairs"),
         ("4.1", "4", Verdict::Fault, "commutation.still"),
@@ -244,7 +245,7 @@ fn method_2_sets_a_position_in_phase_and_forgets_the_readings() {
     desk.read(Slot::OtherSide);
     desk.edit(|form| form.period = "3".to_owned());
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry()).unwrap();
-    // 3 · 32 + ⌊32 · 0.7492⌋; what remains is 4 · 3.749 224 / 128 of a turn: 42.178 766°.
+    // 3 · 32 + ⌊32 · 0.7492⌋; the rest is 4 · 3.749 224 / 128 of a turn: 42.178 766°.
     assert_eq!((setting.value, setting.exact, setting.verdict), (119, false, Verdict::Ok));
     assert!((setting.remaining_deg - 42.178_766).abs() < 1e-5, "{setting:?}");
     desk.assist(Assistant::Set);
@@ -286,7 +287,7 @@ fn method_2_is_refused_where_its_step_is_too_large() {
     });
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
     assert_eq!(setting.unwrap_err().id(), "entry.whole");
-    // In the second vector the shaft is not where it was read.
+    // In the second vector the shaft is not at the position that was read.
     desk.edit(|form| form.period = "0".to_owned());
     desk.type_in(Slot::Second, "11.47");
     let setting = desk.encoder().commutation.setting(desk.encoder().geometry());
@@ -307,7 +308,7 @@ fn a_shaft_that_moves_is_refused_where_it_was_asked_for() {
 
 #[test]
 fn a_position_out_of_phase_says_so() {
-    // The word is shifted by just half a period against the signals.
+    // The word is shifted by exactly half a period against the signals.
     let mut desk = Desk::begun("position=8");
     desk.prepare();
     for (shift, expected) in [(16, Some("commutation.far_apart")), (4, None), (-20, None)] {
@@ -320,7 +321,7 @@ fn a_position_out_of_phase_says_so() {
         assert_eq!(desk.why_not(), expected, "{shift}");
         desk.assist(Assistant::Clear);
     }
-    // 12 steps of lag are worth a warning (beyond 8/32); by the position alone they would not be seen.
+    // 12 steps of lag cause a warning (beyond 8/32); the position alone would not show them.
     desk.ask(Hiperface::Plan(Change::ShiftPosition { steps: 12 }));
     desk.until_planned();
     desk.write_as_shown();

@@ -1,4 +1,4 @@
-//! The connection dialog: a form that refuses what cannot be, and the search for an encoder whose settings nobody knows.
+//! The connection dialog: a form that refuses invalid values, and the search for an encoder with unknown settings.
 
 use encoder_studio::app::DeviceCommand;
 use std::sync::Arc;
@@ -30,8 +30,8 @@ fn edit(desk: &mut Desk, change: impl FnOnce(&mut LinkForm)) {
     desk.connect(Connect::edit(form));
 }
 
-/// Issue 22.30: before the first byte on a serial line it is asked whether a drive is on it, which may be silent since it
-/// read the encoder at power-up. Yes or not sure: nothing is opened, searched or polled.
+/// Issue 22.30: before the first byte on a serial line the program asks whether a drive is on it, which may be silent since
+/// it read the encoder at power-up. After "yes" or "not sure" nothing is opened, searched or polled.
 #[test]
 fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
     let links = [format!("serial:{PORT}"), format!("tcp:{}", SERVERS[0].0)];
@@ -50,7 +50,7 @@ fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
         desk.command(DeviceCommand::Read);
         desk.settle();
         assert_eq!(desk.wire().sent(), 0, "{link}");
-        // Another connection is another question.
+        // Another connection needs another answer.
         let id = desk.encoder().session.id;
         desk.studio.act(Action::Command(id, DeviceCommand::Reconnect));
         assert!(asks_for_drive(&desk.studio));
@@ -58,14 +58,14 @@ fn a_drive_on_the_line_is_asked_for_before_the_first_byte() {
         desk.until_read();
         assert!(desk.wire().sent() > 0 && desk.studio.question.is_none());
     }
-    // A virtual encoder has no drive beside it.
+    // A virtual encoder has no drive on its line.
     let mut desk = Desk::fresh("");
     desk.studio.begin(None, None);
     assert!(desk.studio.question.is_none());
     desk.until_read();
 }
 
-/// Issue 22.30: a search is one more way to the first byte. What it finds is opened without another question.
+/// Issue 22.30: a search asks before its first byte as well. An encoder that it finds is opened without another question.
 #[test]
 fn a_search_asks_for_a_drive_before_its_first_byte() {
     let mut desk = Desk::fresh("");
@@ -144,7 +144,7 @@ fn each_kind_shows_a_link_that_it_takes() {
     assert!(dialog(&desk).example().starts_with("serial:"), "a pin is reached otherwise than a bus");
 }
 
-/// The form follows a link that is typed, and the link follows the form; what is no link for this device is named.
+/// The form follows a typed link, and the link follows the form; an invalid link for this device is named.
 #[test]
 fn a_link_is_typed_or_pasted() {
     let mut desk = Desk::fresh("");
@@ -199,7 +199,7 @@ fn a_recording_is_chosen_from_a_list_of_files() {
     desk.connect(Connect::AskRecording);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Recording)));
     desk.act(Action::Chosen(FileQuestion::Recording, "monday.trace".into()));
-    // Issue 22.24: from wherever the program is started the next time.
+    // Issue 22.24: from any folder in which the program is started the next time.
     let path = desk.outside.path("work/monday.trace");
     assert_eq!(dialog(&desk).link(), format!("replay:{}", path.display()));
 }
@@ -225,7 +225,7 @@ fn it_begins_with_what_was_used_before() {
     assert!(desk.studio.connect.is_none());
 }
 
-/// 19200 baud, odd parity at 43h and 44h: nothing that a form begins with.
+/// 19200 baud, odd parity at 43h and 44h: not the initial values of a form.
 fn searching(hold: Option<usize>) -> Desk {
     let mut desk = Desk::fresh("encoders=2&address=0x43&settings=0xF5");
     desk.connect(Connect::Open);
@@ -336,7 +336,7 @@ fn a_search_on_a_wire_that_this_window_holds_lets_go_of_it_first() {
     desk.until_written();
 }
 
-/// What a link lacks is told by a kind that such links lead to.
+/// The missing part of a link is reported by a kind that such links lead to.
 #[test]
 fn a_link_that_no_kind_takes_is_opened_where_its_scheme_leads() {
     for (link, tab) in [

@@ -1,5 +1,5 @@
-//! Edits outlive a crash: they are on disk as they are made, and come back with their device or profile. The invented kind
-//! stands for all; what needs a type, or a device without a serial number, is told with HIPERFACE.
+//! Edits survive a crash: they are on disk as they are made, and return with their device or profile. The invented kind
+//! represents all; cases that need a type, or a device without a serial number, use HIPERFACE.
 
 use std::fs;
 
@@ -13,14 +13,14 @@ use crate::tabs::Tabs as _;
 
 const DRAFT: &str = "data/drafts/novo-virtual/N1-1001.ron";
 
-/// With its virtual encoder, which is read.
+/// Returns a studio with its virtual encoder, which is read.
 fn connected() -> Desk {
     let mut desk = Desk::with_novo();
     connect(&mut desk);
     desk
 }
 
-/// The studio is gone without being closed, and starts again.
+/// Drops the studio without closing it, and starts it again.
 fn crash(desk: Desk) -> Desk {
     let mut desk = desk.crash();
     connect(&mut desk);
@@ -37,7 +37,7 @@ fn edits(desk: &Desk) -> usize {
     shown(&desk.studio).unwrap().edits()
 }
 
-/// The value that [`NOVO`] edits first.
+/// Returns the value that [`NOVO`] edits first.
 fn value(desk: &Desk) -> u16 {
     shown(&desk.studio).unwrap().get::<Encoder>().unwrap().wanted().unwrap()[1]
 }
@@ -85,7 +85,7 @@ fn a_draft_that_cannot_be_kept_is_told_once() {
     assert_eq!(value(&desk), 4);
 }
 
-/// The notice of edits that came back is over once they are written; the result stands in the review and in the log.
+/// The notice of restored edits ends once they are written; the result is in the review and in the log.
 #[test]
 fn a_write_ends_the_notice_of_edits_that_came_back() {
     let mut desk = connected();
@@ -99,7 +99,7 @@ fn a_write_ends_the_notice_of_edits_that_came_back() {
     assert_eq!(desk.times_told("novo.written"), 1);
 }
 
-/// What was edited for a profile belongs to that file.
+/// The edits of a profile belong to its file.
 #[test]
 fn the_draft_of_a_profile_ends_where_it_is_saved() {
     let mut desk = connected();
@@ -132,7 +132,7 @@ fn the_draft_of_a_profile_ends_where_it_is_saved() {
     }
 }
 
-/// A second window with the same encoder neither takes nor overwrites what the first one keeps.
+/// A second window with the same encoder neither takes nor overwrites the draft of the first one.
 #[test]
 fn a_draft_has_one_owner() {
     let mut desk = connected();
@@ -218,7 +218,7 @@ fn without_a_serial_number_there_is_no_draft_which_is_said_once() {
     desk.write();
     desk.put(0, 0, b"Z");
     assert_eq!(desk.edits().len(), 1, "its own writes make it no other");
-    // Fresh from the factory: its memory is not the one that was written.
+    // With factory settings: its memory is not the one that was written.
     replug(&mut desk, Some("serial= "));
     assert!(desk.edits().is_empty());
     assert_eq!(desk.times_told("session.edits_gone"), 1);

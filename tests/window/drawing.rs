@@ -1,5 +1,5 @@
-//! How often the window is drawn while nothing changes (issue 22.32): by the clock of the pictures alone, each at the time
-//! for which the one before it has asked.
+//! How often the window is drawn while nothing changes (issue 22.32): by the clock of the frames only, each at the time
+//! that the one before has requested.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -14,16 +14,16 @@ use crate::screen::Screen;
 use crate::support::Outside;
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
-/// In seconds of the pictures.
+/// In seconds of the frames.
 const WATCHED: f64 = 10.0;
 /// The least time from one picture to the next that is asked for at once, in seconds.
 const AT_ONCE: f64 = 1.0 / 60.0;
-/// A cursor in a text entry is drawn and hidden twice a second at most.
+/// A cursor in a text entry is drawn and hidden twice per second at most.
 const BLINKS: usize = 2 * WATCHED as usize + 2;
 /// Live values are drawn every 50 ms.
 const LIVE: usize = (WATCHED / 0.05) as usize + 2;
 
-/// What stands over the window, or where the keyboard is.
+/// The dialog or focus of a window, and how to get there.
 type Situation = (&'static str, fn(&mut Screen));
 
 const SITUATIONS: [Situation; 8] = [
@@ -44,7 +44,7 @@ const SITUATIONS: [Situation; 8] = [
     }),
 ];
 
-/// How many pictures the window asks for.
+/// Returns the number of frames that the window requests.
 fn pictures(screen: &mut Screen) -> usize {
     let (mut passed, mut count) = (0.0, 0);
     loop {
@@ -61,14 +61,14 @@ fn pictures(screen: &mut Screen) -> usize {
     }
 }
 
-/// An encoder that is read and edited: there is something to review, and to lose.
+/// Returns an encoder that is read and edited: with something to review, and to lose.
 fn edited() -> Screen {
     let mut screen = Screen::begun(SIZE);
     screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0] });
     screen
 }
 
-/// Everything that ends by itself has ended: notices, the movements of what opens, what threads bring.
+/// Waits until all temporary changes have ended: notices, animations of opening, results of threads.
 fn settle(screen: &mut Screen) {
     for _ in 0..2 {
         screen.until("nothing runs", |studio| !studio.works());
@@ -76,7 +76,7 @@ fn settle(screen: &mut Screen) {
     }
 }
 
-/// Issue 22.32: letting go of the keys asked for the next picture in each one, wherever keys are not for what is held.
+/// Issue 22.32: releasing the keys requested another frame in every frame, outside of places where keys are held.
 #[test]
 fn nothing_is_drawn_while_nothing_changes() {
     for (what, begin) in SITUATIONS {
@@ -87,7 +87,7 @@ fn nothing_is_drawn_while_nothing_changes() {
         let count = pictures(&mut screen);
         let most = if ["connecting", "a path is typed"].contains(&what) { BLINKS } else { 0 };
         assert!(count <= most, "{what}: {count} pictures in {WATCHED} s");
-        // Nor does a picture cause the next one by way of a thread.
+        // Nor does a frame cause the next one through a thread.
         for _ in 0..50 {
             screen.harness.step();
         }
@@ -121,7 +121,7 @@ fn a_window_without_a_device_is_drawn_when_something_changes() {
     }
 }
 
-/// Issue 22.32: of each device that is read and not polled.
+/// Issue 22.32: for each device that is read and not polled.
 #[test]
 fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     type Ready = fn(&Studio) -> bool;
@@ -150,7 +150,7 @@ fn a_device_that_is_not_polled_is_drawn_when_something_changes() {
     }
 }
 
-/// Issue 22.32: what is live is drawn as often as live values are, whatever stands over it.
+/// Issue 22.32: live values are drawn as often as they change, whatever dialog is open.
 #[test]
 fn live_values_are_drawn_no_more_often_in_a_window_that_is_not_in_front() {
     let mut screen = in_hand();

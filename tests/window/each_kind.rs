@@ -1,5 +1,5 @@
-//! What holds for every kind of device on the desk, with the same words for all: edits are kept, writes end before anything
-//! closes, and every link that the connection dialog takes leads to its device.
+//! The common behaviour of every kind of device, with the same words for all: edits are kept, writes end before anything
+//! closes, and every link that the connection dialog accepts leads to its device.
 
 use crate::tabs::Tabs as _;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub(crate) struct Case {
     tab: Tab,
     scheme: &'static str,
     port: &'static str,
-    /// The command that stores what is edited.
+    /// The command that stores the edits.
     writes: u8,
     /// A command that reading everything begins with.
     reads: u8,
@@ -53,19 +53,19 @@ const CASES: [Case; 5] = [
     Case { tab: crate::tabs::HIPERDRIVE, scheme: "enip", port: DRIVE, writes: 0x10, reads: 0x0E, other: "serial=42" },
 ];
 
-/// The invented kind, which stands for all where one is enough.
+/// The invented kind, which represents all if one is enough.
 pub(crate) const NOVO: Case =
     Case { tab: crate::tabs::NOVEL, scheme: "serial", port: NOVO_PORT, writes: b'W', reads: b'R', other: "serial=42" };
 
 impl Case {
-    /// Its encoder is connected and read.
+    /// Returns a studio in which its encoder is connected and read.
     fn desk(&self) -> Desk {
         let mut desk = Desk::with_novo();
         self.connect(&mut desk);
         desk
     }
 
-    /// The studio is gone without being closed, and starts again with the same encoder.
+    /// Drops the studio without closing it, and starts it again with the same encoder.
     fn crash(&self, desk: Desk) -> Desk {
         let mut desk = desk.crash();
         self.connect(&mut desk);
@@ -84,14 +84,14 @@ impl Case {
         }
     }
 
-    /// Connects again, which tells nothing of whether the machine still stands.
+    /// Connects again, after which it is not known whether the machine is still at standstill.
     fn reconnect(&self, desk: &mut Desk) {
         command(desk, DeviceCommand::Reconnect);
         until_ready(desk);
         self.stands(desk);
     }
 
-    /// A person says that it does, where that is asked for.
+    /// Confirms the standstill, if the program asks.
     fn stands(&self, desk: &mut Desk) {
         if self.tab == crate::tabs::INTERBUS {
             let id = shown(&desk.studio).unwrap().id();
@@ -99,7 +99,7 @@ impl Case {
         }
     }
 
-    /// The line is held at what stores, and the write that was reviewed begins.
+    /// Holds the line at the store command, and starts the reviewed write.
     fn write_until_held(&self, desk: &mut Desk) {
         let plan = planned(desk);
         let wire = self.wire(desk);
@@ -150,13 +150,13 @@ impl Case {
 }
 
 impl Case {
-    /// Saves what the device keeps, as a profile.
+    /// Saves the content of the device as a profile.
     pub(crate) fn save(&self, desk: &mut Desk, path: &Path) {
         self.ask_to_save(desk, path);
         desk.until("it is saved", |_| path.exists());
     }
 
-    /// Reads what is not read when it is connected.
+    /// Reads the data that are not read on connection.
     fn read_all(&self, desk: &mut Desk) {
         let id = shown(&desk.studio).unwrap().id();
         match self.tab {
@@ -181,7 +181,7 @@ impl Case {
         desk.act(Action::Chosen(question, path.to_path_buf()));
     }
 
-    /// An entry of a profile by which its device is of another type; `None` where there is one type alone.
+    /// Returns an entry of a profile by which its device is of another type; `None` if there is only one type.
     fn other_type(&self) -> Option<(&'static str, &'static str)> {
         Some(match self.tab {
             // There is one type of it.
@@ -215,7 +215,7 @@ fn review(desk: &mut Desk, action: ReviewAction) {
 #[track_caller]
 pub(crate) fn until_ready(desk: &mut Desk) {
     desk.until("it is read", |studio| {
-        // There are no backups of what is never written, nor of what may not be disturbed yet.
+        // There are no backups of values that are never written, nor of those that must not be disturbed yet.
         let has_word = |own: &AnyDevice| {
             let ssi = own.get::<encoder_studio::devices::ssi::state::Encoder>().is_some_and(|own| own.last().is_some());
             ssi || own
@@ -242,7 +242,7 @@ fn until_stage(desk: &mut Desk, wanted: impl Fn(&Stage) -> bool) {
     });
 }
 
-/// Reviews what is edited: the plan.
+/// Reviews the edits; returns the plan.
 #[track_caller]
 fn planned(desk: &mut Desk) -> PlanId {
     command(desk, DeviceCommand::Review);
@@ -261,7 +261,7 @@ pub(crate) fn write(desk: &mut Desk) {
     assert!(!shown(&desk.studio).unwrap().is_dirty());
 }
 
-/// How many drafts are on disk.
+/// Returns the number of drafts on disk.
 fn drafts(desk: &Desk) -> usize {
     let kinds = std::fs::read_dir(desk.outside.path("data/drafts")).into_iter().flatten();
     let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
@@ -310,7 +310,7 @@ fn edits_outlive_a_pulled_cable_and_go_into_no_other_encoder() {
         wire.plug();
         case.reconnect(&mut desk);
         assert_eq!(shown(&desk.studio).unwrap().edits(), 2);
-        // Another one is behind the same adapter now, and nobody has told us.
+        // Another device is now on the same adapter, and the program has not been told.
         wire.exchange(case.other);
         command(&mut desk, DeviceCommand::Review);
         desk.until("it is noticed", |studio| !shown(studio).unwrap().is_dirty());
@@ -407,7 +407,7 @@ fn escape_stops_what_runs_before_it_closes_anything() {
     }
 }
 
-/// The action that takes the form as it is.
+/// Returns the action that accepts the form as it is.
 fn edited<F: FormModel>(dialog: &Dialog) -> Connect {
     Connect::edit(dialog.form::<F>().unwrap().clone())
 }
@@ -464,8 +464,8 @@ fn every_kind_of_link_leads_to_its_device_typed_or_filled_in() {
     }
 }
 
-/// Issue 22.9: a profile of another type with the same serial number is refused; a permit of its own is offered, and with it the
-/// types stand in the review.
+/// Issue 22.9: a profile of another type with the same serial number is refused; an explicit permission is offered, and
+/// with it the review shows the types.
 #[test]
 fn another_type_of_device_needs_a_permit_of_its_own() {
     for case in CASES {
@@ -493,13 +493,13 @@ fn another_type_of_device_needs_a_permit_of_its_own() {
     }
 }
 
-/// Issue 22.14: what was read can be saved when the line is lost, of every kind. A profile needs all of it: what was not read
-/// before is named, and nothing is saved.
+/// Issue 22.14: data that were read can be saved after the connection is lost, for every kind. A profile needs all of them:
+/// missing data are named, and nothing is saved.
 #[test]
 fn what_was_read_is_saved_when_the_line_is_lost() {
     for case in CASES {
         let mut desk = case.desk();
-        // What is not read when it is connected.
+        // Data that are not read on connection.
         let missing = match case.tab {
             crate::tabs::BISS => Some("OEM"),
             crate::tabs::INTERBUS => Some("cam program 8"),
@@ -517,7 +517,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
             until_lost(&mut desk);
             assert!(shown(&desk.studio).unwrap().is_savable());
             let path = desk.outside.path(&format!("lost-{all}.ron"));
-            // That the line is lost may be told once more meanwhile.
+            // The loss of the connection may be reported again meanwhile.
             let told = |studio: &Studio, id: &str| {
                 let mut notices = studio.services.log.notices();
                 let own = notices.rfind(|notice| notice.texts.iter().any(|text| text.id() == id));

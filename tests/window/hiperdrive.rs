@@ -1,5 +1,4 @@
-//! The HIPERDRIVE tab by actions: what is read and when, parameters beside what is wanted, a write with its review, and what is
-//! locked after it.
+//! The HIPERDRIVE tab by actions: reading, parameters with edits, a write with its review, and the locks after it.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::review::Stage;
@@ -77,7 +76,7 @@ fn sets(desk: &Desk) -> usize {
     lines.iter().filter(|line| line.meaning.iter().any(|text| text.id() == "hd_asked.set")).count()
 }
 
-/// A device that answers when all in the network are asked.
+/// Returns a device that answers when all in the network are asked.
 fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevice {
     let identity = Identity {
         vendor,
@@ -96,7 +95,7 @@ fn found(address: [u8; 4], port: u16, vendor: u16, name: &str) -> DiscoveredDevi
     }
 }
 
-/// Reviews what is edited and writes it.
+/// Reviews the edits and writes them.
 #[track_caller]
 pub(crate) fn write(desk: &mut Desk) {
     let action = desk.studio.selected_device().unwrap().command(DeviceCommand::Review);
@@ -128,7 +127,7 @@ fn connecting_reads_everything_and_changes_nothing() {
     assert!(!unit.session.trace.lines().is_empty());
     assert_eq!(sets(&desk), 0);
     assert!(!unit.moves.is_open() && !desk.studio.moves() && desk.studio.has_drives());
-    // 16 numbers and texts of drive 1 at least, and none of the place without a drive.
+    // 16 numbers and texts of drive 1 at least, and none of the slot without a drive.
     assert!(unit.rows(Some(ONE)).len() > 40 && unit.rows(DriveNumber::new(2)).is_empty());
     let requested = unit.rows(Some(ONE)).into_iter().find(|row| row.number == number(152)).unwrap();
     assert_eq!((requested.factory.as_str(), requested.is_editable), ("0", true), "of a hub");
@@ -268,7 +267,7 @@ fn who_answers_in_the_network_fills_the_form() {
     assert_eq!(desk.studio.connect.as_ref().unwrap().link(), "enip:10.0.0.9:2222", "there is none");
 }
 
-/// Reference 5: an HDA30 has 512 turns either way, which are 33 554 432 steps, or 204 800 at 400 steps a turn.
+/// Reference 5: an HDA30 has 512 turns either way, which are 33 554 432 steps, or 204 800 at 400 steps per turn.
 #[test]
 fn limits_may_be_what_the_drive_can_turn() {
     let mut desk = read("sim:");

@@ -1,6 +1,6 @@
-//! Acts that move a drive, repeated as a person would where the computer has held them up. A window that stands still for
-//! 250 ms rightly stops what it moves, and so does a test whose thread a busy computer does not let run. Whatever else ends
-//! an act ends the test.
+//! Acts that move a drive, repeated as a user would if the computer has delayed them. A window that is not updated for 250
+//! ms stops its motion on purpose, and so does a test whose thread is delayed by a busy computer. Any other end of an act
+//! fails the test.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -13,21 +13,21 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive::{act, drive, unit};
 use crate::support::{Desk, LONG};
 
-/// How the last act of a drive ended, with its number.
+/// Returns how the last act of a drive ended, with its number.
 pub(crate) fn last_end(studio: &Studio, drive: DriveNumber) -> Option<(u64, Ended)> {
     studio.hiperdrive().and_then(|own| own.moves.drive(drive)?.ended)
 }
 
-/// An act of a drive has ended since then because nobody said any more that it was wanted.
+/// Returns whether an act of a drive has ended since then because it was no longer refreshed.
 pub(crate) fn has_lapsed(studio: &Studio, drive: DriveNumber, since: Option<(u64, Ended)>) -> bool {
     let end = last_end(studio, drive);
     end != since && matches!(end, Some((_, Ended::Stale)))
 }
 
-/// How often an act is repeated that has lapsed.
+/// Number of repetitions of a lapsed act.
 pub(crate) const ATTEMPTS: usize = 20;
 
-/// Looks until a drive may move: what rules it is read again and again on threads, and a press before that is refused.
+/// Waits until a drive may move: its rules are read repeatedly on threads, and a press before that is refused.
 #[track_caller]
 pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     let began = Instant::now();
@@ -38,8 +38,8 @@ pub(crate) fn until_free(desk: &mut Desk, drive: DriveNumber) {
     }
 }
 
-/// Asks for something until it is so. A window that stands still for 250 ms stops what it moves, and so does a test that a
-/// busy computer holds up: then it is asked for once more, as a person would. Whatever else ends it is no reason to.
+/// Repeats a request until a condition holds. A window that is not updated for 250 ms stops its motion, and so does a test
+/// on a busy computer: then the request is repeated, as a user would. After any other end it is not.
 #[track_caller]
 pub(crate) fn drive_until(
     desk: &mut Desk,
@@ -50,7 +50,7 @@ pub(crate) fn drive_until(
     act_until(desk, |own| Hiperdrive::Drive(motor(own)), what, condition);
 }
 
-/// The same for whatever is an act of the drive that is shown.
+/// Does the same for an act of the shown drive.
 #[track_caller]
 pub(crate) fn act_until(
     desk: &mut Desk,
@@ -86,7 +86,7 @@ pub(crate) fn set_off(desk: &mut Desk) {
     );
 }
 
-/// What is seen while the drive that is shown moves, where it has moved all that time.
+/// Returns a value observed while the shown drive moves, if it has moved during the complete observation.
 #[track_caller]
 pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk) -> T) -> T {
     let shown = unit(desk).drive();
@@ -105,12 +105,12 @@ pub(crate) fn while_it_moves<T>(desk: &mut Desk, mut look: impl FnMut(&mut Desk)
     panic!("it has lapsed {ATTEMPTS} times");
 }
 
-/// Warnings besides that of a motion that has lapsed.
+/// Returns the warnings besides that of a lapsed motion.
 pub(crate) fn warned(desk: &Desk) -> Vec<&'static str> {
     desk.told(Severity::Warning).into_iter().filter(|id| *id != "hd_end.stale").collect()
 }
 
-/// Says with every look that the jog is held, until it is so.
+/// Refreshes the jog with every poll, until a condition holds.
 #[track_caller]
 pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) -> bool) {
     let began = Instant::now();
@@ -122,8 +122,8 @@ pub(crate) fn hold_until(desk: &mut Desk, what: &str, condition: impl Fn(&Desk) 
     }
 }
 
-/// Holds a pad until it is so. Where a busy computer has held the hand up for 250 ms, which ends a jog, it is let go and
-/// pressed once more, after `prepare`; whatever else ends it is a failure.
+/// Holds a pad until a condition holds. If a busy computer has delayed the refresh for 250 ms, which ends a jog, the pad is
+/// released and pressed again, after `prepare`; any other end is a failure.
 #[track_caller]
 pub(crate) fn hold_pad_until(
     desk: &mut Desk,

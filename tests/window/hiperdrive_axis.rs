@@ -1,5 +1,5 @@
-//! The set-up of an axis as one run, by actions against a virtual drive: from a drive that nobody has asked for to limits in
-//! millimetres that have survived the supply; what is locked on the way; what is left when it is cancelled.
+//! The set-up of an axis as one run, by actions with a virtual drive: from a drive that was never requested to limits in
+//! millimetres that have survived a power cycle; the locks on the way; and the state after a cancellation.
 
 mod bench;
 mod foreign;
@@ -63,12 +63,12 @@ fn nothing_moves_before_the_limits_are_confirmed() {
     assert_eq!(position(&mut desk), before);
 }
 
-/// What a person saw when they pressed is what counts, also where the window learns with the press that it is old.
+/// The values that the user saw on pressing count, even if the window learns with the press that they are outdated.
 #[test]
 fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
     let mut desk = until_jog();
     run(&mut desk, Run::Press(Button::Confirm));
-    // Once more from the beginning, so that no lock says it.
+    // Again from the beginning, so that no lock blocks it.
     run(&mut desk, Run::Begin);
     next(&mut desk, AxisStep::Scale);
     edit(&mut desk, |own| (own.pitch, own.resolution) = ("4".to_owned(), "0,01".to_owned()));
@@ -78,7 +78,7 @@ fn limits_that_are_no_longer_those_that_are_shown_are_not_confirmed() {
         let own = studio.hiperdrive().unwrap();
         own.moves.is_open() && own.session.is_ready() && own.may_move(DriveNumber::FIRST).is_ok()
     });
-    // Another master, while the window stands still.
+    // Another master, while the window is not updated.
     let upper = ParameterNumber::of_drive(160, DriveNumber::FIRST).unwrap();
     let target = unit(&desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), upper, &Value::Number(1000)).unwrap());
@@ -108,7 +108,7 @@ fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
     stands(&mut desk);
     let own = axis(&desk);
     assert_eq!((own.end(), own.is_saved(), own.changes().len()), (Some(End::Cancelled), false, 5));
-    // Everything is written back as it was, and read: nobody has asked for the drive.
+    // Everything is written back, and read: the drive is no longer requested.
     run(&mut desk, Run::Press(Button::Recall));
     write(&mut desk);
     assert!(axis(&desk).changes().is_empty());
@@ -124,7 +124,7 @@ fn who_cancels_has_a_drive_that_stands_and_nothing_that_lasts() {
     assert!(report.contains("The set-up was cancelled") && !report.contains("Nothing was written"), "{report}");
 }
 
-/// Issue 21.6 (d): 47 = −2 is about the adapter alone; scale and limits of the drive stay, and nobody is told otherwise.
+/// Issue 21.6 (d): 47 = −2 is only about the adapter; scale and limits of the drive remain, and no text claims otherwise.
 #[test]
 fn a_recall_takes_nothing_back_of_the_drive() {
     let mut desk = confirmed();
@@ -133,11 +133,11 @@ fn a_recall_takes_nothing_back_of_the_drive() {
     assert_eq!([152, 154, 156, 158, 160].map(|own| number(&desk, own)), [0, 400, 256, -204_400, 204_400]);
     let told = words::differences(&seen(&desk)).unwrap().words(Language::English);
     assert!(told.contains("154 is 400 instead of 256") && !told.contains("152"), "{told}");
-    // The request is gone: the step that is shown stays, and says which one is to be done again.
+    // The request is lost: the shown step remains, and names the one that has to be repeated.
     assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (AxisStep::Jog, Some(AxisStep::Request)));
 }
 
-/// Issue 21.6 (a): what the pads of the run state is what is sent, whatever the Motion page has, which keeps its own.
+/// Issue 21.6 (a): the pads of the run send their own effort, and the Motion page keeps its own.
 #[test]
 fn the_pads_of_the_run_have_an_effort_of_their_own() {
     let mut desk = begun("sim:");
@@ -163,7 +163,7 @@ fn the_pads_of_the_run_have_an_effort_of_their_own() {
     }
 }
 
-/// Issue 21.6 (f): what is typed is no spindle until the step is left with it; nothing of it is remembered.
+/// Issue 21.6 (f): typed text is no spindle until the step is left with it; none of it is remembered.
 #[test]
 fn a_pitch_counts_once_it_is_confirmed() {
     let mut desk = begun("sim:");
@@ -175,14 +175,14 @@ fn a_pitch_counts_once_it_is_confirmed() {
     assert_eq!(unit(&desk).pitch(unit(&desk).drive()), None);
     next(&mut desk, AxisStep::Confirm);
     assert_eq!(unit(&desk).pitch(unit(&desk).drive()).map(|own| own.nanometres), Some(4_000_000));
-    // Elsewhere it becomes another one.
+    // On another page it becomes another one.
     let drive = unit(&desk).drive();
     act(&mut desk, Hiperdrive::SetPitch(drive, Some(Length { nanometres: 5_000_000 })));
     desk.settle();
     assert_eq!((axis(&desk).step(), axis(&desk).fallen()), (AxisStep::Confirm, Some(AxisStep::Scale)));
 }
 
-/// Issue 21.6 (h): a run that was broken off is told by the next one, also after the program was started again.
+/// Issue 21.6 (h): the next run reports an interrupted one, also after a restart of the program.
 #[test]
 fn a_new_run_tells_what_a_broken_one_left() {
     let mut desk = until_jog();
@@ -191,11 +191,11 @@ fn a_new_run_tells_what_a_broken_one_left() {
     assert!(told.contains("154 is 400 instead of 256") && told.contains("152 is 1 instead of 0"), "{told}");
     run(&mut desk, Run::Begin);
     assert_eq!(differences(&desk), Some(told.clone()));
-    // A drive that is the same, in a program that was ended and started.
+    // The same drive, in a restarted program.
     desk.until("it is remembered", |studio| studio.settings.emit().contains("154: 256"));
     let kept = Settings::parse(&desk.studio.settings.emit()).unwrap();
     assert_eq!(kept, desk.studio.settings);
-    // The supply takes it away: then there is nothing to tell.
+    // A power cycle discards it: then there is nothing to report.
     unit(&desk).target.clone().unwrap().power_cycle();
     command(&mut desk, DeviceCommand::Read);
     desk.until("it is read again", |studio| {
@@ -205,7 +205,7 @@ fn a_new_run_tells_what_a_broken_one_left() {
     assert_eq!(differences(&desk), None);
 }
 
-/// Issue 21.6 (e): a connection that is closed and opened again is no restart; what was changed and is never saved tells.
+/// Issue 21.6 (e): closing and opening a connection is no restart; a value that was changed and is never saved proves it.
 #[test]
 fn a_reconnection_is_no_restart() {
     let mut desk = until_saved("sim:?requested=0&timeout=250", 1);
@@ -230,7 +230,7 @@ fn a_reconnection_is_no_restart() {
     });
     assert!(!axis(&desk).survived());
     assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
-    // Off and on behind the program's back, as a real one is; nobody asks it anything meanwhile.
+    // A power cycle without the program noticing, as with a real one; no request is made meanwhile.
     target.power_cycle();
     command(&mut desk, DeviceCommand::Read);
     until_ready(&mut desk);
@@ -242,7 +242,7 @@ fn a_reconnection_is_no_restart() {
     assert_eq!(axis(&desk).end(), Some(End::Done));
 }
 
-/// Issue 21.6 (g): a fault during the test is told with its code, disables what moves, and is acknowledged there.
+/// Issue 21.6 (g): a fault during the test is reported with its code, disables motion, and is acknowledged there.
 #[test]
 fn a_fault_in_the_test_is_told_and_acknowledged() {
     let mut desk = until_test(FRESH, 1, false);
@@ -273,13 +273,13 @@ fn a_fault_in_the_test_is_told_and_acknowledged() {
     assert!(words::fault(&seen(&desk)).is_none());
 }
 
-/// Issue 21.6 (j): the end is saved as text, in millimetres, where the person wants it.
+/// Issue 21.6 (j): the end is saved as text, in millimetres, in a file that the user chooses.
 #[test]
 fn the_end_is_saved_as_a_report() {
     let mut desk = confirmed();
     run(&mut desk, Run::Cancel);
     run(&mut desk, Run::AskReport);
-    // A folder that is not there: that is told, and nothing is lost by it.
+    // A folder that does not exist: the error is reported, and nothing is lost.
     let question = desk.studio.take_file_question().unwrap();
     let nowhere = desk.outside.path("nowhere").join("axis.txt");
     desk.act(Action::Chosen(question, nowhere));
@@ -297,24 +297,25 @@ fn the_end_is_saved_as_a_report() {
     assert_eq!(desk.told(Severity::Good).last(), Some(&"report.saved"));
 }
 
-/// Issue 21.6: the whole run on a drive of a hub; in each write a refusal first, then a line that is lost in the middle of it.
+/// Issue 21.6: the complete run on a drive of a hub; in each write a refusal first, then a connection lost in the middle.
 #[test]
 fn a_drive_of_a_hub_is_set_up_over_refusals_and_lost_lines() {
     let desk = until_saved_with("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3, true);
     let three = DriveNumber::new(3).unwrap();
     assert_eq!(unit(&desk).drive(), three);
     assert_eq!([352, 354, 356].map(|own| read(&desk, own)), [1, 400, 256]);
-    // The drive beside it is as it was.
+    // The other drive is unchanged.
     assert_eq!([152, 154, 156, 160].map(|own| read(&desk, own)), [0, 256, 1, 33_488_896]);
 }
 
-/// Issue 21.6: the last step on a drive of a hub: its write is refused, then cut off; the supply goes; the end is told as it is.
+/// Issue 21.6: the last step on a drive of a hub: its write is refused, then cut off; the supply is lost; the end is
+/// reported correctly.
 #[test]
 fn the_supply_of_a_hub_is_checked_over_a_refusal_and_a_lost_line() {
     let mut desk = until_saved("sim:?hub=4&drives=1,0,1&requested=0&timeout=250", 3);
     assert_eq!(unit(&desk).axis_report(Language::English), None, "it goes on");
     step_with_writes(&mut desk, 182, true);
-    // The line was lost once the write had come: it is read, and no restart can be claimed.
+    // The connection was lost after the write had arrived: it is read, and no restart can be claimed.
     assert_eq!((read(&desk, 382), read(&desk, 182)), (1001, 1000));
     assert_eq!(axis(&desk).may_go_on(&seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis(&desk).ask(Button::Restarted, &seen(&desk)).unwrap_err().id(), "hd_axis.not_restarted");

@@ -1,5 +1,5 @@
-//! The window closes, or the system ends the program, while a drive moves: it stops first, is switched off, and its connection
-//! is closed; whatever is asked comes after that (issue 21.1). The drive itself is asked.
+//! The window closes, or the system ends the program, while a drive moves: the drive stops first and is switched off, and
+//! its connection is closed; questions come after that (issue 21.1). The state is read from the drive itself.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -15,7 +15,7 @@ use crate::hiperdrive_acts::{drive_until, set_off};
 use crate::hiperdrive_motion::in_control;
 use crate::support::{Desk, LONG};
 
-/// What the drive and its station say: its state, that it stands, and that somebody has the cyclic connection.
+/// Returns the state of the drive, whether it is at standstill, and whether a host has the cyclic connection.
 fn says(desk: &Desk) -> (State, bool, bool) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| {
@@ -37,11 +37,11 @@ fn until_let_go(desk: &Desk) {
         assert!(began.elapsed() < LONG, "the connection is open");
         std::thread::sleep(Duration::from_millis(1));
     }
-    // A fault of the watchdog would be one now.
+    // A fault of the watchdog would be visible now.
     assert_eq!((says(desk).0, says(desk).1), (State::NotReady, true));
 }
 
-/// Issue 21.1: with nothing to ask. The window waits for the drive, and nothing moves any more.
+/// Issue 21.1: without a question. The window waits for the drive, and nothing moves afterwards.
 #[test]
 fn a_window_that_closes_lets_go_of_the_drives_first() {
     for (closes, action) in [("closed", Action::Close), ("ended by the system", Action::Quit)] {
@@ -59,14 +59,14 @@ fn a_window_that_closes_lets_go_of_the_drives_first() {
     }
 }
 
-/// Issue 21.1: a question comes after the stop, and nothing resumes where it is answered with no.
+/// Issue 21.1: a question comes after the stop, and nothing resumes if it is answered with no.
 #[test]
 fn a_question_comes_after_the_stop_and_nothing_resumes() {
     let mut desk = moving();
     edit(&mut desk, Edit::Set(number(24), 7));
     desk.act(Action::Close);
     assert!(desk.studio.question.is_some() && !desk.studio.hiperdrive().unwrap().moves.is_under_way());
-    // No picture is drawn: the stop was said before the question.
+    // No frame is drawn: the stop was requested before the question.
     let began = Instant::now();
     while !says(&desk).1 {
         assert!(began.elapsed() < LONG, "it moves under the question");
@@ -87,7 +87,7 @@ fn a_question_comes_after_the_stop_and_nothing_resumes() {
     until_let_go(&desk);
 }
 
-/// Issue 21.1: the system asks nobody.
+/// Issue 21.1: a signal from the system asks no question.
 #[test]
 fn a_signal_asks_nothing() {
     let mut desk = moving();
@@ -100,7 +100,7 @@ fn a_signal_asks_nothing() {
     until_let_go(&desk);
 }
 
-/// Issue 21.1: a window that stands still, as one whose display does not answer, is not needed for it.
+/// Issue 21.1: it does not depend on a window that is not updated, as on a display that does not answer.
 #[test]
 fn drives_are_let_go_without_the_window() {
     let desk = moving();
@@ -112,8 +112,8 @@ fn drives_are_let_go_without_the_window() {
     assert!(!brakes.wait_for_window(Duration::ZERO));
 }
 
-/// Issue 21.1: a session that is closed stops its own drive before it asks; what another one runs without an end stops because
-/// its page is not seen, and a session that was closed is waited for when the window closes.
+/// Issue 21.1: a closed session stops its own drive before it asks; an endless run of another one stops because its page is
+/// not shown, and closing the window waits for a closed session.
 #[test]
 fn a_session_that_is_closed_behind_a_motion() {
     let mut desk = in_control("sim:");
@@ -139,7 +139,7 @@ fn a_session_that_is_closed_behind_a_motion() {
     assert_eq!((status.state(), open), (State::NotReady, false));
 }
 
-/// Issue 21.1: control that was given back before leaves nothing to wait for.
+/// Issue 21.1: after control was given back there is nothing to wait for.
 #[test]
 fn a_window_without_control_closes_at_once() {
     let mut desk = in_control("sim:");

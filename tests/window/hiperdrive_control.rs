@@ -1,5 +1,5 @@
-//! Who has the control of HIPERDRIVE drives, by actions: how it is lost and what is said of it, and parameters that somebody
-//! else changes meanwhile.
+//! Control of HIPERDRIVE drives, by actions: its loss and the messages about it, and parameters that another master changes
+//! meanwhile.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -18,13 +18,13 @@ use crate::hiperdrive_acts::{drive_until, set_off};
 use crate::hiperdrive_motion::in_control;
 use crate::support::Desk;
 
-/// What another master writes.
+/// Writes a value as another master.
 fn set(desk: &Desk, of: u16, value: i64) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
 }
 
-/// The device sends no cyclic packets any more, and still answers messages.
+/// Stops the cyclic packets of the device, which still answers messages.
 fn fall_silent(desk: &Desk) {
     unit(desk).target.clone().unwrap().with(|station| station.close(Moment::default()));
 }
@@ -36,7 +36,7 @@ fn is_open(studio: &Studio) -> bool {
 #[test]
 fn a_control_that_is_lost_says_why_until_it_is_taken_again() {
     let mut desk = in_control("sim:");
-    // Nothing is asked of the device: the loss tells itself.
+    // Nothing is requested from the device: the loss is reported without that.
     command(&mut desk, DeviceCommand::Poll(None));
     desk.settle();
     assert_eq!(unit(&desk).why_lost(), None);
@@ -76,7 +76,8 @@ fn limits_that_somebody_else_sets_while_control_is_held_are_read_and_hold() {
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// Issue 21.6: another reference gives every position another place, so that what rests on the old one has to fall.
+/// Issue 21.6: another reference changes the place of every position, so that everything based on the old one becomes
+/// invalid.
 #[test]
 fn a_reference_that_another_master_sets_while_control_is_held_is_read() {
     let mut desk = in_control("sim:");
@@ -92,11 +93,11 @@ fn a_reference_that_another_master_sets_while_control_is_held_is_read() {
 #[test]
 fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_are_seen() {
     let mut desk = in_control("sim:");
-    // 400 steps a turn instead of 65536.
+    // 400 steps per turn instead of 65536.
     set(&desk, 154, 400);
     set(&desk, 156, 256);
     desk.until("it is locked", |studio| studio.hiperdrive().unwrap().moves.locks(ONE) == [Lock::LimitsUnconfirmed]);
-    // What was read before is no place to confirm.
+    // Limits read before cannot be confirmed.
     drive(&mut desk, Motor::ConfirmLimits(ONE));
     assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread"], "nobody presses in vain without being told");
     desk.until("it is read", |studio| {
@@ -106,7 +107,7 @@ fn a_scale_that_somebody_else_sets_while_control_is_held_locks_until_its_limits_
     assert_eq!(unit(&desk).moves.locks(ONE), [Lock::LimitsUnconfirmed]);
     drive(&mut desk, Motor::Step { by: 4 });
     assert_eq!(desk.told(Severity::Warning), ["hd_lock.unread", "hd_lock.limits"]);
-    // Once more, before anybody has confirmed: the limits keep their numbers, and lie elsewhere again.
+    // Again, before the confirmation: the limits keep their numbers, and are at other places again.
     set(&desk, 154, 100);
     desk.until("it is read again", |studio| {
         let own = studio.hiperdrive().unwrap();
@@ -146,7 +147,7 @@ fn nothing_moves_before_everything_was_read_anew_with_the_control() {
     desk.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
 }
 
-/// 4096 steps are a sixteenth of a turn (reference 4); a step of them ends with 3E37 (reference 9), or its like with another
+/// 4096 steps are a sixteenth of a turn (reference 4); such a move ends with 3E37 (reference 9), or the same with another
 /// acknowledge bit.
 #[test]
 fn the_table_shows_what_the_drive_says_now() {
@@ -215,7 +216,7 @@ fn stop_ends_no_reading_that_a_drive_in_hand_waits_for() {
     assert!(unit(&desk).session.is_polling(), "whoever has control goes on seeing");
     desk.until("it is read", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
     assert!(unit(&desk).session.is_polling() && is_open(&desk.studio));
-    // Nor does whoever changes their mind about a write.
+    // Nor does cancelling a write.
     desk.until("nothing runs", |studio| studio.hiperdrive().unwrap().session.is_ready());
     edit(&mut desk, Edit::Set(number(24), 7));
     command(&mut desk, DeviceCommand::Review);
@@ -254,7 +255,7 @@ fn what_was_not_read_while_control_was_held_is_read_once_it_is_given_back() {
     act(&mut desk, Hiperdrive::Take);
     desk.until("the connection is open", |studio| is_open(studio) && studio.hiperdrive().unwrap().session.is_busy());
     desk.act(Action::Stop);
-    // The reading has ended, and the window does not know it yet.
+    // The reading has ended, and the window has not received it yet.
     std::thread::sleep(Duration::from_millis(200));
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given back", |studio| !is_open(studio));

@@ -1,4 +1,4 @@
-//! Each drive of a hub for itself: what is typed for one, what is said of it, and what it does while another one is shown.
+//! Separate drives of a hub: text typed for one, messages about it, and its motion while another one is shown.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -30,7 +30,7 @@ fn moves(studio: &Studio, drive: DriveNumber) -> bool {
     studio.hiperdrive().unwrap().state(drive) == Some(State::Moving)
 }
 
-/// Issue 21.7: effort and *Endless* of one drive are not another's.
+/// Issue 21.7: effort and *Endless* of one drive are not those of another.
 #[test]
 fn what_is_set_for_one_drive_is_not_set_for_another() {
     let mut desk = in_control(HUB);
@@ -55,12 +55,12 @@ fn what_is_set_for_one_drive_is_not_set_for_another() {
     assert_eq!((unit(&desk).moves.move_effort(ONE), unit(&desk).moves.jog_effort(ONE)), (slow, slow));
 }
 
-/// Issue 21.7: a second motion is refused in words, and ends none that is under way, whichever drive it is asked of.
+/// Issue 21.7: a second motion is refused with a message, and ends no running one, for any drive.
 #[test]
 fn a_second_motion_waits_for_the_end_of_the_first() {
     let mut desk = in_control(HUB);
     until_free(&mut desk, ONE);
-    // Before the drive itself has said that it moves.
+    // Before the drive itself has reported its motion.
     drive(&mut desk, Motor::Move { target: 30_000_000 });
     drive(&mut desk, Motor::Step { by: 64 });
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.still_moves"]);
@@ -105,7 +105,7 @@ fn a_second_motion_waits_for_the_end_of_the_first() {
     });
 }
 
-/// Issue 21.7: a job that waits is not discarded by what is asked of another drive.
+/// Issue 21.7: a waiting job is not discarded by a request to another drive.
 #[test]
 fn a_job_that_waits_is_not_discarded_by_another_drive() {
     let mut desk = in_control(HUB);
@@ -133,7 +133,7 @@ fn a_job_that_waits_is_not_discarded_by_another_drive() {
     desk.until("it stands", |studio| !studio.moves());
 }
 
-/// Issue 21.7: what is told names the drive of a hub; an adapter has one.
+/// Issue 21.7: messages name the drive of a hub; an adapter has one.
 #[test]
 fn what_is_told_names_the_drive() {
     for (link, own, named) in [(HUB, two(), Some("drive 2")), ("sim:", ONE, None)] {
@@ -153,7 +153,7 @@ fn what_is_told_names_the_drive() {
     }
 }
 
-/// Issue 21.7: what is sent while a motion is under way, beside what is set meanwhile.
+/// Issue 21.7: the values sent during a motion, and those set meanwhile.
 #[test]
 fn a_speed_that_waits_is_told_from_the_one_that_is_sent() {
     let mut desk = in_control("sim:");
@@ -181,7 +181,7 @@ fn a_speed_that_waits_is_told_from_the_one_that_is_sent() {
     desk.until("it stands", |studio| !studio.moves());
 }
 
-/// A hub on the screen, with its drives in hand.
+/// Returns a hub on the screen, with its drives under control.
 fn on_screen() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, HUB, [1280.0, 900.0]);
     screen.until("it is read", |studio| {
@@ -212,8 +212,8 @@ fn target(screen: &Screen) -> Node<'_> {
     screen.harness.query_all_by(is_it).last().unwrap()
 }
 
-/// Moves drive 1, does something meanwhile, and looks while it still moves: a window that is held up stops what it moves, so
-/// that a busy machine may need several attempts.
+/// Moves drive 1, runs `then`, and observes while it still moves: a delayed window stops its motion, so that a busy
+/// computer may need several attempts.
 fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: impl Fn(&Screen) -> bool) -> bool {
     let id = screen.studio().hiperdrive().unwrap().session.id;
     let own = |action| Action::device(id, action);
@@ -233,7 +233,7 @@ fn while_it_moves_on(screen: &mut Screen, then: impl Fn() -> Hiperdrive, look: i
     panic!("it never moved for long enough");
 }
 
-/// Issue 21.7: what is typed for one drive stands in the entries of that drive.
+/// Issue 21.7: text typed for one drive is in the entries of that drive.
 #[test]
 fn what_is_typed_for_one_drive_stands_on_its_page() {
     let mut screen = on_screen();
@@ -248,12 +248,12 @@ fn what_is_typed_for_one_drive_stands_on_its_page() {
     assert!(stands(&screen, "12345"));
 }
 
-/// Some entry has this in it.
+/// Returns whether some entry has this in it.
 fn stands(screen: &Screen, text: &str) -> bool {
     screen.harness.query_all_by(|node| node.value().is_some_and(|own| own.contains(text))).next().is_some()
 }
 
-/// Issue 21.7: the buttons that choose a drive say what it does, whichever is shown.
+/// Issue 21.7: the buttons that select a drive show its state, whichever drive is shown.
 #[test]
 fn the_buttons_of_the_drives_show_their_states() {
     let mut screen = on_screen();
@@ -273,7 +273,7 @@ fn the_buttons_of_the_drives_show_their_states() {
     assert!(says(&screen, "drive 1, Fault"));
 }
 
-/// Issue 21.7: what is typed during a motion is marked where it is typed.
+/// Issue 21.7: text typed during a motion is marked in its entry.
 #[test]
 fn a_speed_typed_during_a_motion_is_marked_as_not_sent() {
     let mut screen = on_screen();

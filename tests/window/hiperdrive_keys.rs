@@ -1,5 +1,5 @@
-//! Keys and drives: what a key holds, what it stops, and that one which repeats itself begins nothing (issue 21.2). The events
-//! are those that the window system delivers; egui calls the first repetition after a change of the window a first press.
+//! Keys and drives: keys that are held, keys that stop, and repeated keys, which begin nothing (issue 21.2). The events are
+//! those of the window system; egui calls the first repetition after a change of the window a first press.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -18,7 +18,7 @@ fn event(key: Key, pressed: bool) -> Event {
     Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: Modifiers::NONE }
 }
 
-/// A picture after these events.
+/// Draws a frame after these events.
 fn picture(screen: &mut Screen, events: impl IntoIterator<Item = Event>) {
     events.into_iter().for_each(|event| screen.harness.event(event));
     screen.harness.step();
@@ -33,14 +33,14 @@ fn up(screen: &mut Screen, key: Key) {
     screen.harness.step();
 }
 
-/// The key is held for longer than a key needs to repeat itself.
+/// Holds the key for longer than a key needs to repeat itself.
 fn repeats(screen: &mut Screen, key: Key) {
     for _ in 0..8 {
         down(screen, key);
     }
 }
 
-/// The window without the keyboard, as the window system tells it while a key is down: the release is made up.
+/// Takes the keyboard focus from the window, as the window system does while a key is down: the release is made up.
 fn leave(screen: &mut Screen, key: Key) {
     screen.harness.input_mut().focused = false;
     picture(screen, [event(key, false), Event::WindowFocused(false)]);
@@ -68,7 +68,7 @@ fn is_held(screen: &Screen) -> bool {
     screen.studio().hiperdrive().unwrap().moves.is_held()
 }
 
-/// A pad that has the keyboard, and has seen Space up.
+/// Returns a pad that has the keyboard focus, and for which Space was released.
 fn on_pad() -> Screen {
     let mut screen = in_hand();
     focus(&mut screen, "hd_jog.up");
@@ -96,7 +96,7 @@ fn a_key_that_is_held_in_another_window_moves_nothing_when_the_keyboard_comes_ba
     }
 }
 
-/// Issue 21.2: a jog that ends because the window loses the keyboard does not begin again while the key is held.
+/// Issue 21.2: a jog that ends because the window loses the keyboard focus does not begin again while the key is held.
 #[test]
 fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
     let mut screen = on_pad();
@@ -108,7 +108,7 @@ fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
     repeats(&mut screen, Key::Space);
     assert!(!is_under_way(screen.studio()));
     until_it_stands(&screen);
-    // All of it between two pictures.
+    // All of it between two frames.
     up(&mut screen, Key::Space);
     down(&mut screen, Key::Space);
     assert!(is_held(&screen));
@@ -119,8 +119,8 @@ fn a_jog_that_a_change_of_the_window_ends_does_not_begin_again() {
     assert!(!is_under_way(screen.studio()));
 }
 
-/// Issue 21.2: buttons that begin a motion with a click are pressed once by a key that is held, and not by one that was held
-/// in another window.
+/// Issue 21.2: buttons that begin a motion with a click are pressed once by a held key, and not by one that was held in
+/// another window.
 #[test]
 fn a_key_that_repeats_itself_presses_no_button() {
     let mut screen = in_hand();
@@ -141,7 +141,7 @@ fn a_key_that_repeats_itself_presses_no_button() {
     assert!(!is_under_way(screen.studio()), "held since then");
 }
 
-/// Issue 21.2: where a key repeats itself by a release and a press at once, the two may come in pictures that lie far apart.
+/// Issue 21.2: if a key repeats by an immediate release and press, the two may be in frames that are far apart.
 #[test]
 fn a_repetition_that_is_split_over_two_pictures_moves_nothing() {
     let split = |screen: &mut Screen, key| {
@@ -169,7 +169,7 @@ fn a_repetition_that_is_split_over_two_pictures_moves_nothing() {
     assert!(is_under_way(screen.studio()), "a fresh act");
 }
 
-/// Issue 21.2: Space stops wherever the keyboard is, and presses nothing on the way.
+/// Issue 21.2: Space stops with any keyboard focus, and presses nothing else.
 #[test]
 fn space_stops_what_moves_wherever_the_keyboard_is() {
     let mut screen = in_hand();
@@ -183,7 +183,7 @@ fn space_stops_what_moves_wherever_the_keyboard_is() {
         let space = Event::Key { key: Key::Space, physical_key: None, pressed: true, repeat: false, modifiers };
         picture(&mut screen, [space]);
         assert!(!is_under_way(screen.studio()), "{place:?}");
-        // It is let go and hit again in a fright, and then held.
+        // It is released and pressed again in panic, and then held.
         picture(&mut screen, [event(Key::Space, false)]);
         repeats(&mut screen, Key::Space);
         assert!(!is_under_way(screen.studio()), "{place:?}");
@@ -193,7 +193,7 @@ fn space_stops_what_moves_wherever_the_keyboard_is() {
     }
 }
 
-/// Issue 21.2: in a text entry Space is a character, and a stop as well where something moves.
+/// Issue 21.2: in a text entry Space is a character, and also a stop if a drive moves.
 #[test]
 fn space_in_a_text_entry_is_typed_and_stops_what_moves() {
     for moves in [false, true] {
@@ -215,12 +215,12 @@ fn space_in_a_text_entry_is_typed_and_stops_what_moves() {
     }
 }
 
-/// Issue 21.2: any key while the pointer holds a pad ends it and means nothing else.
+/// Issue 21.2: any key while the pointer holds a pad ends the motion and has no other effect.
 #[test]
 fn any_key_while_the_pointer_holds_a_pad_stops() {
     let mut screen = in_hand();
     for key in [Key::Space, Key::Enter, Key::F1, Key::A] {
-        // What Enter would press.
+        // The button that Enter would press.
         focus(&mut screen, "hd_run.forth");
         let place = screen.button("hd_jog.up").rect().center();
         screen.harness.hover_at(place);
@@ -239,7 +239,7 @@ fn any_key_while_the_pointer_holds_a_pad_stops() {
     }
 }
 
-/// Issue 22.29: a write that is asked for takes a key only after it was seen up on the open review.
+/// Issue 22.29: the write button accepts a key only after the key was released on the open review.
 #[test]
 fn a_review_takes_a_key_only_after_it_was_seen_up() {
     let mut screen = in_hand();
@@ -258,8 +258,8 @@ fn a_review_takes_a_key_only_after_it_was_seen_up() {
     screen.until("it is written", |studio| !studio.selected_device().unwrap().is_dirty());
 }
 
-/// Issue 22.29: a barcode scanner, its Enter within milliseconds of the last digit, while *Write* has the keyboard: in one
-/// picture or in two.
+/// Issue 22.29: a barcode scanner, with its Enter within milliseconds of the last digit, while *Write* has the keyboard
+/// focus: in one frame or in two.
 #[test]
 fn a_barcode_scanner_writes_nothing() {
     let mut screen = in_hand();
@@ -273,7 +273,7 @@ fn a_barcode_scanner_writes_nothing() {
     for _ in 0..4 {
         for digit in [Key::Num4, Key::Num0, Key::Num6] {
             let now = screen.harness.ctx.input(|input| input.time);
-            // The release of a digit comes in the picture of the next key.
+            // The release of a digit is in the frame of the next key.
             screen.harness.input_mut().time = Some(now + 0.004);
             picture(&mut screen, [event(digit, true)]);
         }

@@ -1,5 +1,5 @@
-//! HIPERDRIVE drives as a person moves them from the window: what begins a motion, what keeps it alive, and everything that
-//! ends it. The drive itself is asked whether it stands.
+//! HIPERDRIVE drives moved by the user from the window: the start of a motion, its refresh, and all its ends. The
+//! standstill is read from the drive itself.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -18,10 +18,10 @@ use crate::hiperdrive::{ONE, act, drive, edit, number, read, unit, write};
 use crate::hiperdrive_acts::{drive_until, hold_pad_until, hold_until, set_off, warned, while_it_moves};
 use crate::support::{Desk, LONG};
 
-/// What the drive itself says, whatever the window believes.
+/// Returns the status from the drive itself, independent of the window.
 fn status(desk: &Desk) -> StatusWord {
     let target = unit(desk).target.clone().unwrap();
-    // Time goes on with what is sent to it.
+    // Sending advances its time.
     target.with(|station| station.drive(ONE).unwrap().actual(Moment::default()).status)
 }
 
@@ -29,7 +29,7 @@ fn stands(desk: &Desk) -> bool {
     status(desk).has(StatusBit::StandingStill)
 }
 
-/// In control of the drives of a virtual device.
+/// Returns a studio in control of the drives of a virtual device.
 pub(crate) fn in_control(link: &str) -> Desk {
     let mut desk = read(link);
     act(&mut desk, Hiperdrive::Take);
@@ -48,14 +48,14 @@ fn moves(desk: &Desk) -> bool {
     unit(desk).state(ONE) == Some(State::Moving)
 }
 
-/// A jog that is held, and turns the drive.
+/// Holds a jog that turns the drive.
 #[track_caller]
 fn jog(desk: &mut Desk) {
     let press = Motor::JogPress { direction: Direction::Clockwise, repeated: false };
     hold_pad_until(desk, press, "it moves", |_| {}, moves);
 }
 
-/// Without another look of the window at it: what stops a drive has been said already.
+/// Waits for the standstill without polling the window: the stop has been requested before.
 #[track_caller]
 fn until_standing(desk: &Desk) {
     let began = Instant::now();
@@ -80,7 +80,7 @@ fn a_jog_turns_the_drive_for_as_long_as_it_is_held() {
     desk.until("the window knows it", |studio| !studio.moves());
     let where_it_stands = unit(&desk).actual(ONE).unwrap().position;
     assert!(where_it_stands != 0);
-    // A hold that comes late, and a key that repeats itself, begin nothing.
+    // A late hold, and a repeated key, begin nothing.
     drive(&mut desk, Motor::JogHold);
     drive(&mut desk, Motor::JogPress { direction: Direction::Clockwise, repeated: true });
     desk.settle();
@@ -93,7 +93,7 @@ fn a_jog_that_nobody_says_is_held_ends_by_itself() {
     let mut desk = in_control("sim:");
     jog(&mut desk);
     let before = desk.times_told("hd_end.stale");
-    // Pictures are drawn, and the button is in none of them.
+    // Frames are drawn without the button.
     desk.until("it stands", |studio| !studio.moves());
     assert!(stands(&desk) && !unit(&desk).moves.is_held());
     assert_eq!(desk.times_told("hd_end.stale"), before + 1);
@@ -117,7 +117,7 @@ fn everything_that_takes_the_jog_out_of_sight_ends_it_at_once() {
         ("focus", |desk| desk.act(Action::LetGo)),
         ("tab", |desk| desk.act(Action::ShowTab(crate::tabs::BISS))),
         ("dialog", |desk| desk.connect(connect::ConnectAction::Open)),
-        // With the act that asks, not with the dialog's picture: the system may take half a second for that.
+        // With the act that asks, not with the dialog's frame: the system may take half a second for that.
         ("file dialog", |desk| desk.act(Action::AskOpen)),
         ("file dialog of the device", |desk| command(desk, DeviceCommand::AskSave)),
         ("question", |desk| {
@@ -285,8 +285,8 @@ fn limits_that_somebody_else_has_set_are_read_before_anything_moves() {
     assert_eq!(desk.told(Severity::Warning), ["hd_refused.outside"]);
 }
 
-/// Issue 21.4: a drive outside its limits says so, the pad that leads further out is blocked with its reason, and can be freed
-/// for one press at a time, at 10 % speed and 25 % torque.
+/// Issue 21.4: a drive outside its limits reports it, the pad that leads further out is blocked with its reason, and can be
+/// permitted for one press at a time, at 10 % speed and 25 % torque.
 #[test]
 fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     let mut desk = in_control("sim:?position=33488896&defect=runs-on");
@@ -322,7 +322,7 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
         });
         assert!(unit(&desk).may_jog(ONE, up).is_err(), "freed for one press");
     }
-    // What is freed is forgotten with a stop, and with another page of the window.
+    // A permission ends with a stop, and with another page of the window.
     drive(&mut desk, Motor::FreeOutward(up));
     desk.act(Action::StopMotion);
     assert!(unit(&desk).may_jog(ONE, up).is_err());
@@ -332,8 +332,8 @@ fn from_outside_only_one_pad_is_free_until_the_other_is_freed_for_a_press() {
     assert!(unit(&desk).may_jog(ONE, up).is_err());
 }
 
-/// Issue 21.4: by status bit 15 alone, with the position well inside, the way in is not known: nothing moves, and each pad can
-/// be freed for one press.
+/// Issue 21.4: with only status bit 15, and the position well inside, the inward direction is not known: nothing moves, and
+/// each pad can be permitted for one press.
 #[test]
 fn outside_by_bit_15_alone_both_pads_are_blocked_until_one_is_freed() {
     let mut desk = in_control("sim:?defect=says-outside");
@@ -369,13 +369,13 @@ fn outside_by_bit_15_alone_both_pads_are_blocked_until_one_is_freed() {
     assert!(stands(&desk));
 }
 
-/// Issue 21.11: settings that cannot be read may hold a lock: nothing moves before they are read.
+/// Issue 21.11: unreadable settings may contain a lock: nothing moves before they are read.
 #[test]
 fn settings_that_cannot_be_read_lock_what_is_in_hand() {
     let mut desk = in_control("sim:");
     let path = desk.outside.store().settings_path();
     let _ = std::fs::remove_file(&path);
-    // A link to itself can be read by nobody.
+    // A link to itself cannot be read.
     std::os::unix::fs::symlink(&path, &path).unwrap();
     desk.until("nothing may move", |studio| {
         studio.hiperdrive().unwrap().may_move(ONE).is_err_and(|why| why.id() == "hd_lock.settings")

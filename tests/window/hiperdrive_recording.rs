@@ -1,4 +1,4 @@
-//! What is recorded of HIPERDRIVE drives outlives whatever is changed on the page.
+//! Recordings of HIPERDRIVE drives remain after any change on the page.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -18,7 +18,7 @@ fn recorder(desk: &Desk) -> &Recorder {
     unit(desk).record().recorder()
 }
 
-/// Positions in a line, by its heading; none where there is no such line.
+/// Returns the number of positions in a line, by its heading; none if there is no such line.
 fn samples(recorder: &Recorder, is_it: impl Fn(&str) -> bool) -> u64 {
     let line = recorder.lines().iter().find(|line| is_it(&line.heading));
     let all = line.and_then(|line| recorder.history(line)).map(|history| history.all());
@@ -84,7 +84,7 @@ fn no_unit_and_no_scale_forgets_a_recording() {
     assert!(samples(recorder(&desk), |heading| heading.starts_with("position until ")) >= before);
 }
 
-/// Issue 21.12: a table of one drive that is being written while another one is shown is whole.
+/// Issue 21.12: the table of one drive is complete if another one is shown while it is written.
 #[test]
 fn a_table_is_written_while_another_drive_is_shown() {
     let mut desk = read("sim:?hub=4&drives=1,0,1");

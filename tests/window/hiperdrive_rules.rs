@@ -1,4 +1,5 @@
-//! What rules a drive in hand is looked at again and again, whatever is polled and shown; where it cannot be, nothing moves.
+//! The rules of a controlled drive are read repeatedly, whatever is polled and shown; if they cannot be read, nothing
+//! moves.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -30,7 +31,7 @@ fn two() -> DriveNumber {
     DriveNumber::new(2).unwrap()
 }
 
-/// What another master writes.
+/// Writes a value as another master.
 fn set(desk: &Desk, of: u16, value: i64) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), number(of), &Value::Number(value)).unwrap());
@@ -50,7 +51,7 @@ fn what_rules_a_drive_in_hand_is_read_whatever_is_polled() {
         });
         assert!(began.elapsed() < Duration::from_secs(6), "{pace:?}: {:?}", began.elapsed());
         assert_eq!(unit(&desk).session.line().unwrap().polling(), pace);
-        // Nothing is lacking later either.
+        // No rule is missing later either.
         let began = Instant::now();
         desk.until("some time passes", |studio| {
             studio.hiperdrive().unwrap().may_move(ONE).unwrap();
@@ -77,7 +78,7 @@ fn another_drive_of_a_hub_moves_by_what_was_read_since_it_is_shown() {
     });
 }
 
-/// A stream on which every reply is damaged while somebody wishes it; packets pass as they are.
+/// A stream that damages every reply while a flag is set; packets are unchanged.
 struct Damaging(Box<dyn ByteLink>, Arc<AtomicBool>);
 
 impl ByteLink for Damaging {
@@ -88,7 +89,7 @@ impl ByteLink for Damaging {
     fn receive(&mut self, until: Moment, into: &mut Vec<u8>) -> Result<(), LinkError> {
         let before = into.len();
         self.0.receive(until, into)?;
-        // Behind the header of the frame and those of its items the service that is answered.
+        // After the header of the frame and those of its items: the answered service.
         if let Some(service) = into.get_mut(before + 40).filter(|_| self.1.load(Ordering::SeqCst)) {
             *service ^= 0x55;
         }
@@ -166,7 +167,7 @@ fn what_could_not_be_read_is_over_where_the_control_is_given_back() {
     let (mut desk, bad) = over_a_bad_stream();
     bad.store(true, Ordering::SeqCst);
     desk.until("that is told", rules_stand);
-    // Before anybody looks again.
+    // Before the next reading.
     bad.store(false, Ordering::SeqCst);
     act(&mut desk, Hiperdrive::Give);
     desk.until("it is given back", |studio| {
@@ -185,7 +186,7 @@ fn fault_stands(studio: &Studio) -> bool {
     studio.services.log.standing().is_some_and(|own| own.texts.iter().any(|text| text.id() == "hd_end.fault"))
 }
 
-/// Drive 2 has failed before; drive 1 fails while it moves, which is told, and drive 2 recovers.
+/// Drive 2 has failed before; drive 1 fails while it moves, which is reported, and drive 2 recovers.
 #[test]
 fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
     let mut desk = in_control("sim:?hub=4&drives=1,1&requested=1");
@@ -214,14 +215,14 @@ fn a_fault_of_one_drive_is_not_over_where_another_recovers() {
     drive_until(&mut desk, |_| Motor::Acknowledge, "all have recovered", |studio| !fault_stands(studio));
 }
 
-/// A reading of all states that began before a fault ends behind it.
+/// A reading of all states that began before a fault ends after it.
 #[test]
 fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
     let mut desk = in_control("sim:?hub=4&drives=1,1,1,1&requested=1");
     for _ in 0..3 {
         set_off(&mut desk);
         act(&mut desk, Hiperdrive::ReadStatus);
-        // The first drive was asked by now.
+        // The first drive has been read by now.
         std::thread::sleep(Duration::from_millis(40));
         fail(&desk, ONE);
         desk.until("it has failed", |studio| studio.hiperdrive().unwrap().state(ONE) == Some(State::Fault));
@@ -237,7 +238,7 @@ fn a_reading_from_before_a_fault_does_not_say_that_it_is_over() {
     }
 }
 
-/// A drive that is locked for two reasons has one place at which its limits are confirmed.
+/// A drive that is locked for two reasons has one place to confirm its limits.
 #[test]
 fn limits_are_confirmed_at_one_place() {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);

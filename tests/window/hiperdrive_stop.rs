@@ -1,4 +1,4 @@
-//! STOP and Esc as a person presses them in a fright: the motion ends with the first press, and nothing else with the next.
+//! STOP and Esc pressed in panic: the motion ends with the first press, and the next one has no other effect.
 
 use crate::tabs::Tabs as _;
 use std::time::{Duration, Instant};
@@ -62,7 +62,7 @@ fn moves(screen: &Screen) -> bool {
     screen.studio().moves()
 }
 
-/// Where buttons of that name are, the uppermost first.
+/// Returns the positions of buttons with that name, the uppermost first.
 fn places(screen: &Screen, id: &'static str) -> Vec<Pos2> {
     let label = screen.say(id);
     let found =
@@ -72,7 +72,7 @@ fn places(screen: &Screen, id: &'static str) -> Vec<Pos2> {
     places
 }
 
-/// STOP of the header.
+/// Returns STOP of the header.
 fn stop(screen: &Screen) -> Pos2 {
     places(screen, "hd_bar.stop")[0]
 }
@@ -83,7 +83,7 @@ pub(crate) fn pointer(screen: &mut Screen, pos: Pos2, pressed: bool) {
     screen.harness.step();
 }
 
-/// As long as the drive takes to stand, while no picture is drawn.
+/// Waits for the standstill without drawing a frame.
 pub(crate) fn until_it_stands(screen: &Screen) {
     let motion = screen.studio().hiperdrive().unwrap().moves.motion().unwrap().clone();
     let began = Instant::now();
@@ -94,7 +94,7 @@ pub(crate) fn until_it_stands(screen: &Screen) {
     }
 }
 
-/// A drive that stands while the button that has stopped it is still down; where that is.
+/// Returns a drive at standstill while the button that has stopped it is still down, with its position.
 fn stopped_by_a_press() -> (Screen, Pos2) {
     let mut screen = moving();
     let place = stop(&screen);
@@ -108,13 +108,13 @@ fn stopped_by_a_press() -> (Screen, Pos2) {
 #[test]
 fn a_click_that_stops_a_drive_ends_nothing_else_however_soon_it_stands() {
     let (mut screen, place) = stopped_by_a_press();
-    // Two pictures of a quarter of a second: still a click.
+    // Two frames of a quarter of a second: still a click.
     screen.harness.step();
     screen.harness.step();
     pointer(&mut screen, place, false);
     assert!(is_watched(&screen) && !moves(&screen));
     screen.steps();
-    // Whoever presses once more, later, means all.
+    // A later press is meant for all drives.
     pointer(&mut screen, place, true);
     pointer(&mut screen, place, false);
     screen.until("everything has ended", |studio| !studio.hiperface().unwrap().session.is_polling());
@@ -135,7 +135,7 @@ fn a_second_click_in_a_fright_ends_nothing_else() {
 fn escape_that_is_held_or_hit_again_in_a_fright_ends_nothing_but_the_motion() {
     for is_held in [true, false] {
         let mut screen = moving();
-        // A move goes on under a dialog, which the next Esc would close.
+        // A move continues under a dialog, which the next Esc would close.
         screen.act(Action::Connect(Connect::Open));
         assert!(moves(&screen));
         screen.harness.key_down(Key::Escape);
@@ -164,7 +164,7 @@ fn a_click_behind_the_stop_of_the_page_ends_nothing_else() {
     screen.harness.step();
     pointer(&mut screen, page, true);
     until_it_stands(&screen);
-    // Two pictures of a quarter of a second: still a click.
+    // Two frames of a quarter of a second: still a click.
     screen.harness.step();
     screen.harness.step();
     pointer(&mut screen, page, false);
@@ -176,8 +176,7 @@ fn a_click_behind_the_stop_of_the_page_ends_nothing_else() {
     assert!(is_watched(&screen));
 }
 
-/// A pause turns its button into the one that goes on: whoever presses twice in a fright has not asked for that. Later it is
-/// meant.
+/// After a pause its button resumes: a second press in panic is not a request for that. A later one is.
 #[test]
 fn a_second_click_on_pause_in_a_fright_does_not_go_on() {
     let mut screen = moving();
@@ -186,7 +185,7 @@ fn a_second_click_on_pause_in_a_fright_does_not_go_on() {
     screen.until("it can be paused", |studio| {
         matches!(studio.hiperdrive().unwrap().moves.phase(ONE), Some(Phase::Moving(_)))
     });
-    // Beside *Go*: recordings have a pause as well.
+    // Next to *Go*: recordings have a pause as well.
     let row = places(&screen, "hd_move.go")[0].y;
     let place = places(&screen, "hd_move.pause").into_iter().find(|own| (own.y - row).abs() < 2.0).unwrap();
     screen.harness.hover_at(place);
@@ -222,7 +221,7 @@ fn escape_with_a_modifier_stops_as_well() {
     }
 }
 
-/// Somebody has Esc down already when the machine starts: the system says again and again that it is.
+/// Esc is already down when the motion starts: the system repeats the key.
 #[test]
 fn escape_that_is_held_stops_what_begins_meanwhile() {
     let mut screen = in_hand();
@@ -235,7 +234,7 @@ fn escape_that_is_held_stops_what_begins_meanwhile() {
     assert!(matches!(ended, Some((_, Ended::Stopped))) && is_watched(&screen), "{ended:?}");
 }
 
-/// A drive that is watched here, and moved by another master.
+/// Returns a drive that is watched here, and moved by another master.
 fn moved_by_somebody_else() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, "sim:", [1280.0, 900.0]);
     let own = |studio: &Studio| studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready());
@@ -249,7 +248,7 @@ fn moved_by_somebody_else() -> Screen {
     screen
 }
 
-/// What somebody else moves cannot be stopped from here: Esc is for what is open.
+/// The motion of another host cannot be stopped here: Esc closes the open dialog.
 #[test]
 fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
     let mut screen = moved_by_somebody_else();
@@ -260,7 +259,7 @@ fn escape_closes_what_is_open_while_somebody_else_moves_a_drive() {
     assert!(!screen.studio().hiperdrive().unwrap().session.is_polling(), "nothing else was open");
 }
 
-/// Nor does STOP let a job run on because of it; it counts as any other click does.
+/// Nor does it prevent STOP from ending a job; it counts like any other click.
 #[test]
 fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
     let mut screen = moved_by_somebody_else();
@@ -274,7 +273,7 @@ fn stop_ends_what_runs_while_somebody_else_moves_a_drive() {
     assert!(!polls(&screen));
 }
 
-/// Issue 23: an action of another kind was meant for something that is not there.
+/// Issue 23: an action of another kind was meant for something that does not exist here.
 #[test]
 fn an_action_of_another_kind_is_told_and_stops_what_moves() {
     let mut screen = moving();

@@ -1,5 +1,5 @@
-//! The INTERBUS tab by actions: what is read and when, parameters and cams beside what is wanted, a write with its review,
-//! tables of cams, and what is asked before a running machine is disturbed.
+//! The INTERBUS tab by actions: reading, parameters and cams with edits, a write with its review, tables of cams, and the
+//! question before a running machine is disturbed.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -73,7 +73,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// Reviews what is edited and writes it; what the plan costs.
+/// Reviews the edits and writes them; returns the cost of the plan.
 #[track_caller]
 fn write(desk: &mut Desk) -> String {
     wish(desk, DeviceCommand::Review);
@@ -123,7 +123,7 @@ fn parameters_and_cams_are_edited_undone_and_written_with_the_fewest_stores() {
     assert_eq!((wanted.start.get(), wanted.stop.get()), (7000, 40));
     // Read for the window, the plan, the write and after it: 8 + 1 + 1 + 1; written: 2.
     desk.until("stores are counted", |studio| studio.interbus().unwrap().stores() == Some(13));
-    // Refused where it stands, and nothing changes.
+    // Refused in its entry, and nothing changes.
     edit(&mut desk, Edit::Cam { program: program(1), cam: cam(0), start: 7200, stop: 1, on: true });
     assert!(encoder(&desk).refusal.is_some() && !encoder(&desk).is_dirty());
 }
@@ -169,7 +169,7 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     wish(&mut desk, DeviceCommand::Read);
     desk.settle();
     assert_eq!((desk.times_told("ib_stop.first"), sent(&desk)), (1, 0));
-    // Issue 22.31: a profile of what it holds selects cam programs.
+    // Issue 22.31: a profile of its content selects cam programs.
     command(&mut desk, DeviceCommand::AskSave);
     act(&mut desk, Interbus::Save("k3.ron".into()));
     desk.settle();
@@ -183,7 +183,7 @@ fn a_running_machine_is_not_disturbed_before_somebody_says_that_it_stands() {
     act(&mut desk, Interbus::ReadPrograms(vec![program(3)]));
     desk.until("the program is read", |studio| studio.interbus().unwrap().programs_read() == 1);
     until_ready(&mut desk);
-    // Nobody knows after a lost connection.
+    // After a lost connection it is not known.
     desk.outside.wire(GATE).unplug();
     desk.until("it is lost", |studio| matches!(studio.interbus().unwrap().session.phase, Phase::Lost(_)));
     desk.outside.wire(GATE).plug();
@@ -210,10 +210,10 @@ fn a_table_is_looked_at_before_it_is_taken_and_says_what_became_of_each_edge() {
     assert!(own.import.is_none() && own.edits_cams());
     let wanted = own.staged.wanted().unwrap();
     let edges = |number| wanted.cam(program(3), cam(number)).map(|own| (own.start.get(), own.stop.get()));
-    // 350 to 400 degrees go over the end: 400 is 40.
+    // 350 to 400 degrees pass the end: 400 is 40.
     assert_eq!((edges(1), edges(2)), (Some((300, 400)), Some((3500, 400))));
     assert_eq!(wanted.name(program(3), cam(2)), Some("knife"));
-    // A file, out and in again.
+    // A file, exported and imported.
     let path = desk.outside.path("cams.csv");
     act(&mut desk, Interbus::SaveTable { path: path.clone(), decimal_comma: true });
     desk.until("it is written", |_| path.exists());

@@ -1,4 +1,4 @@
-//! Sessions that are closed, opened again or dead: what still ends there is told, and waited for within limits.
+//! Sessions that are closed, opened again or dead: the ends of their work are reported, and waited for within limits.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -73,7 +73,7 @@ fn the_draft_of_a_closed_session_is_waited_for() {
     desk.until("it may close", |studio| studio.may_close());
 }
 
-/// The first attempt comes late, after another one has connected.
+/// The first attempt is late, after another one has connected.
 #[test]
 fn what_an_earlier_attempt_opened_is_not_used() {
     let mut desk = Desk::fresh("");

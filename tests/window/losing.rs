@@ -1,4 +1,4 @@
-//! Stopping half-way, pulling the cable, exchanging the encoder: what is edited stays, and never goes onto another one.
+//! Stopping half-way, pulling the cable, exchanging the encoder: edits remain, and are never written into another one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -24,7 +24,7 @@ pub(crate) fn lost(studio: &Studio) -> bool {
     studio.hiperface().is_some_and(|encoder| matches!(encoder.session.phase, Phase::Lost(_)))
 }
 
-/// A profile of the virtual encoder in which four single bytes differ, open beside the encoder.
+/// Opens a profile of the virtual encoder in which four single bytes differ, beside the encoder.
 fn with_a_profile(desk: &mut Desk) {
     let encoder = desk.encoder().session.id;
     let path = desk.outside.path("mine.ron");
@@ -58,10 +58,10 @@ fn a_restore_that_is_stopped_half_way_says_how_far_it_came_and_is_completed_late
     desk.wire().release();
     desk.until("it has ended", failed);
     let ReviewState::Failed { texts, begun: true, .. } = &desk.review().state else { panic!() };
-    // The exchange that was on its way is completed; nothing after it is begun.
+    // The exchange in progress is completed; nothing after it is begun.
     assert_eq!(texts[0], crate::texts::text("write.cancelled").with("done", 2).with("planned", 4));
     assert_eq!(texts[1].id(), "write.backup");
-    // Issue 22.14: the list of operations stays, with those that are done.
+    // Issue 22.14: the list of operations remains, with the completed ones.
     let sheet = desk.studio.selected_device().unwrap().sheet().unwrap();
     assert!(matches!(sheet.stage, Stage::Failed { begun: true, done: 2, .. }), "{:?}", sheet.stage);
     assert_eq!(sheet.lines.len(), 4);
@@ -132,7 +132,7 @@ fn a_cable_pulled_while_something_is_read_is_told_once() {
     assert_eq!(frames.back().unwrap().bytes, "40 46 06", "what passed at last is shown");
 }
 
-/// Another encoder at the same cable: the edits wait for the one they were made for.
+/// Another encoder on the same cable: the edits wait for the one they were made for.
 #[test]
 fn edits_do_not_go_onto_another_encoder_and_come_back_with_their_own() {
     let mut desk = Desk::at_port("");
@@ -170,7 +170,7 @@ fn serial(studio: &Studio) -> Option<&str> {
     Some(&identity.serial.serial_number)
 }
 
-/// The adapter stays plugged in, the encoder behind it does not: no link is lost, and nobody has told us.
+/// The adapter stays plugged in, its encoder does not: no link is lost, and the program is not told.
 #[test]
 fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned() {
     let mut desk = Desk::at_port("");
@@ -186,7 +186,7 @@ fn an_encoder_exchanged_behind_the_adapter_is_noticed_before_anything_is_planned
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// Nothing is edited, so that nothing but the discarded plan is told of.
+/// Without edits, only the discarded plan is reported.
 #[test]
 fn a_plan_for_an_encoder_that_was_exchanged_is_discarded_and_that_is_told() {
     let mut desk = Desk::at_port("");
@@ -198,7 +198,7 @@ fn a_plan_for_an_encoder_that_was_exchanged_is_discarded_and_that_is_told() {
     assert_eq!((desk.times_told("session.plan_of_another"), desk.times_told("session.other_encoder")), (1, 0));
 }
 
-/// The survey after the replug is stopped: who is connected is not known, and the edits are not offered to it.
+/// The survey after the replug is stopped: the encoder is not identified, and the edits are not offered to it.
 #[test]
 fn a_stopped_reading_does_not_let_edits_through_to_another_encoder() {
     let mut desk = Desk::at_port("");
@@ -306,7 +306,7 @@ fn other_settings_are_followed_from_the_restart_on() {
     assert_eq!(*desk.phase(), Phase::Connected);
 }
 
-/// The link is open, and nobody answers: that is neither connected nor lost.
+/// The link is open without an answer: that is neither connected nor lost.
 #[test]
 fn an_encoder_that_does_not_answer_is_not_connected() {
     let mut desk = Desk::at_port("");
@@ -408,7 +408,7 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     desk.wire().unplug();
     desk.until("it is lost", lost);
     assert!(!desk.studio.is_live() && !desk.studio.can_stop());
-    // Longer than the worker waits between two looks at its wire.
+    // Longer than the interval between two checks of the connection.
     for _ in 0..70 {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(10));
@@ -416,7 +416,7 @@ fn live_values_go_on_around_a_job_and_end_with_the_cable() {
     assert_eq!(desk.told(Severity::Error), ["link.lost"], "once");
 }
 
-/// The failure was on its way when the user wished anew: it is about the wish before.
+/// The failure was in transit when the user made a new request: it belongs to the earlier request.
 #[test]
 fn a_late_failure_does_not_end_or_misreport_newer_live_values() {
     let mut desk = Desk::at_port("");

@@ -1,5 +1,5 @@
-//! Somebody who clicks, drags and types anywhere, in windows of every size: nothing panics, the window keeps answering,
-//! and nothing is written that nobody consented to. The same seeds give the same days.
+//! Random clicks, drags and keys in windows of every size: nothing panics, the window keeps answering, and nothing is
+//! written without consent. The same seeds give the same sequences.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2};
 use encoder_studio::app::{Action, ColorScheme, Language};
@@ -71,7 +71,7 @@ fn day(seed: u64, steps: usize) {
         }
         screen.harness.step();
     }
-    // Whatever was done: the window still draws and answers.
+    // After all actions the window still draws and answers.
     screen.steps();
     let written = screen
         .studio()

@@ -1,5 +1,5 @@
-//! A press and its release find the same button, and the keyboard stays where it is, whatever appears or goes meanwhile
-//! somewhere else in the window (issue 21.7: clicks on a drive's button were lost while its limits were read).
+//! A press and its release reach the same button, and the keyboard focus remains, whatever appears or disappears meanwhile
+//! elsewhere in the window (issue 21.7: clicks on a drive's button were lost while its limits were read).
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::support::{DRIVE, GATE, KIT, Outside, PORT, is_review};
 
 const SIZE: [f32; 2] = [1280.0, 900.0];
 
-/// Each kind of device at a cable: its tab, its link, its place in the world of the test, and a command of its reading.
+/// Each kind of device on a cable: its tab, its link, its place in the test, and a command of its reading.
 const KINDS: [(Tab, &str, &str, u8); 4] = [
     (crate::tabs::HIPERFACE, "serial", PORT, 0x52),
     (crate::tabs::BISS, "serial", KIT, 0x01),
@@ -25,7 +25,7 @@ const KINDS: [(Tab, &str, &str, u8); 4] = [
     (crate::tabs::HIPERDRIVE, "enip", DRIVE, 0x0E),
 ];
 
-/// What can be pressed or typed into, by its name, where only one has it: which widget it is.
+/// Returns the widgets that can be pressed or typed into, by name, if the name is unique.
 fn widgets(screen: &Screen) -> BTreeMap<String, String> {
     let (mut found, mut several) = (BTreeMap::new(), Vec::new());
     for node in screen.harness.query_all_by(|node| {
@@ -56,7 +56,7 @@ fn ready(screen: &mut Screen) {
     });
 }
 
-/// Issue 21.7: a notice and a job that runs come and go by themselves.
+/// Issue 21.7: a notice and a running job appear and disappear without user input.
 #[test]
 fn what_appears_elsewhere_exchanges_no_button() {
     for (tab, scheme, port, reads) in KINDS {
@@ -64,7 +64,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
         ready(&mut screen);
         let id = screen.studio().selected_device().unwrap().id();
         if tab == crate::tabs::INTERBUS {
-            // Else it is not read.
+            // Otherwise it is not read.
             screen.act(Action::device(id, Interbus::Stopped(true)));
         }
         screen.act(Action::Dismiss);
@@ -91,7 +91,7 @@ fn what_appears_elsewhere_exchanges_no_button() {
     }
 }
 
-/// Issue 21.7: a click during which a notice goes, or comes.
+/// Issue 21.7: a click during which a notice disappears, or appears.
 #[test]
 fn a_click_counts_whatever_appears_between_its_press_and_its_release() {
     for comes in [true, false] {
@@ -117,7 +117,7 @@ fn a_click_counts_whatever_appears_between_its_press_and_its_release() {
     }
 }
 
-/// Issue 22.29: the keyboard on a button of a review that is still planned is on none of the plan that is ready.
+/// Issue 22.29: keyboard focus on a button of a review that is still planned is not on any button of the completed plan.
 #[test]
 fn a_review_that_becomes_ready_takes_no_key_for_a_button_before() {
     let mut screen = Screen::opened(Outside::new(""), Some(&format!("serial:{PORT}")), SIZE);

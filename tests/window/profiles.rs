@@ -1,4 +1,4 @@
-//! Profiles: saved as the encoder is, opened beside it, edited without one.
+//! Profiles: saved from the encoder, opened beside it, edited without one.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -89,7 +89,7 @@ fn saving_asks_for_a_file_named_after_the_encoder() {
     assert_eq!(desk.studio.take_path_question(), Some(FileQuestion::Open));
 }
 
-/// Two saves at once: the second is refused, and the first goes where it was to go.
+/// Two saves at once: the second is refused, and the first goes to its own file.
 #[test]
 fn a_refused_save_does_not_lead_another_astray() {
     let mut desk = Desk::begun("");
@@ -126,7 +126,7 @@ fn a_profile_that_cannot_be_read_is_told_and_left() {
     assert_eq!(desk.studio.devices().len(), 1);
 }
 
-/// Issue 22.17: what this program does not know of a newer schema would be lost with a save.
+/// Issue 22.17: the unknown parts of a newer schema would be lost with a save.
 #[test]
 fn a_profile_of_a_newer_schema_is_neither_saved_nor_written() {
     let (mut desk, path) = saved();
@@ -157,7 +157,7 @@ fn a_profile_read_again_keeps_its_edits() {
     desk.until("it is read again", |studio| studio.hiperface().unwrap().staged.on_device(0, 1) == Some(0x4E));
     assert_eq!(desk.edits(), [(0, 0, b'X')]);
 
-    // A file that is broken by now changes nothing.
+    // A file that is invalid by now changes nothing.
     fs::write(&path, "(").unwrap();
     desk.command(DeviceCommand::Read);
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "profile.invalid"));
@@ -204,7 +204,7 @@ fn a_profile_goes_onto_another_encoder_only_where_that_is_allowed() {
     assert_eq!(desk.wire().wear(), 0);
 }
 
-/// The sheet of the review that is shown.
+/// Returns the sheet of the review that is shown.
 fn sheet(desk: &Desk) -> ReviewSheet {
     desk.studio.selected_device().unwrap().sheet().unwrap()
 }
@@ -228,7 +228,7 @@ fn until_refused(desk: &mut Desk) {
     desk.until_ready();
 }
 
-/// A profile with a commutation offset beside the review for another encoder, where every permit is given.
+/// Opens a profile with a commutation offset beside the review for another encoder, with every permission given.
 fn onto_another(desk: &mut Desk, path: &std::path::Path) {
     refused_by_another(desk, path, &[(0, b"CO1"), (20, b"?")]);
     allow_another(desk);
@@ -242,8 +242,7 @@ fn allow_another(desk: &mut Desk) {
     desk.toggle(Permit::OtherType);
 }
 
-/// Issue 22.7: with both permits given, what has to be set up anew stands in the review, at its end, and where it was cut
-/// off.
+/// Issue 22.7: with both permissions, the values to set up again are in the review, at its end, and after an interruption.
 #[test]
 fn what_comes_from_another_mounting_is_named_until_the_end() {
     let (mut desk, path) = saved();
@@ -267,7 +266,7 @@ fn what_comes_from_another_mounting_is_named_until_the_end() {
     });
     let cut = sheet(&desk);
     assert_eq!((cut.redo, cut.lines.len()), (with.redo, with.lines.len()));
-    // Written to its end.
+    // Written completely.
     let (mut desk, path) = saved();
     onto_another(&mut desk, &path);
     desk.toggle(Permit::Mounting);
@@ -277,7 +276,7 @@ fn what_comes_from_another_mounting_is_named_until_the_end() {
     assert!(matches!(sheet(&desk).stage, Stage::Done { .. }) && sheet(&desk).redo.is_some());
 }
 
-/// Issue 22.8: a field with bytes of unknown meaning is a question, and left unless it is answered otherwise.
+/// Issue 22.8: a field with bytes of unknown meaning is a question, and left unchanged unless it is answered otherwise.
 #[test]
 fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
     let (mut desk, path) = saved();
@@ -298,7 +297,7 @@ fn bytes_of_unknown_meaning_are_a_question_of_the_review() {
     assert!(sheet(&desk).lines.is_empty() && sheet(&desk).redo.is_none());
 }
 
-/// Issue 22.9: another type of encoder is named, and needs a permit of its own.
+/// Issue 22.9: another type of encoder is named, and needs an explicit permission.
 #[test]
 fn another_type_of_encoder_needs_a_permit_of_its_own() {
     let (mut desk, path) = saved();
@@ -312,7 +311,7 @@ fn another_type_of_encoder_needs_a_permit_of_its_own() {
     assert!(sheet(&desk).warnings.iter().any(|text| text.id() == "review.other_type"));
 }
 
-/// Issue 22.14: what was read can be saved although the line is lost; the file says that it is not of now.
+/// Issue 22.14: data that were read can be saved although the connection is lost; the file says that it is not current.
 #[test]
 fn what_was_read_is_saved_when_the_line_is_lost() {
     let mut desk = Desk::at_port("");
@@ -333,7 +332,7 @@ fn what_was_read_is_saved_when_the_line_is_lost() {
     let told = |studio: &Studio| studio.services.log.notices().last().map(|own| own.texts.clone()).unwrap_or_default();
     desk.until("it is told", |studio| told(studio).iter().any(|text| text.id() == "session.saved_as_read"));
     assert!(told(&desk.studio).iter().any(|text| text.id() == "session.saved_without"));
-    // Where nothing was read, there is nothing to save.
+    // If nothing was read, there is nothing to save.
     let mut desk = Desk::fresh("");
     desk.open("serial:/dev/nothing");
     desk.until("it cannot be opened", crate::losing::lost);
@@ -359,7 +358,7 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
     desk.until("the question again", |studio| studio.question.is_some());
     desk.act(Action::Confirm);
     desk.until("it is saved", |_| std::fs::read_to_string(&path).unwrap() != "dear");
-    // The file is there before the window knows that it was written.
+    // The file exists before the window knows that it was written.
     desk.until("it is told", |studio| studio.services.log.notices().any(|own| own.texts[0].id() == "session.saved"));
     let new = folder.path().join("new.ron");
     desk.act(typed(&new));
@@ -367,7 +366,7 @@ fn a_file_that_is_there_is_replaced_only_when_that_is_confirmed() {
     assert!(desk.studio.question.is_none());
 }
 
-/// Issue 22.24: a path that begins nowhere is the same file for as long as the window is open, whichever way it came in.
+/// Issue 22.24: a relative path is the same file for as long as the window is open, whichever way it was entered.
 #[test]
 fn a_relative_path_is_the_same_file_when_it_is_saved() {
     let (mut desk, path) = saved();
@@ -391,7 +390,7 @@ fn a_relative_path_is_the_same_file_when_it_is_saved() {
     assert_ne!(read_text(&rel).unwrap(), read_text(&path).unwrap());
     assert_eq!(read_text(&home.join("rel.ron")).unwrap(), read_text(&path).unwrap());
 
-    // Dropped and typed, it is the session that there is; the home folder's has its own.
+    // Dropped and typed, it is the existing session; the home folder's has its own.
     desk.act(Action::Open("./rel.ron".into()));
     desk.act(Action::Typed(FileQuestion::Open, "rel.ron".into()));
     desk.until("both were read", |studio| studio.opening_files().is_empty());
@@ -401,7 +400,7 @@ fn a_relative_path_is_the_same_file_when_it_is_saved() {
     assert_eq!(desk.encoder().session.place(), home.join("rel.ron").display().to_string());
 }
 
-/// Issue 22.24: a link to a recording leads to the same file at the next start, wherever that is.
+/// Issue 22.24: a link to a recording leads to the same file at the next start, from any folder.
 #[test]
 fn a_link_to_a_recording_is_remembered_with_its_whole_path() {
     let mut desk = Desk::fresh("");

@@ -1,4 +1,4 @@
-//! What is recorded of a polled encoder, and what can be done with it.
+//! Recordings of a polled encoder, and the actions on them.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -32,7 +32,7 @@ fn line<'a>(recorder: &'a Recorder, name: &str) -> &'a Series {
     recorder.lines().iter().find(|line| line.heading == name).unwrap()
 }
 
-/// Least and greatest value of all that was recorded of a line, in its unit.
+/// Returns the least and the greatest value in the complete recording of a line, in its unit.
 fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     let line = line(recorder, name);
     let history = recorder.history(line).unwrap();
@@ -40,7 +40,7 @@ fn extent(recorder: &Recorder, name: &str) -> (f64, f64) {
     (statistics.min.to_f64() * line.factor(), statistics.max.to_f64() * line.factor())
 }
 
-/// The 4096 turns end while it is recorded: without unwrapping, position and speed would jump by 4096 turns.
+/// The 4096 turns end during the recording: without unwrapping, position and speed would jump by 4096 turns.
 #[test]
 fn the_end_of_the_range_is_no_spike() {
     let mut desk = Desk::begun("rpm=600&position=16600000");
@@ -131,7 +131,7 @@ fn the_recording_is_saved_as_a_table() {
     let text = fs::read_to_string(&path).unwrap();
     assert_eq!(text.lines().next(), Some("time [s],position [turns],speed [rpm],remark"));
     assert_eq!(text.lines().count() as u64, 1 + recorded(&desk.studio));
-    // What is there already is not replaced without a question where a path was typed.
+    // An existing file is not replaced without a question if its path was typed.
     desk.act(Action::Typed(question(false), path.clone()));
     desk.until("it asks", |studio| studio.question.is_some());
     desk.act(Action::Escape);
@@ -172,7 +172,7 @@ fn what_is_watched_is_recorded_beside_the_position() {
     assert!(line(recording, "temperature").remark.is_none());
     desk.ask(Hiperface::Watch(Watch::Counter, false));
     assert!(recorder(&desk).lines().iter().all(|line| line.heading != "counter"));
-    // What is watched outlives the cable.
+    // Watched values remain after the cable is pulled.
     assert_eq!(desk.encoder().record.watched(), [Watch::Analogue(0x48), Watch::Analogue(0x07)]);
 }
 
@@ -194,7 +194,7 @@ fn a_position_that_is_read_while_polling_disturbs_nothing() {
     assert!(slowest > 590.0 && fastest < 610.0, "{slowest} {fastest}");
 }
 
-/// Issue 21.12: a session that is closed takes its recording with it. Two minutes are what is asked for elsewhere too.
+/// Issue 21.12: a closed session discards its recording. Elsewhere, too, the question comes from two minutes on.
 #[test]
 fn minutes_of_recording_are_asked_for_before_a_session_is_closed() {
     let mut desk = Desk::begun("");

@@ -1,4 +1,4 @@
-//! What is remembered from one start to the next, and a file of it that is broken.
+//! Settings remembered from one start to the next, and an invalid file.
 
 use std::fs;
 
@@ -6,7 +6,7 @@ use encoder_studio::app::{Action, ColorScheme, Language, Settings, Severity};
 
 use crate::support::{Desk, OTHER_PORT, PORT};
 
-/// Waits until the file says what the studio has.
+/// Waits until the file contains the studio's settings.
 fn kept(desk: &mut Desk) {
     let path = desk.outside.store().settings_path();
     desk.until("the settings are kept", |studio| {
@@ -89,7 +89,7 @@ fn settings_that_cannot_be_read_are_left() {
     assert_eq!(desk.told(Severity::Warning).len(), 1);
 }
 
-/// The disk wakes up late: what it has holds, but for what the user has set meanwhile.
+/// The disk answers late: its settings apply, except for those that the user has changed meanwhile.
 #[cfg(unix)]
 #[test]
 fn settings_that_come_late_hold_and_are_not_overwritten_before() {

@@ -1,5 +1,4 @@
-//! Saving into a file that is open: what others wrote there meanwhile is asked about, and what a person wrote between the
-//! entries stays.
+//! Saving into an open file: changes by others cause a question, and comments of the user between the entries remain.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -18,7 +17,7 @@ use encoder_studio::profile::Changed;
 
 use crate::support::Desk;
 
-/// A profile as a person keeps it, with what the program would not have written.
+/// A profile edited by a user, in a form that the program would not write.
 const OWN: &str = "// bench 3\r\n(schema: 1, device: \"hiperface\",\r\n  note: \"as wired\", // ours\r\n  identity: (serial_number: \"A1\", encoder_type: 0x37),\r\n  interface: (settings: 0xE4, address: 0x40),\r\n  fields: [(number: 0, status: 0xC8, // the motor\r\n    bytes: [\"00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F\"])], // end\r\n)\r\n";
 
 fn opened(text: &str) -> (Desk, PathBuf) {
@@ -31,7 +30,7 @@ fn opened(text: &str) -> (Desk, PathBuf) {
     (desk, path)
 }
 
-/// The profile of a file is shown.
+/// Returns whether the profile of a file is shown.
 fn is_open(studio: &Studio) -> bool {
     studio.selected_device().is_some_and(|own| *own.phase() == Phase::Offline)
 }
@@ -45,7 +44,7 @@ fn save(desk: &mut Desk) {
     desk.act(Action::Save(id));
 }
 
-/// Edits of what is shown are on disk.
+/// Waits until the edits of the shown document are on disk.
 fn until_kept(desk: &mut Desk) {
     desk.until("the draft is kept", |studio| studio.selected_device().is_some_and(AnyDevice::is_draft_kept));
     desk.settle();
@@ -59,7 +58,7 @@ fn is_asked(studio: &Studio) -> bool {
     studio.diverged.is_some()
 }
 
-/// Issue 22.25: the open file is written without a question, another one is asked for.
+/// Issue 22.25: the open file is written without a question, another one needs an answer.
 #[test]
 fn saving_writes_the_open_file_and_asks_for_another() {
     let (mut desk, path) = opened(OWN);
@@ -73,13 +72,13 @@ fn saving_writes_the_open_file_and_asks_for_another() {
     desk.command(DeviceCommand::AskSave);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 
-    // An encoder is in no file.
+    // An encoder has no file.
     let mut desk = Desk::begun("");
     save(&mut desk);
     assert!(matches!(desk.studio.take_file_question(), Some(FileQuestion::Save { .. })));
 }
 
-/// Issue 22.25: what an editor wrote meanwhile is not replaced without a question, and each way out of it does what it says.
+/// Issue 22.25: changes by an editor are not replaced without a question, and each answer to it has the stated effect.
 #[test]
 fn what_others_wrote_meanwhile_is_asked_about() {
     let theirs = OWN.replace("as wired", "as rewired").replace("01 02", "AA 02").replace("// end", "// theirs");
@@ -126,7 +125,7 @@ fn what_others_wrote_meanwhile_is_asked_about() {
     desk.act(Action::Resolve(Resolve::Merge));
     desk.until("it is saved", is_saved);
     assert_eq!(says(&path), theirs.replace("\"00 AA", "\"58 01"));
-    // What was saved is what is open: the next save finds nothing else.
+    // The saved content is the open one: the next save finds no difference.
     desk.put(0, 2, b"Z");
     save(&mut desk);
     desk.until("it is saved", is_saved);
@@ -139,8 +138,7 @@ fn what_others_wrote_meanwhile_is_asked_about() {
     assert_eq!(says(&path), theirs);
 }
 
-/// Issue 22.25: comments alone are no difference, and stay; a file that is gone is written anew; one that is broken by now is
-/// said to be.
+/// Issue 22.25: comments alone are no difference, and remain; a deleted file is written again; an invalid one is reported.
 #[test]
 fn only_what_a_file_says_is_a_difference() {
     let (mut desk, path) = opened(OWN);
@@ -168,7 +166,7 @@ fn only_what_a_file_says_is_a_difference() {
     desk.until("it is saved", is_saved);
     assert!(says(&path).contains("58 59 5A"));
 
-    // What a newer version of the program wrote is never replaced by an older form of it.
+    // A file of a newer version of the program is never replaced by an older form.
     let newer = says(&path).replace("schema: 1", "schema: 2");
     fs::write(&path, &newer).unwrap();
     desk.put(0, 3, b"W");
@@ -180,7 +178,7 @@ fn only_what_a_file_says_is_a_difference() {
     assert_eq!(says(&path), newer);
 }
 
-/// Issue 22.26: comments that have no place in what is saved are named before it is saved.
+/// Issue 22.26: comments that have no place in the saved text are named before it is saved.
 #[test]
 fn comments_that_would_go_are_asked_about() {
     let rows = "\"00 01 02 03 04 05 06 07\", // name plate\r\n\"08 09 0A 0B 0C 0D 0E 0F\"";
@@ -203,7 +201,7 @@ fn comments_that_would_go_are_asked_about() {
     assert!(says(&path).starts_with("// bench 3\r\n") && says(&path).contains("// the motor\r\n"));
 }
 
-/// Issue 22.26: the mark with which an editor begins a file stays.
+/// Issue 22.26: the byte order mark of a file remains.
 #[test]
 fn a_byte_order_mark_stays() {
     let (mut desk, path) = opened(&format!("\u{FEFF}{OWN}"));
@@ -213,7 +211,7 @@ fn a_byte_order_mark_stays() {
     assert_eq!(says(&path), format!("\u{FEFF}{}", OWN.replace("\"00 01", "\"58 01")));
 }
 
-/// Issue 22.28: what was told of a document until it was saved is over then, and what is told of another one is not.
+/// Issue 22.28: a save ends the earlier notices about its document, and not those about another one.
 #[test]
 fn a_save_settles_the_notices_of_its_own_document() {
     let (mut desk, path) = opened(OWN);
@@ -239,7 +237,7 @@ fn a_save_settles_the_notices_of_its_own_document() {
     save(&mut desk);
     desk.until("it is saved", |studio| stands(studio, "session.saved"));
 
-    // Another document's notice stands.
+    // Another document's notice remains.
     desk.act(Action::Open(desk.outside.path("none.ron")));
     desk.until("it is told", |studio| stands(studio, "file.not_found"));
     desk.put(0, 2, b"Z");
@@ -249,7 +247,7 @@ fn a_save_settles_the_notices_of_its_own_document() {
     assert_eq!(*desk.phase(), Phase::Offline);
 }
 
-/// Issue 22.28: a measuring range below the cams of a profile is told on every page, and again with a save.
+/// Issue 22.28: a measuring range below the cams of a profile is reported on every page, and again with a save.
 #[test]
 fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
     let mut desk = Desk::fresh("");
@@ -278,8 +276,8 @@ fn cams_beyond_a_smaller_range_are_told_at_once_and_when_saved() {
     assert_eq!(says(&path), text.replace("steps: 3600", "steps: 1800"));
 }
 
-/// Issue 22.27: what a colleague changed in a file while it was closed stays, and so do the edits of an earlier time, for a
-/// layout, parameters and cams alike; also when the file is only read again.
+/// Issue 22.27: changes of a colleague in a closed file remain, and so do earlier edits, for a layout, parameters and cams
+/// alike; also if the file is only read again.
 #[test]
 fn edits_of_an_earlier_time_leave_what_others_changed() {
     let ssi = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -328,8 +326,8 @@ fn edits_of_an_earlier_time_leave_what_others_changed() {
     }
 }
 
-/// Issue 22.27: what was edited earlier and makes no layout with what a colleague has changed meanwhile is left out, and that is
-/// said.
+/// Issue 22.27: earlier edits that result in no valid layout together with the changes of a colleague are left out, with a
+/// message.
 #[test]
 fn edits_that_fit_no_more_are_left_out_and_told() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";
@@ -355,7 +353,7 @@ fn edits_that_fit_no_more_are_left_out_and_told() {
     assert_eq!(says(&path), theirs);
 }
 
-/// Issue 22.27: a draft of an earlier version, which held the layout as a whole, still opens.
+/// Issue 22.27: a draft of an earlier version, which contained the complete layout, still opens.
 #[test]
 fn a_draft_of_a_whole_layout_still_opens() {
     let text = "(schema: 1, device: \"ssi\", frame: (clocks: 25, multiturn: 12, singleturn: 12), preset: 7)\n";

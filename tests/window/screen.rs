@@ -1,4 +1,4 @@
-//! The real window on a desk of the test's own, used by its accessible labels, which are asked of the table of texts.
+//! The real window of a test's studio, used by its accessible labels, which are read from the table of texts.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -32,7 +32,7 @@ pub(crate) struct Screen {
 }
 
 impl Screen {
-    /// A window that begins with this link, or else with the virtual encoder.
+    /// Opens a window that begins with this link, or else with the virtual encoder.
     pub(crate) fn opened(outside: Outside, link: Option<&str>, size: [f32; 2]) -> Self {
         let mut studio = outside.studio();
         studio.begin(link.map(|link| link.parse::<LinkUrl>().unwrap()), None);
@@ -40,7 +40,7 @@ impl Screen {
         Self::of(outside, studio, size)
     }
 
-    /// A window on a studio of that world.
+    /// Creates a window on a studio of that world.
     pub(crate) fn of(outside: Outside, studio: Studio, size: [f32; 2]) -> Self {
         let harness = Harness::builder().with_size(Vec2::from(size)).build_eframe(|cc| {
             install_fonts(&cc.egui_ctx);
@@ -49,7 +49,7 @@ impl Screen {
         Screen { harness, outside }
     }
 
-    /// A window that begins with this link in this tab.
+    /// Creates a window that begins with this link in this tab.
     pub(crate) fn opened_in(tab: Tab, link: &str, size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), Some("serial:/dev/nothing"), size);
         screen.act(Action::ShowTab(tab));
@@ -59,7 +59,7 @@ impl Screen {
         screen
     }
 
-    /// A window in which the virtual encoder is connected and read.
+    /// Creates a window in which the virtual encoder is connected and read.
     pub(crate) fn begun(size: [f32; 2]) -> Self {
         let mut screen = Self::opened(Outside::new(""), None, size);
         screen.until("the encoder is read", |studio| {
@@ -101,7 +101,7 @@ impl Screen {
         }
     }
 
-    /// Does something that has no widget here.
+    /// Runs an action that has no widget here.
     pub(crate) fn act(&mut self, action: Action) {
         self.studio().mailbox().send(action);
         self.steps();
@@ -125,7 +125,7 @@ impl Screen {
         text.words(self.language())
     }
 
-    /// The button of that name; where there are several, the one that was drawn last stands over the others.
+    /// Returns the button of that name; if there are several, the last drawn one is on top.
     #[track_caller]
     pub(crate) fn button(&self, id: &'static str) -> Node<'_> {
         self.buttons(id).last().unwrap_or_else(|| panic!("there is no button {:?}", self.say(id)))
@@ -140,7 +140,7 @@ impl Screen {
         self.buttons(id).next().is_some()
     }
 
-    /// Nothing that is shown is in the other language, is the name of a text, or has a place left open.
+    /// Checks that no shown text is in the other language, is the name of a text, or has a place left open.
     #[track_caller]
     pub(crate) fn check_language(&self) {
         let foreign = texts::foreign_to(self.language());
@@ -174,7 +174,7 @@ impl Screen {
         self.only_master();
     }
 
-    /// Answers the question about a drive on the line, where it is asked: there is none in these tests.
+    /// Answers the question about a drive on the line, if there is one: these tests have no drive.
     fn only_master(&mut self) {
         if asks_for_drive(self.studio()) {
             self.studio().mailbox().send(Action::Confirm);

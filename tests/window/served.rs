@@ -11,14 +11,14 @@ use encoder_studio::kinds::at_adapter;
 use encoder_studio::sim::ByteDevice;
 use encoder_studio::units::Moment;
 
-/// An adapter behind a TCP port, one connection after the other.
+/// An adapter on a TCP port, for one connection after the other.
 pub(crate) struct Served {
     port: u16,
-    /// What it was asked.
+    /// Received requests.
     heard: Arc<Mutex<Vec<Request>>>,
     /// The connection is to be closed.
     cut: Arc<Mutex<bool>>,
-    /// Another one comes in its place.
+    /// The adapter that replaces it.
     other: Arc<Mutex<Option<Adapter>>>,
 }
 
@@ -47,12 +47,12 @@ impl Served {
         format!("bridge:tcp:127.0.0.1:{}", self.port)
     }
 
-    /// The connection is closed.
+    /// Closes the connection.
     pub(crate) fn cut(&self) {
         *self.cut.lock().unwrap() = true;
     }
 
-    /// What is behind the connection is another one from now on; back when it is.
+    /// Exchanges the device of the connection.
     pub(crate) fn exchange(&self, query: &str) {
         *self.other.lock().unwrap() = Some(adapter(query));
         while self.other.lock().unwrap().is_some() {
@@ -87,7 +87,7 @@ fn serve(
         if let Some(other) = other.take() {
             *adapter = other;
             adapter.connect(now());
-            // The encoder behind it is another one; how the adapter reads it stays.
+            // Another encoder on the same adapter, which keeps its settings.
             let heard = heard.lock().unwrap();
             let set = |own: &&Request| matches!(own, Request::Supply { .. } | Request::BissConfig { .. });
             heard.iter().filter(set).for_each(|own| adapter.on_bytes(now(), &own.emit(0).emit()));

@@ -1,4 +1,4 @@
-//! The Signals tab without drawing: captures are read, corrected, refused and given up, and what is shown stays.
+//! The Signals tab without drawing: captures are read, corrected, refused and cancelled, and the shown one remains.
 
 use crate::tabs::Tabs as _;
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ impl Desk {
         self.act(Action::tool(action));
     }
 
-    /// Polls until nothing is read any more.
+    /// Polls until no file is being read.
     #[track_caller]
     pub(crate) fn until_measured(&mut self) {
         self.until("the capture is read", |studio| studio.signals().reading().is_none());
@@ -44,7 +44,7 @@ impl Desk {
     }
 }
 
-/// A circle of half a volt: a hundred samples a period, `periods` of them, 10 µs apart.
+/// Returns a circle of half a volt: a hundred samples per period, `periods` of them, 10 µs apart.
 pub(crate) fn circle(periods: usize) -> String {
     let mut text = "time [ms];SIN;COS\n".to_owned();
     for at in 0..=100 * periods {
@@ -266,7 +266,7 @@ impl Desk {
         self.signals(Signals::Source(action));
     }
 
-    /// Polls until what is shown is virtual and as good as asked for.
+    /// Polls until the virtual signal is shown and meets the condition.
     #[track_caller]
     fn until_live(
         &mut self,
@@ -287,7 +287,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
     desk.source(SourceAction::Start);
     assert_eq!(desk.studio.signals().periods(), Some(512));
     assert!(desk.studio.can_stop());
-    // 512 periods a revolution at one revolution a second, in 0.2 s at 100 kHz.
+    // 512 periods per revolution at one revolution per second, in 0.2 s at 100 kHz.
     desk.until_live("it is measured", |own| own.samples == 20_000 && (own.frequency_hz().unwrap() - 512.0).abs() < 0.1);
     assert!(is_good(desk.studio.signals().findings()), "{:?}", desk.studio.signals().findings());
     desk.source(SourceAction::Set(Quantity::OffsetSine, 0.05));
@@ -297,7 +297,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
     });
     desk.source(SourceAction::SetWindow(50));
     desk.until_live("less is measured", |own| own.samples == 5_000);
-    // What the receiver sees of a channel with an open wire is no signal.
+    // With an open wire the receiver gets no valid signal in that channel.
     desk.source(SourceAction::SetOpenWire(Some(Wire::Sin)));
     desk.until("the open wire is refused", |studio| {
         studio.signals().measurement().is_some_and(|own| own.analysis.is_err())
@@ -306,7 +306,7 @@ fn the_virtual_encoder_is_measured_again_and_again_as_it_is_set() {
     desk.until_live("it is as new", |own| own.ellipse.offset_sine_v.abs() < 1e-3);
 }
 
-/// Nothing is worse than good to know.
+/// Returns whether nothing is worse than good to know.
 fn is_good(findings: &[DiagnosisFinding]) -> bool {
     findings.iter().all(|own| own.severity == encoder_studio::analysis::diagnosis::Severity::Notice)
 }
@@ -329,7 +329,7 @@ fn what_is_held_stays_and_what_is_stopped_comes_no_more() {
     assert!(!desk.studio.signals().source().is_running() && !desk.studio.can_stop());
     let last = desk.studio.signals().measurement().unwrap().clone();
     let wakes = || desk.outside.wakes.load(std::sync::atomic::Ordering::SeqCst);
-    // A task that is under way may still come back.
+    // A running task may still return.
     let began = std::time::Instant::now();
     let is_quiet = || {
         let before = wakes();
@@ -370,7 +370,7 @@ fn a_window_that_nobody_draws_loses_samples_and_says_how_many() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     assert!(desk.studio.signals().source().lost() > 0);
-    // In a build for tests nobody keeps up with that.
+    // A build for tests is too slow for that.
     desk.source(SourceAction::Set(Quantity::Rate, 50_000.0));
     desk.until_live("it goes on", |own| own.samples == 10_000);
 }

@@ -1,5 +1,5 @@
-//! Sine and cosine through an adapter: the virtual one and one behind a network, what is shown of them, and what is said
-//! where there is none.
+//! Sine and cosine through an adapter: the virtual one and one on a network, the shown values, and the message if there is
+//! none.
 
 use crate::tabs::Tabs as _;
 use std::time::Instant;
@@ -20,7 +20,7 @@ fn begin(desk: &mut Desk, link: &str, sample_hz: u32) {
     desk.signals(Signals::Source(SourceAction::StartAdapter));
 }
 
-/// Samples in the scope, and how many of them do not join the one before; the first of all joins nothing.
+/// Returns the number of samples in the scope, and the number of gaps between them; the first of all counts as one.
 fn recorded(studio: &Studio) -> (u64, usize) {
     let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.lines()[0]).unwrap();
@@ -64,7 +64,7 @@ fn an_adapter_behind_a_network_streams_without_a_gap_and_is_told_to_stop() {
         desk.until("a second of it is there", |studio| recorded(studio).0 > 20_000);
         assert_eq!((recorded(&desk.studio).1, desk.studio.signals().source().lost()), (0, 0), "{round}");
         desk.signals(Signals::Source(SourceAction::Stop));
-        // The next start waits until this one has given the wire back.
+        // The next start waits until this one has released the connection.
     }
     desk.until("it was told to stop", |_| served.asked(&Request::AnalogStream { on: false }) == 3);
     assert_eq!(served.asked(&Request::AnalogStream { on: true }), 3);
@@ -134,7 +134,7 @@ fn the_adapter_that_was_asked_is_remembered_and_one_that_is_none_is_not() {
     assert!(!desk.studio.signals().source().is_running());
 }
 
-/// The virtual adapter with `supply=switched` gives its encoder nothing until it is told to; 0.3 W at 8 V are 37 mA.
+/// The virtual adapter with `supply=switched` supplies its encoder only on command; 0.3 W at 8 V are 37 mA.
 #[test]
 fn the_encoder_is_supplied_as_it_was_chosen_and_only_then() {
     let mut desk = Desk::fresh("");

@@ -1,4 +1,4 @@
-//! The calculators of the Signals tab as a person uses them: typed and read.
+//! The calculators of the Signals tab as used by a user: typed and read.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
 use crate::screen::Screen;
 use crate::support::{Desk, HANGING, Outside};
 
-/// So tall that a whole page is drawn.
+/// Tall enough to draw a complete page.
 const TALL: [f32; 2] = [1400.0, 1600.0];
 
 impl Screen {
@@ -20,7 +20,7 @@ impl Screen {
         screen
     }
 
-    /// Replaces what stands in an entry.
+    /// Replaces the text of an entry.
     fn retype(&mut self, id: &'static str, text: &str) {
         let label = self.say(id);
         self.harness.query_all_by_role_and_label(egui::Role::TextInput, &label).last().unwrap().focus();
@@ -32,7 +32,7 @@ impl Screen {
     }
 }
 
-/// Section 1: 512 periods at 12 000/min are 102.4 kHz; behind 10 kΩ and 47 pF they lag by 16.825°.
+/// Section 1: 512 periods at 12 000/min are 102.4 kHz; after 10 kΩ and 47 pF they lag by 16.825°.
 #[test]
 fn the_input_circuit_is_reckoned_while_it_is_typed() {
     let mut screen = Screen::calculator("page.input_circuit");
@@ -86,7 +86,7 @@ fn absolute_and_analogue_are_brought_together_while_they_are_typed() {
     assert!(screen.shows(&screen.say("help.synchronise")));
 }
 
-/// The virtual SKM36 at step 24: counts 409 and 511, as its own signals have them.
+/// The virtual SKM36 at step 24: counts 409 and 511, according to its own signals.
 #[test]
 fn both_positions_are_read_from_the_encoder_that_is_shown() {
     let mut screen = Screen::opened(Outside::new("position=3224"), None, TALL);

@@ -1,4 +1,4 @@
-//! The virtual encoder without drawing: held, stopped, set anew and started while something else is under way.
+//! The virtual encoder without drawing: held, stopped, changed and started during other work.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::analysis::history::Flags;
@@ -10,7 +10,7 @@ use encoder_studio::sim::sine_cosine::Quantity;
 use crate::signals::circle;
 use crate::support::Desk;
 
-/// Samples in the scope, and which of them do not join the one before.
+/// Returns the number of samples in the scope, and the positions of the gaps.
 fn recorded(studio: &Studio) -> (u64, Vec<u64>) {
     let recorder = studio.recorder(Of::Tool(crate::tabs::SIGNALS)).unwrap();
     let history = recorder.history(&recorder.lines()[0]).unwrap();
@@ -34,8 +34,8 @@ fn what_passed_while_it_was_held_is_a_gap_in_the_scope() {
     assert!(after.contains(&count) && !breaks.contains(&count), "{count}: {after:?}");
 }
 
-/// Issue 22.13: how many periods a turn has is asked, not assumed: until then there is no speed and no second of arc. The
-/// periods of the virtual encoder say nothing about a capture.
+/// Issue 22.13: the number of periods per turn is requested, not assumed: until then there is no speed and no second of
+/// arc. The periods of the virtual encoder do not apply to a capture.
 #[test]
 fn periods_are_not_assumed() {
     let mut desk = Desk::fresh("");
@@ -125,7 +125,7 @@ fn a_kept_capture_keeps_no_samples() {
     desk.signals(Signals::Example(encoder_studio::signals::state::Example::Healthy));
     desk.until_measured();
     desk.until("the samples are gone", |_| samples.strong_count() == 0);
-    // A circle of 100 samples a period.
+    // A circle of 100 samples per period.
     assert_eq!(desk.studio.signals().comparison().unwrap().analysis.as_ref().unwrap().samples, 150_001);
 }
 

@@ -74,7 +74,7 @@ fn the_tab_is_reached_by_key_and_by_click_and_filled_by_an_example() {
     screen.click("signals.example_errors");
     screen.until("it is read", |studio| studio.signals().measurement().is_some());
     assert!(screen.shows("outside 0.9 … 1.1 V"));
-    // 2 · 0.5 / 1.12 V and 40 mV of 0.5 V, as the example was made.
+    // 2 · 0.5 / 1.12 V and 40 mV of 0.5 V, the parameters of the example.
     assert!(screen.shows("0.8928 V") && screen.shows("8.00 %"));
     assert!(screen.harness.query_all_by_label(&screen.say("quality.outside")).count() >= 6);
     screen.key(Key::F1);
@@ -101,7 +101,7 @@ fn the_figure_tells_its_value_and_is_shown_corrected() {
     assert!(value(&screen).contains("0,415 … 0,558 V"), "{}", value(&screen));
 }
 
-/// Issue 22.14: that a capture could not be read stands on every page of the tab.
+/// Issue 22.14: the error of reading a capture is on every page of the tab.
 #[test]
 fn a_failed_capture_is_said_on_every_page() {
     let mut screen = Screen::opened(Outside::new(""), Some(HANGING), SIZES[0]);

@@ -1,4 +1,4 @@
-//! The SSI tab by actions: a layout on the drawing board, an encoder behind the virtual adapter, the search for a layout.
+//! The SSI tab by actions: a layout that is being designed, an encoder at the virtual adapter, the search for a layout.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -14,7 +14,7 @@ use encoder_studio::devices::ssi::state::{
 
 use crate::support::Desk;
 
-/// The tab of a desk on which nothing was connected.
+/// Returns the tab of a desk on which nothing was connected.
 fn layout() -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::SSI));
@@ -81,7 +81,7 @@ fn a_layout_needs_no_device() {
             Location::Shaft { turns: 0x123, steps: 0x2A5B, degrees: 10843.0 * 360.0 / 16384.0 }
         ))
     );
-    // Every step has a way back.
+    // Every step can be undone.
     assert!(encoder(&desk).is_dirty());
     wish(&mut desk, DeviceCommand::Undo);
     assert!(!encoder(&desk).is_dirty());
@@ -113,7 +113,7 @@ fn what_cannot_work_is_refused_and_changes_nothing() {
     act(&mut desk, Ssi::Try(Try::Bits("10102".to_owned())));
     assert_eq!(encoder(&desk).trial.problem().unwrap().id(), "ssi_trial.form");
     assert_eq!(*encoder(&desk).design(), before);
-    // In words of both languages, with both sides named.
+    // In both languages, with both sides named.
     edit(&mut desk, Edit::Family("ahs36".to_owned()));
     act(&mut desk, Ssi::Enter(Field::Clocks, Input::Number(14)));
     let words = encoder(&desk).designer.problem().unwrap().terminal();
@@ -188,7 +188,7 @@ fn every_export_is_written() {
         desk.until("it is written", |_| path.exists());
         assert_eq!(std::fs::read_to_string(path).unwrap(), encoder(&desk).designer.export(format).unwrap());
     }
-    // What has no place in a format is told.
+    // Parts that a format cannot represent are reported.
     edit(&mut desk, Edit::Free);
     assert_eq!(encoder(&desk).designer.export(Format::Timing).unwrap_err().id(), "ssi_timing.no_family");
 }
@@ -205,7 +205,7 @@ fn words_of_an_adapter_come_into_the_live_plot() {
     assert!(own.streamed().is_some() && own.is_following());
     let decoded = own.last().unwrap().decoded.as_ref().unwrap();
     assert!(decoded.is_valid && decoded.findings.is_empty());
-    // Another layout reads the same words anew.
+    // Another layout reads the same words again.
     let before = own.record.positions();
     act(&mut desk, Ssi::Enter(Field::Singleturn, Input::Number(12)));
     assert!(encoder(&desk).record.positions() >= before);
@@ -251,7 +251,7 @@ fn the_layout_is_found_live_and_taken() {
     let own = encoder(&desk);
     assert_eq!(own.designer.family().unwrap().key, "afm60");
     assert_eq!(own.design().profile.descriptor.code, Code::Gray);
-    // The frames can be kept, and looked into again.
+    // The frames can be saved, and analysed again.
     let path = desk.outside.path("frames.txt");
     act(&mut desk, Ssi::SaveFrames(path.clone()));
     desk.until("they are written", |_| path.exists());
@@ -274,7 +274,7 @@ fn a_layout_of_a_profile_is_taken_for_an_encoder() {
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ttk70");
     wish(&mut desk, DeviceCommand::Undo);
     assert_eq!(encoder(&desk).designer.family().unwrap().key, "ahm36");
-    // Nothing is written, and that is said.
+    // Nothing is written, with a message.
     wish(&mut desk, DeviceCommand::Review);
     assert!(!desk.studio.selected_device().unwrap().is_reviewing());
 }
@@ -287,7 +287,7 @@ fn each_new_layout_has_a_name_and_a_draft_of_its_own() {
     edit(&mut desk, Edit::Family("kh53".to_owned()));
     desk.settle();
     assert_eq!(desk.studio.devices().iter().map(|own| own.name()).collect::<Vec<_>>(), ["layout.ron", "layout-2.ron"]);
-    // Closed, the first name is free again; what was begun under it comes back with it.
+    // After closing, the first name is free again; the edits under that name return with it.
     for id in desk.studio.devices().iter().map(|own| own.id()).collect::<Vec<_>>() {
         desk.act(Action::CloseSession(id));
         desk.act(Action::Confirm);

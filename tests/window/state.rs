@@ -1,4 +1,4 @@
-//! The start: the virtual encoder is connected and read, polling is off, and nothing is sent while nobody asks.
+//! The start: the virtual encoder is connected and read, polling is off, and nothing is sent without a request.
 
 use encoder_studio::app::DeviceCommand;
 use std::time::Duration;
@@ -39,7 +39,7 @@ fn nothing_is_sent_while_nobody_asks() {
         desk.encoder().session.trace.lines().iter().filter(|line| line.direction == Direction::Sent).count(),
         sent
     );
-    // Longer than the worker waits between two looks at its wire.
+    // Longer than the interval between two checks of the connection.
     for _ in 0..60 {
         desk.studio.poll();
         std::thread::sleep(Duration::from_millis(10));
@@ -125,7 +125,7 @@ fn two_encoders_are_shown_one_at_a_time() {
     assert_eq!(desk.encoder().session.id, first);
     desk.act(Action::CloseSession(first));
     assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));
-    // The same wire again is the same session.
+    // The same connection again is the same session.
     desk.open(&format!("serial:{OTHER_PORT}?address=0x40"));
     desk.until_read();
     assert_eq!((desk.encoder().session.id, desk.studio.devices().len()), (second, 1));

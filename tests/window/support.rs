@@ -1,4 +1,4 @@
-//! A desk for the window's state: a studio in a world of the test's own, with two cables and a link that hangs for ever.
+//! Test support for the window's state: a studio in a separate environment, with two cables and a link that hangs forever.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::{DeviceCommand, DeviceModel as _};
@@ -31,12 +31,12 @@ use crate::novo::jobs::Novo;
 use crate::texts;
 use crate::wire::{TestLink, Wire};
 
-/// More than anything here takes; a hanging thread is what it is for.
+/// Time limit longer than any test, to detect a hanging thread.
 pub(crate) const LONG: Duration = Duration::from_secs(20);
 /// The margin of `sim:` links.
 pub(crate) const MARGIN: Duration = Duration::from_millis(20);
 
-/// The world of one test: a folder, and what stands at the ends of its links.
+/// The environment of one test: a folder, and the devices of its links.
 pub(crate) struct Outside {
     pub(crate) folder: tempfile::TempDir,
     wires: BTreeMap<String, Arc<Wire>>,
@@ -44,19 +44,19 @@ pub(crate) struct Outside {
     /// [`SLOW`] opens from now on.
     pub(crate) opens: Arc<AtomicBool>,
     pub(crate) patience: GracePeriods,
-    /// Who answers when all in the network are asked.
+    /// Answers to a search in the network.
     pub(crate) found: Vec<DiscoveredDevice>,
-    /// What kinds of devices there are.
+    /// The existing kinds of devices.
     pub(crate) program: Program,
 }
 
-/// The port at which the encoder stands that `begin` finds; `sim:` leads to it too.
+/// The port of the encoder that `begin` finds; `sim:` leads to it too.
 pub(crate) const PORT: &str = "/dev/enc0";
 /// A port with another encoder.
 pub(crate) const OTHER_PORT: &str = "/dev/enc1";
 /// A link that never opens.
 pub(crate) const HANGING: &str = "tcp:hanging:1";
-/// A link to the encoder at [`PORT`] that opens only when it is told to; with another address at once.
+/// A link to the encoder at [`PORT`] that opens only on command; with another address at once.
 pub(crate) const SLOW: &str = "tcp:slow:1";
 
 /// The port at which a BiSS encoder's configuration pin is.
@@ -73,8 +73,8 @@ pub(crate) const NOVO_PORT: &str = "/dev/novo0";
 pub(crate) const SERVERS: [(&str, &str); 3] = [("moxa:4001", PORT), ("moxa:4002", KIT), ("tcp:adapter:5000", ADAPTER)];
 
 impl Outside {
-    /// Encoders at [`PORT`] as `query` describes them, an SKS36 at [`OTHER_PORT`], kit encoders at [`KIT`] and behind
-    /// [`ADAPTER`].
+    /// Creates encoders at [`PORT`] as `query` describes them, an SKS36 at [`OTHER_PORT`], kit encoders at [`KIT`] and
+    /// behind [`ADAPTER`].
     pub(crate) fn new(query: &str) -> Self {
         let wires = [
             Wire::new(PORT, query),
@@ -184,33 +184,33 @@ impl Outside {
     }
 }
 
-/// A studio in its world.
+/// A studio in its environment.
 pub(crate) struct Desk {
     pub(crate) studio: Studio,
     pub(crate) outside: Outside,
 }
 
 impl Desk {
-    /// Samples of the position that are recorded without a value to believe.
+    /// Returns the samples of the position that are recorded without a value to believe.
     pub(crate) fn bad_positions(&self) -> u64 {
         let recorder = &self.encoder().record().recorder();
         let history = recorder.history(&recorder.lines()[0]).unwrap();
         history.statistics(0, history.all()).map_or(0, |statistics| statistics.bad)
     }
 
-    /// A studio that has not begun.
+    /// Creates a studio that has not begun.
     pub(crate) fn fresh(query: &str) -> Self {
         let outside = Outside::new(query);
         Desk { studio: outside.studio(), outside }
     }
 
-    /// The same, with the kind that the tests bring along.
+    /// Creates the same, with the kind that the tests bring along.
     pub(crate) fn with_novo() -> Self {
         let outside = Outside { program: crate::tabs::with_novo(), ..Outside::new("") };
         Desk { studio: outside.studio(), outside }
     }
 
-    /// Connected to [`PORT`], which is read, in a world where nobody waits for long.
+    /// Creates one that is connected to [`PORT`], which is read, in an environment with short time-outs.
     pub(crate) fn impatient(query: &str) -> Self {
         let mut outside = Outside::new(query);
         let milliseconds = Duration::from_millis;
@@ -226,7 +226,7 @@ impl Desk {
         desk
     }
 
-    /// Connected to the virtual encoder, which is read.
+    /// Creates one that is connected to the virtual encoder, which is read.
     pub(crate) fn begun(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.studio.begin(None, None);
@@ -234,7 +234,7 @@ impl Desk {
         desk
     }
 
-    /// Connected to [`PORT`], which is read.
+    /// Creates one that is connected to [`PORT`], which is read.
     pub(crate) fn at_port(query: &str) -> Self {
         let mut desk = Self::fresh(query);
         desk.open(&format!("serial:{PORT}"));
@@ -242,7 +242,7 @@ impl Desk {
         desk
     }
 
-    /// The studio is gone without being closed, and starts again in the same world.
+    /// Drops the studio without closing it, and starts it again in the same environment.
     pub(crate) fn crash(self) -> Self {
         let Desk { studio, outside } = self;
         drop(studio);
@@ -283,7 +283,7 @@ impl Desk {
         self.act(Action::Connect(action));
     }
 
-    /// Polls until it is so.
+    /// Polls until the condition holds.
     #[track_caller]
     pub(crate) fn until(&mut self, what: &str, condition: impl Fn(&Studio) -> bool) {
         let began = Instant::now();
@@ -315,7 +315,7 @@ impl Desk {
         self.until("ready", |studio| studio.hiperface().is_some_and(|own| own.session.is_ready()));
     }
 
-    /// Lets tasks on their threads come back: drafts, lists, settings.
+    /// Waits for the results of tasks on threads: drafts, lists, settings.
     pub(crate) fn settle(&mut self) {
         for _ in 0..30 {
             self.studio.poll();
@@ -332,7 +332,7 @@ impl Desk {
             let edits: Vec<(u8, usize, u8)> = studio.hiperface().unwrap().staged.edits().collect();
             let kinds = std::fs::read_dir(&folder).into_iter().flatten();
             let files = kinds.flat_map(|kind| std::fs::read_dir(kind.unwrap().path()).unwrap());
-            // Beside it stands the one that is to take its place.
+            // The file that is to replace it is next to it.
             let files =
                 files.map(|file| file.unwrap().path()).filter(|path| path.extension().is_some_and(|own| own == "ron"));
             let texts = files.filter_map(|path| std::fs::read_to_string(path).ok());
@@ -356,7 +356,7 @@ impl Desk {
         self.ask(Hiperface::Put { field, address, bytes: bytes.to_vec() });
     }
 
-    /// Edits, as field, address and byte.
+    /// Returns the edits, as field, address and byte.
     pub(crate) fn edits(&self) -> Vec<(u8, usize, u8)> {
         self.encoder().staged.edits().collect()
     }
@@ -390,7 +390,7 @@ impl Desk {
         self.act(Action::Review(session, ReviewAction::Toggle(permit)));
     }
 
-    /// Reviews and writes what is edited.
+    /// Reviews and writes the edits.
     #[track_caller]
     pub(crate) fn write(&mut self) {
         self.command(DeviceCommand::Review);
@@ -399,27 +399,27 @@ impl Desk {
         self.until_written();
     }
 
-    /// Names of the texts in all notices of at least this severity.
+    /// Returns the names of the texts in all notices of at least this severity.
     pub(crate) fn told(&self, least: Severity) -> Vec<&'static str> {
         let notices = self.studio.services.log.notices().filter(|notice| notice.severity >= least);
         notices.flat_map(|notice| notice.texts.iter().map(encoder_studio::app::Text::id)).collect()
     }
 
-    /// How often a text was told.
+    /// Returns the number of times that a text was reported.
     pub(crate) fn times_told(&self, id: &str) -> usize {
         self.told(Severity::Note).iter().filter(|own| **own == id).count()
     }
 }
 
-/// Answers the question about a drive on the line, where it is asked: there is none in these tests. What the question does
-/// is the subject of `connecting`.
+/// Answers the question about a drive on the line, if there is one: these tests have no drive. The effect of the question
+/// is tested in `connecting`.
 pub(crate) fn only_master(studio: &mut Studio) {
     if asks_for_drive(studio) {
         studio.act(Action::Confirm);
     }
 }
 
-/// It is asked whether a drive is on the line.
+/// Returns whether the program asks about a drive on the line.
 pub(crate) fn asks_for_drive(studio: &Studio) -> bool {
     studio.question.as_ref().is_some_and(|question| question.text.id() == "question.drive")
 }
@@ -428,7 +428,7 @@ pub(crate) fn is_review(studio: &Studio, wanted: impl Fn(&ReviewState) -> bool) 
     studio.hiperface().and_then(|encoder| encoder.session.review.as_ref()).is_some_and(|review| wanted(&review.state))
 }
 
-/// Everything that was told, for a test that fails.
+/// Returns all messages, for a test that fails.
 pub(crate) fn log(studio: &Studio) -> String {
     let words = |notice: &encoder_studio::app::Notice| {
         let words: Vec<String> = notice.texts.iter().map(encoder_studio::app::Text::terminal).collect();

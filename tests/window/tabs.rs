@@ -1,4 +1,4 @@
-//! The tabs of the program, and what each shows.
+//! The tabs of the program, and the content of each.
 
 use std::sync::OnceLock;
 
@@ -20,16 +20,16 @@ pub(crate) const SSI: Tab = Tab::named("Ssi");
 pub(crate) const INTERBUS: Tab = Tab::named("Interbus");
 pub(crate) const HIPERDRIVE: Tab = Tab::named("Hiperdrive");
 pub(crate) const SIGNALS: Tab = Tab::named("Signals");
-/// That of the kind that the tests bring along.
+/// The tab of the kind defined in the tests.
 pub(crate) const NOVEL: Tab = Tab::named("Novo");
 
-/// The program with a kind from outside behind its own.
+/// Returns the program with a kind from outside after its own.
 pub(crate) fn with_novo() -> Program {
     static PROGRAM: OnceLock<Program> = OnceLock::new();
     *PROGRAM.get_or_init(|| Program::new(&[KINDS, &[NOVO]].concat(), &[signals::TAB], &[], &[]))
 }
 
-/// What the tabs of a studio show.
+/// The content of the tabs of a studio.
 pub(crate) trait Tabs {
     fn hiperface(&self) -> Option<&hiperface::state::Encoder>;
     fn biss(&self) -> Option<&biss::state::Encoder>;
@@ -65,7 +65,7 @@ impl Tabs for Studio {
     }
 }
 
-/// Looks for encoders on the line of the form.
+/// Searches encoders on the line of the form.
 pub(crate) fn search_for(options: FindOptions) -> ConnectAction {
     ConnectAction::find::<SearchFinder>(SearchAction::Search(options))
 }
@@ -75,22 +75,22 @@ pub(crate) fn choose(at: usize) -> ConnectAction {
     ConnectAction::find::<SearchFinder>(SearchAction::Choose(at))
 }
 
-/// Asks who is there in the network.
+/// Searches devices in the network.
 pub(crate) fn discover() -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Discover)
 }
 
-/// Fills in a device that has answered.
+/// Selects a device that has answered.
 pub(crate) fn choose_answer(at: usize) -> ConnectAction {
     ConnectAction::find::<DiscoveryFinder>(DiscoveryAction::Choose(at))
 }
 
-/// The search of a dialog.
+/// Returns the search of a dialog.
 pub(crate) fn search(dialog: &Connect) -> Option<&Search> {
     dialog.finder::<SearchFinder>()?.search.as_ref()
 }
 
-/// The question to the network of a dialog.
+/// Returns the question to the network of a dialog.
 pub(crate) fn discovery(dialog: &Connect) -> Option<&Discovery> {
     dialog.finder::<DiscoveryFinder>()?.discovery.as_ref()
 }

@@ -1,5 +1,5 @@
-//! Every text that comes up in these tests is complete in both languages: it is in the table, each place of it is filled
-//! in, and no name of the table stands twice.
+//! Every text in these tests is complete in both languages: it is in the table, each place of it is filled in, and no name
+//! of the table occurs twice.
 
 use crate::tabs::Tabs as _;
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ static TABLE: LazyLock<BTreeMap<String, Row>> = LazyLock::new(|| {
     rows.into_iter().flatten().collect()
 });
 
-/// The text of that name, whosever it is.
+/// Returns the text of that name, from any catalogue.
 #[track_caller]
 pub(crate) fn text(id: &'static str) -> Text {
     let own = CATALOGUES.into_iter().find(|own| own.ids().any(|known| known == id));
@@ -53,7 +53,7 @@ fn places(template: &str) -> impl Iterator<Item = &str> {
     template.split('{').skip(1).filter_map(|part| part.split_once('}')).map(|(name, _)| name)
 }
 
-/// The text is in the table, has an argument for each of its places, and says something in both languages.
+/// Checks that the text is in the table, has an argument for each of its places, and is not empty in both languages.
 #[track_caller]
 pub(crate) fn check(text: &Text) {
     let row = TABLE.get(text.id()).unwrap_or_else(|| panic!("{} is not in the table", text.id()));
@@ -73,7 +73,7 @@ fn check_notice(notice: &Notice) {
     notice.texts.iter().for_each(check);
 }
 
-/// Every text that the window could show now.
+/// Checks every text that the window could show now.
 #[track_caller]
 pub(crate) fn check_all(studio: &Studio) {
     studio.services.log.notices().for_each(check_notice);
@@ -127,7 +127,7 @@ fn check_encoder(encoder: &Encoder) {
     sheet.needs.iter().chain(&sheet.warnings).chain(&sheet.cost).for_each(check);
 }
 
-/// The words are the name of a text: what is shown where the table has no such row.
+/// Returns whether the words are the name of a text, which is shown if the table has no such row.
 pub(crate) fn is_name(words: &str) -> bool {
     let part = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_lowercase() || c == '_');
     words.split_once('.').is_some_and(|(area, name)| {
@@ -135,7 +135,7 @@ pub(crate) fn is_name(words: &str) -> bool {
     })
 }
 
-/// What only the other language says: texts without places that no row has in this one.
+/// Returns texts of the other language only: texts without places that no row has in this one.
 pub(crate) fn foreign_to(language: Language) -> BTreeSet<&'static str> {
     let own = |row: &'static Row| if language == Language::English { &row.en } else { &row.de };
     let other = |row: &'static Row| if language == Language::English { &row.de } else { &row.en };

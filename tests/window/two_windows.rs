@@ -1,5 +1,5 @@
-//! Two windows on one settings file: in this process and in processes of their own. What one of them has changed survives
-//! what the other writes, and limits that are unconfirmed in one lock the other.
+//! Two windows on one settings file: in this process and in separate processes. The changes of one survive the writes of
+//! the other, and unconfirmed limits in one lock the other.
 
 use crate::hiperdrive::command;
 use crate::tabs::Tabs as _;
@@ -22,19 +22,19 @@ use crate::support::{Desk, LONG, Outside};
 
 const HUB: &str = "sim:?hub=4&drives=1,1&requested=1";
 
-/// Two windows over one folder.
+/// Returns two windows over one folder.
 fn two() -> (Desk, Desk) {
     let first = Desk::fresh("");
     let second = Desk { studio: first.outside.studio(), outside: Outside::new("") };
     (first, second)
 }
 
-/// What another window finds that is opened now.
+/// Returns the settings that a newly opened window finds.
 fn found(desk: &Desk) -> Settings {
     desk.outside.studio().settings
 }
 
-/// Looks at both windows until it is so.
+/// Polls both windows until a condition holds.
 #[track_caller]
 fn together(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk, &Desk) -> bool) {
     let [first, second] = windows;
@@ -47,7 +47,7 @@ fn together(windows: [&mut Desk; 2], what: &str, condition: impl Fn(&Desk, &Desk
     }
 }
 
-/// The file says so.
+/// Returns whether the file contains these words.
 fn says(desk: &Desk, words: &[&str]) -> bool {
     let text = fs::read_to_string(desk.outside.store().settings_path()).unwrap_or_default();
     words.iter().all(|word| text.contains(word))
@@ -67,7 +67,7 @@ fn take(desk: &mut Desk) {
     });
 }
 
-/// What another master writes into the drive, and a survey of it.
+/// Changes the scale of the drive as another master, and surveys it.
 fn scale(desk: &mut Desk, numerator: i64) {
     let target = unit(desk).target.clone().unwrap();
     target.with(|station| station.write(Moment::default(), number(154), &Value::Number(numerator)).unwrap());
@@ -101,12 +101,12 @@ fn what_each_window_has_changed_survives_the_others_write() {
     let mut links = kept.links(crate::tabs::HIPERFACE).to_vec();
     links.sort();
     assert_eq!(links, ["tcp:first:1", "tcp:second:1"]);
-    // Nothing changes under the hands of a person.
+    // Nothing changes while the user works.
     assert_eq!((first.studio.settings.language, second.studio.settings.theme), (Language::English, ColorScheme::Dark));
 }
 
-/// Issue 21.11: limits that one window has marked are locked in another one that has the drives in hand, without its
-/// having written or read anything, and in one that is opened later, whatever the other writes.
+/// Issue 21.11: limits that one window has marked are locked in another one that controls the drives, without any write or
+/// read by it, and in one that is opened later, whatever the other writes.
 #[test]
 fn limits_that_another_window_marks_are_locked_here() {
     let (mut first, mut second) = two();
@@ -130,8 +130,8 @@ fn limits_that_another_window_marks_are_locked_here() {
     assert!(is_locked(&later));
 }
 
-/// Issue 21.11: a person confirms for the window that they look at. Another one keeps its lock, and marks it anew where the
-/// scale changes again.
+/// Issue 21.11: a confirmation applies to the window in which it was given. Another one keeps its lock, and marks the
+/// limits again if the scale changes again.
 #[test]
 fn limits_are_confirmed_in_each_window() {
     let (mut first, mut second) = two();
@@ -144,7 +144,7 @@ fn limits_are_confirmed_in_each_window() {
     assert!(!is_locked(&second));
     together([&mut first, &mut second], "that is kept", |first, _| says(first, &["unconfirmed: []"]));
     assert!(is_locked(&first) && !is_locked(&second));
-    // Whatever is written on either side.
+    // After any write on either side.
     first.act(Action::SetTheme(ColorScheme::Light));
     second.act(Action::SetLanguage(Language::German));
     together([&mut first, &mut second], "that is kept", |first, _| says(first, &["Light", "German"]));
@@ -156,7 +156,7 @@ fn limits_are_confirmed_in_each_window() {
     assert!(says(&first, &["unconfirmed: [", "1,"]));
 }
 
-/// Issue 21.11: what is typed for a drive in one window stays in it, and is kept beside what another one has typed.
+/// Issue 21.11: text typed for a drive in one window remains in it, and is saved together with that of another one.
 #[test]
 fn what_is_typed_for_a_drive_stays_in_its_window() {
     let (mut first, mut second) = two();
@@ -180,7 +180,7 @@ fn what_is_typed_for_a_drive_stays_in_its_window() {
 const FOLDER: &str = "ENCODER_STUDIO_TEST_FOLDER";
 const NAME: &str = "ENCODER_STUDIO_TEST_NAME";
 
-/// A window in a process of its own, over this folder.
+/// Starts a window in a separate process, with this folder.
 fn process(desk: &Desk, test: &str, name: &str) -> Child {
     let mut own = Command::new(env::current_exe().unwrap());
     own.args(["--ignored", "--exact", &format!("two_windows::{test}")]);
@@ -234,7 +234,7 @@ fn a_process_that_writes_for_ever() {
     }
 }
 
-/// Issue 21.11: a writer that is killed at whatever moment.
+/// Issue 21.11: a writer that is killed at any moment.
 #[test]
 fn a_process_that_is_killed_leaves_a_whole_file_and_no_lock() {
     let mut desk = Desk::fresh("");
@@ -261,7 +261,7 @@ fn a_process_that_is_killed_leaves_a_whole_file_and_no_lock() {
     }
 }
 
-/// Issue 21.11: a folder that cannot be written costs what is remembered, and no motion.
+/// Issue 21.11: with a folder that cannot be written, only the settings are lost, and motion remains possible.
 #[cfg(unix)]
 #[test]
 fn settings_that_cannot_be_kept_keep_no_drive_from_moving() {

@@ -1,4 +1,4 @@
-//! Lamps, network and the set-up of an axis as a person uses them: clicked, typed, and said in both languages.
+//! Indicators, network and the set-up of an axis as used by a user: clicked, typed, and checked in both languages.
 
 use crate::tabs::Tabs as _;
 use egui::Key;
@@ -17,7 +17,7 @@ use encoder_studio::units::Moment;
 
 use crate::screen::Screen;
 
-/// So tall that all of a page is drawn.
+/// Tall enough to draw a complete page.
 const TALL: [f32; 2] = [1280.0, 2400.0];
 
 fn page(link: &str, page: &'static str) -> Screen {
@@ -34,7 +34,7 @@ impl Screen {
         self.harness.get_by_role_and_label(Role::TextInput, label)
     }
 
-    /// Replaces what stands in an entry.
+    /// Replaces the text of an entry.
     fn put(&mut self, label: &str, text: &str) {
         self.entry(label).focus();
         self.steps();
@@ -86,7 +86,7 @@ fn an_address_is_typed_looked_at_and_written() {
         studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
             && studio.hiperdrive().unwrap().session.is_ready()
     });
-    // The dialog says it too, above the form that does.
+    // The dialog shows it too, above the form.
     let sheet = screen.studio().selected_device().unwrap().sheet().unwrap();
     let warned =
         |text: &Text| text.terminal().contains("At the next power-up") && text.terminal().contains("192.168.5.20");
@@ -122,7 +122,8 @@ fn the_set_up_of_an_axis_says_what_is_missing_and_speaks_the_language() {
     assert!(screen.shows("Nothing was written."));
 }
 
-/// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps a turn; 511 turns either way are 2044 mm, 204400 steps.
+/// Reference 5: a spindle of 4 mm in steps of 0.01 mm has 400 steps per turn; 511 turns either way are 2044 mm, 204400
+/// steps.
 #[test]
 fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     let mut screen = page("sim:", "page.parameters");
@@ -146,14 +147,14 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     assert_eq!(wanted.scale(own.drive()).unwrap().steps_per_turn(), 400.0);
     assert_eq!(wanted.limits(own.drive()), Some((-204_400, 204_400)));
     let id = own.session.id;
-    // The review says it in millimetres, each under its own scale, old and new on one line.
+    // The review shows it in millimetres, each with its own scale, old and new on one line.
     screen.act(Action::Command(id, DeviceCommand::Review));
     screen.until("there is a plan", |studio| {
         studio.selected_device().unwrap().sheet().is_some_and(|sheet| matches!(sheet.stage, Stage::Ready(_)))
     });
     assert!(screen.shows("256  →  400") && screen.shows("-33488896 · -2044.0000 mm  →  -204400 · -2044.00 mm"));
     screen.act(Action::Review(id, ReviewAction::Close));
-    // As numbers they lie 164 times further.
+    // As numbers they are 164 times further.
     screen.act(Action::Command(id, DeviceCommand::Undo));
     screen.press(Role::RadioButton, "Limits: keep their numbers");
     screen.click("hd_scale.set");
@@ -166,7 +167,7 @@ fn a_pitch_and_a_resolution_become_the_scale_with_limits_that_stay_in_place() {
     }
 }
 
-/// A number is typed where it stands. What cannot be stays there with its reason, and with its parameter when other lines
+/// A number is typed in the table. An invalid one remains there with its reason, and with its parameter when other lines
 /// are shown.
 #[test]
 fn parameters_are_typed_into_their_table() {
@@ -185,7 +186,7 @@ fn parameters_are_typed_into_their_table() {
     screen.put("166 Maximum speed", "9999");
     screen.key(Key::Enter);
     assert!(screen.shows("Allowed: 5 to 350"));
-    // Other lines: what is wrong goes along with its own.
+    // Other lines: the invalid text moves with its own line.
     screen.press(Role::RadioButton, "Show: All");
     assert!(row(&screen, "105 Status word").is_some());
     screen.put("166 Maximum speed", "300");
@@ -196,10 +197,10 @@ fn parameters_are_typed_into_their_table() {
     };
     assert_eq!(edits(&screen), [(166, Some(350), Some(300))]);
     assert!(!screen.shows("Allowed: 5 to 350"));
-    // What is only read cannot be typed over, and says so.
+    // A read-only value cannot be typed over, with a message.
     begin(&mut screen, "105 Status word");
     assert!(screen.shows("105 (Status word) can only be read"));
-    // What is being typed counts before other lines are shown, and before there are none.
+    // The typed text counts before other lines are shown, and before there are none.
     begin(&mut screen, "172 Jog 1, speed");
     screen.put("172 Jog 1, speed", "50");
     screen.press(Role::RadioButton, "Show: Changed");
@@ -221,7 +222,7 @@ fn parameters_are_typed_into_their_table() {
     assert!(screen.harness.query_by_role_and_label(Role::TextInput, "158 Lower limit").is_none());
 }
 
-/// A second click that was meant for the step before does not go through the next one.
+/// A second click that was meant for the previous step does not leave the next one.
 #[test]
 fn a_step_is_seen_before_it_can_be_left() {
     let mut screen = page("sim:", "page.axis");
@@ -237,7 +238,7 @@ fn a_step_is_seen_before_it_can_be_left() {
     assert!(screen.is_enabled("hd_axis.back"));
 }
 
-/// What lies under a dialog waits, but not STOP.
+/// The controls under a dialog are blocked, except for STOP.
 #[test]
 fn stop_is_reached_over_a_dialog() {
     let mut screen = page("sim:", "page.motion");
@@ -257,7 +258,7 @@ fn stop_is_reached_over_a_dialog() {
     assert!(own.actual(own.drive()).unwrap().position < 30_000_000 && screen.studio().connect.is_some());
 }
 
-/// Issue 21.6 (i): whatever the drive says, nothing that can be clicked moves, and the step stays until a person leaves it.
+/// Issue 21.6 (i): whatever the drive reports, no clickable control moves, and the step remains until the user leaves it.
 #[test]
 fn nothing_in_a_step_moves_away_under_the_pointer() {
     let mut screen = page("sim:", "page.axis");
@@ -270,7 +271,7 @@ fn nothing_in_a_step_moves_away_under_the_pointer() {
     screen.steps();
     assert!(!screen.is_enabled("hd_axis.recall"), "nothing is known to differ");
     advance(&mut screen, AxisStep::Scale);
-    // 655.36 mm in steps of 0.01 mm are the factory's 65536 steps a turn: there is nothing to write.
+    // 655.36 mm in steps of 0.01 mm are the factory's 65536 steps per turn: there is nothing to write.
     screen.put("Pitch (mm per turn)", "655.36");
     assert!(!screen.is_enabled("hd_axis.write"));
     advance(&mut screen, AxisStep::Confirm);

@@ -1,4 +1,4 @@
-//! Keys, dropped files and the close button of the system; and a window that has nothing to show asks for no picture.
+//! Keys, dropped files and the close button of the system; and a window without changes requests no frame.
 
 use crate::tabs::Tabs as _;
 use std::time::Duration;
@@ -13,7 +13,7 @@ use crate::support::PORT;
 
 const SIZE: [f32; 2] = [1280.0, 800.0];
 
-/// When the window wants to be drawn again by itself.
+/// Returns when the window requests to be drawn again.
 fn next_picture(screen: &Screen) -> Duration {
     screen.harness.output().viewport_output[&ViewportId::ROOT].repaint_delay
 }
@@ -51,7 +51,7 @@ fn f5_reads_again() {
     screen.key(Key::F5);
     screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
     assert_eq!(screen.outside.wire(PORT).count(0x56), before + 1);
-    // What stands over the window has the keyboard.
+    // The open dialog has the keyboard focus.
     screen.click("shell.connect");
     screen.key(Key::F5);
     screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::Enter);

@@ -1,4 +1,4 @@
-//! The cam page as a person uses it: by pointer, by key, typed and pasted; chart and table say the same.
+//! The cam page as used by a user: by pointer, by key, typed and pasted; chart and table agree.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -11,7 +11,7 @@ use encoder_studio::devices::interbus::state::{Edit, InterbusAction as Interbus}
 
 use crate::screen::Screen;
 
-/// So tall that chart and table are drawn.
+/// Tall enough to draw chart and table.
 const TALL: [f32; 2] = [1280.0, 1600.0];
 
 fn program() -> ProgramNumber {
@@ -22,7 +22,7 @@ fn cam(number: u8) -> CamNumber {
     CamNumber::new(number).unwrap()
 }
 
-/// The cam page of an encoder with 3600 steps a turn and cams of 450 steps in program 1.
+/// Returns the cam page of an encoder with 3600 steps per turn and cams of 450 steps in program 1.
 fn page() -> Screen {
     let mut screen = Screen::opened_in(crate::tabs::INTERBUS, "sim:?steps=3600&revolutions=1&cams=demo", TALL);
     screen.until("it is read", |studio| {
@@ -53,7 +53,7 @@ impl Screen {
         self.harness.get_by_role_and_label(role, label)
     }
 
-    /// What chart and table say of an edge.
+    /// Returns the texts of chart and table for an edge.
     fn said(&self, label: &str) -> (String, String) {
         let value = |role| self.of_role(role, label).accesskit_node().value().unwrap_or_default();
         (value(Role::Slider), value(Role::TextInput))
@@ -139,7 +139,7 @@ fn what_clashes_and_what_lies_beyond_the_range_is_marked_in_its_lane() {
     assert!(screen.shows(&format!("Program 1: cams 1 and 2 are pulses of one track and overlap at {start}.")));
     screen.edit_cams(Edit::Steps(3200));
     assert!(screen.shows("Program 1: cam 7 is outside the measuring range, which ends at 3199."));
-    // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays in sight.
+    // Issue 22.28: the cams of a program that are beyond it in one line, so that the chart stays visible.
     screen.edit_cams(Edit::Steps(3000));
     assert!(screen.shows("Program 1: cams 6, 7 are outside the measuring range, which ends at 2999."));
     assert!(!screen.shows("Program 1: cam 7"));

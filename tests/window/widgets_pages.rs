@@ -1,4 +1,4 @@
-//! Every page, at both sizes, in both themes and languages: it is drawn, and what leads on is in reach.
+//! Every page, at both sizes, in both themes and languages: it is drawn, and its next steps can be reached.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Rect, Role, Vec2};
@@ -64,8 +64,8 @@ fn every_page_is_drawn_with_a_virtual_biss_encoder() {
     }
 }
 
-/// Issue 22.15: what was entered in mode 04 and never saved is told above the registers and above the data, with the way back
-/// to operation.
+/// Issue 22.15: values written in mode 04 and never saved are reported above the registers and above the data, with the
+/// return to operation.
 #[test]
 fn registers_that_were_never_saved_are_told_with_the_way_back() {
     let outside = Outside::new("");
@@ -78,7 +78,7 @@ fn registers_that_were_never_saved_are_told_with_the_way_back() {
     screen.until("the encoder is read", is_read);
     for page in ["page.registers", "page.data"] {
         screen.click(page);
-        // The page may read what it shows.
+        // The page may read the data that it shows.
         screen.until("nothing runs", is_read);
         assert!(screen.shows("The encoder is in device mode 0x04"), "{page}");
         assert!(screen.is_enabled("lead_back_card.button"), "{page}");
@@ -91,7 +91,7 @@ fn registers_that_were_never_saved_are_told_with_the_way_back() {
     assert!(!screen.shows("Gerätemodus 0x04") && !screen.has_button("lead_back_card.button"));
 }
 
-/// An encoder that refuses its position says so in the panel Live, which stays within a small window.
+/// An encoder that refuses its position causes a message in the panel Live, which remains within a small window.
 #[test]
 fn a_position_that_is_refused_leaves_the_panel_within_the_window() {
     let mut screen = Screen::opened(Outside::new("temperature=140&rpm=9000"), None, SMALL);
@@ -142,7 +142,7 @@ fn every_page_of_an_ssi_layout_is_drawn() {
     let mut screen = Screen::opened(Outside::new(""), Some("serial:/dev/nothing"), SMALL);
     screen.act(Action::ShowTab(crate::tabs::SSI));
     look_at_everything(&mut screen, SMALL);
-    // Any frame, with all that one can have.
+    // Any frame, with all optional parts.
     let id = screen.studio().ssi().unwrap().session.id;
     screen.act(Action::device(id, Ssi::Edit(Box::new(Edit::Free))));
     for action in [
@@ -315,7 +315,7 @@ fn the_language_and_the_theme_are_a_click_away() {
     assert_eq!(screen.studio().settings.theme, ColorScheme::Dark);
 }
 
-/// Where the system has no dialogs, a path is typed.
+/// If the system has no dialogs, a path is typed.
 #[test]
 fn a_path_is_typed_where_there_is_no_dialog() {
     let mut screen = Screen::begun(SMALL);

@@ -1,4 +1,4 @@
-//! The pages of the SSI tab, used as a person uses them: by keys and by what is typed.
+//! The pages of the SSI tab as used by a user: by keys and typed text.
 
 use crate::tabs::Tabs as _;
 use egui::accesskit::Role;
@@ -50,7 +50,7 @@ fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
         screen.until("the shaft has turned", move |studio| {
             studio.ssi().unwrap().last().unwrap().decoded.as_ref().unwrap().frame != before
         });
-        // Left as it was.
+        // Left unchanged.
         let node = screen.harness.get_by_role_and_label(Role::TextInput, &label);
         assert!(node.accesskit_node().is_focused());
         screen.key(Key::Tab);

@@ -1,4 +1,4 @@
-//! The way of a byte through the real widgets: edited, reviewed, written, read back; STOP and the questions beside it.
+//! The write of a byte with the real widgets: edited, reviewed, written, read back; STOP and the questions.
 
 use crate::tabs::Tabs as _;
 use egui::{Key, Modifiers};
@@ -56,7 +56,7 @@ fn a_byte_is_typed_reviewed_written_and_read_back() {
     screen.click("review.close");
     assert!(screen.encoder().session.review.is_none() && !screen.encoder().staged.is_dirty());
     let editor = screen.words(&crate::texts::text("memory.bytes").with("number", 0));
-    // The cursor stands behind the byte that was typed.
+    // The cursor is after the typed byte.
     assert!(screen.harness.get_by_label(&editor).value().unwrap().starts_with("0x01: 4D"));
 }
 
@@ -80,7 +80,7 @@ fn the_review_is_closed_with_escape_and_writes_nothing() {
     assert!(!screen.encoder().staged.is_dirty());
 }
 
-/// Issue 22.4: a write that needs its permit cannot be pressed without it.
+/// Issue 22.4: a write that needs a permission cannot be started without it.
 #[test]
 fn without_a_logbook_write_waits_for_its_permit() {
     let mut screen = Screen::begun(SIZE);

@@ -1,4 +1,4 @@
-//! A cable with virtual encoders, or an adapter, at its end: they stay when it is pulled, and it can be held at a request.
+//! A cable to virtual encoders, or an adapter: they remain when it is pulled, and it can be held at a request.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 
@@ -19,7 +19,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use crate::novo::sim::Virtual;
 use crate::support::LONG;
 
-/// A cable with virtual encoders at its end.
+/// A cable to virtual encoders.
 pub(crate) struct Wire {
     target: String,
     end: End,
@@ -28,7 +28,7 @@ pub(crate) struct Wire {
     changed: Condvar,
 }
 
-/// What stands at the end of a cable.
+/// The devices of a cable.
 enum End {
     /// HIPERFACE encoders.
     Hiperface(Arc<Mutex<Bus>>),
@@ -56,16 +56,16 @@ impl End {
         }
     }
 
-    /// The command of a request; that of a packet to an adapter is not looked for.
+    /// Returns the command of a request; that of a packet to an adapter is not searched for.
     fn command(&self, frame: &[u8]) -> Option<u8> {
         match self {
             End::Hiperface(_) => frame.get(1).copied(),
             End::Pin(_) => frame.get(2).copied(),
             End::Adapter(_) => None,
             End::Novo(_) => frame.first().copied(),
-            // Behind the header of the frame and those of its items the service.
+            // The service, after the header of the frame and those of its items.
             End::Target(_) => frame.get(40).copied(),
-            // Behind number, protocol, length and unit the function; of one that writes the first byte of its OUT word.
+            // The function, after number, protocol, length and unit; for one that writes, the first byte of its OUT word.
             End::Gateway(_) => frame.get(if frame.get(7) == Some(&16) { 13 } else { 7 }).copied(),
         }
     }
@@ -74,42 +74,42 @@ impl End {
 #[derive(Default)]
 struct State {
     unplugged: bool,
-    /// Whoever sends dies.
+    /// Whether sending panics.
     deadly: bool,
     /// Every frame that was handed to the line.
     sent: Vec<Vec<u8>>,
-    /// Hold before the request of this command that has so many before it.
+    /// The request at which it holds: a command, and the number of such requests before it.
     hold: Option<(u8, usize)>,
     held: bool,
 }
 
 impl Wire {
-    /// To HIPERFACE encoders as `sim:?…` describes them.
+    /// Creates a cable to HIPERFACE encoders as `sim:?…` describes them.
     pub(crate) fn new(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Hiperface(Arc::new(Mutex::new(bus(query)))))
     }
 
-    /// To the configuration pin of a BiSS encoder.
+    /// Creates a cable to the configuration pin of a BiSS encoder.
     pub(crate) fn to_pin(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Pin(Arc::new(Mutex::new(port(query)))))
     }
 
-    /// To a gateway before an INTERBUS encoder.
+    /// Creates a cable to a gateway with an INTERBUS encoder.
     pub(crate) fn to_gateway(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Gateway(Arc::new(Mutex::new(gateway(query)))))
     }
 
-    /// To an adapter with its drive.
+    /// Creates a cable to an adapter with its drive.
     pub(crate) fn to_target(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Target(Arc::new(Mutex::new(drive(query)))))
     }
 
-    /// To an encoder of the kind from outside.
+    /// Creates a cable to an encoder of the kind from outside.
     pub(crate) fn to_novo(target: &str, query: &str) -> Arc<Self> {
         Self::to(target, End::Novo(Arc::new(Mutex::new(novo(query)))))
     }
 
-    /// To an adapter on the bus of a BiSS encoder.
+    /// Creates a cable to an adapter on the bus of a BiSS encoder.
     pub(crate) fn to_adapter(target: &str, query: &str) -> Arc<Self> {
         let adapter = Adapter::from_pairs(&pairs(query), at_adapter()).unwrap();
         Self::to(target, End::Adapter(Arc::new(Mutex::new(adapter))))
@@ -137,13 +137,13 @@ impl Wire {
         self.clock.clone()
     }
 
-    /// The HIPERFACE encoders.
+    /// Returns the HIPERFACE encoders.
     fn bus(&self) -> MutexGuard<'_, Bus> {
         let End::Hiperface(bus) = &self.end else { panic!("{} leads to no HIPERFACE encoder", self.target) };
         bus.lock().unwrap()
     }
 
-    /// Writes registers of a BiSS encoder behind the window's back.
+    /// Writes registers of a BiSS encoder without the window.
     pub(crate) fn enter(&self, entries: &[(&str, u8)]) {
         let End::Pin(port) = &self.end else { panic!("{} leads to no configuration pin", self.target) };
         let (now, mut port) = (self.clock.now(), port.lock().unwrap());
@@ -152,7 +152,7 @@ impl Wire {
         }
     }
 
-    /// Other encoders from now on.
+    /// Replaces the encoders.
     pub(crate) fn exchange(&self, query: &str) {
         match &self.end {
             End::Hiperface(own) => *own.lock().unwrap() = bus(query),
@@ -172,7 +172,7 @@ impl Wire {
         self.state().unplugged = false;
     }
 
-    /// The thread that sends next dies without a word.
+    /// Lets the next thread that sends panic.
     pub(crate) fn kill(&self) {
         self.state().deadly = true;
     }
@@ -199,27 +199,27 @@ impl Wire {
         self.changed.notify_all();
     }
 
-    /// How many frames were handed to the line.
+    /// Returns the number of frames passed to the line.
     pub(crate) fn sent(&self) -> usize {
         self.state().sent.len()
     }
 
-    /// How often a command was sent.
+    /// Returns the number of times that a command was sent.
     pub(crate) fn count(&self, command: u8) -> usize {
         self.state().sent.iter().filter(|frame| self.end.command(frame) == Some(command)).count()
     }
 
-    /// How often an OUT word was written to the gateway.
+    /// Returns the number of times that an OUT word was written to the gateway.
     pub(crate) fn outs(&self) -> usize {
         self.state().sent.iter().filter(|frame| frame.get(7) == Some(&16)).count()
     }
 
-    /// The bytes of a data field, looked at in the encoder.
+    /// Returns the bytes of a data field, read directly in the encoder.
     pub(crate) fn field(&self, number: u8) -> Vec<u8> {
         self.bus().encoders()[0].memory().field_bytes(number).unwrap().to_vec()
     }
 
-    /// How often the encoder's EEPROM was written.
+    /// Returns the number of writes of the encoder's EEPROM.
     pub(crate) fn wear(&self) -> u64 {
         self.bus().encoders()[0].wear().total().into()
     }
@@ -259,7 +259,7 @@ pub(crate) struct TestLink {
 }
 
 impl TestLink {
-    /// Plugs in; a cable that is not there cannot be.
+    /// Connects to the cable; a pulled cable cannot be connected to.
     pub(crate) fn plug_into(wire: &Arc<Wire>) -> Result<Self, LinkError> {
         let missing = |_| LinkError::new(&wire.target, LinkErrorKind::NotFound);
         wire.check_plug().map_err(missing)?;

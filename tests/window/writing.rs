@@ -1,4 +1,4 @@
-//! Edit, review, write, see the read-back; and nothing is written without that.
+//! Edit, review, write, check the read-back; and nothing is written without that.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -77,7 +77,7 @@ fn a_write_leaves_a_backup_and_an_entry_in_the_logbook() {
     let conclusion = writes[0].conclusion.as_ref().unwrap();
     assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Outcome::Done, 1));
 
-    // The next plan knows what the encoder has taken, and the backup leads back.
+    // The next plan includes the write cycles of the encoder, and the backup restores it.
     desk.command(DeviceCommand::Restore(backup));
     desk.until_planned();
     let ReviewState::Ready(prepared) = &desk.review().state else { panic!() };
@@ -286,7 +286,7 @@ fn what_comes_late_for_another_encoder_is_dropped() {
     assert!(desk.encoder().session.review.is_none() && !desk.encoder().session.is_busy());
 }
 
-/// A second field, so that the first is no longer the last.
+/// Returns a second field, so that the first is no longer the last.
 fn with_two_fields() -> Desk {
     let mut desk = Desk::begun("");
     let status = DataFieldStatus::new(FieldSize::from_bytes(16).unwrap(), CodeNumber::ZERO, true);
@@ -303,7 +303,7 @@ fn change(desk: &mut Desk, change: Change) {
     desk.ask(Hiperface::CloseReview);
 }
 
-/// Why a change cannot be planned.
+/// Returns why a change cannot be planned.
 fn refused(desk: &mut Desk, change: Change) -> Text {
     let wear = desk.wire().wear();
     desk.ask(Hiperface::Plan(change));
@@ -411,7 +411,7 @@ fn a_field_behind_an_unknown_code_opens_with_it_and_keeps_its_edits_when_it_is_l
             .any(|line| line.bytes.contains("9D") || line.words(Language::English).contains("9D"))
     );
 
-    // In a new start nobody knows the code: the draft waits for it.
+    // After a restart the code is not known: the draft waits for it.
     desk.put(0, 1, b"Y");
     desk.until_kept();
     let mut desk = desk.crash();

@@ -26,7 +26,7 @@ pub struct TableHints {
     /// Columns by number.
     pub columns: Option<Columns>,
     pub time_unit: Option<TimeUnit>,
-    /// Volts in one unit of the sine and cosine columns, whatever the header says; finite, not zero.
+    /// Volts in one unit of the sine and cosine columns, overriding the header; finite, not zero.
     pub volts_per_unit: Option<f64>,
 }
 
@@ -45,24 +45,24 @@ pub struct Layout {
     pub time_unit: TimeUnit,
     /// Volts in one unit of the sine and cosine columns.
     pub volts_per_unit: f64,
-    /// The time column counts samples, and the header says when they were taken.
+    /// The time column counts samples, and the header gives their times.
     pub clock: Option<SampleClock>,
 }
 
-/// When samples were taken that are counted.
+/// Times of counted samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SampleClock {
     /// The time of sample 0 in seconds.
     pub start_s: f64,
-    /// From one sample to the next in seconds.
+    /// Interval of the samples in seconds.
     pub increment_s: f64,
 }
 
 impl Delimiter {
-    /// Every delimiter, the surest first: a comma may also be a decimal sign.
+    /// All delimiters, the most certain first: a comma may also be a decimal sign.
     pub const ALL: [Delimiter; 3] = [Delimiter::Semicolon, Delimiter::Tab, Delimiter::Comma];
 
-    /// The character.
+    /// Returns the character.
     pub const fn byte(self) -> u8 {
         match self {
             Delimiter::Comma => b',',
@@ -72,17 +72,17 @@ impl Delimiter {
     }
 }
 
-/// A line of the head: its number in the file, its fields.
+/// Line of the head: its number in the file, its fields.
 struct HeaderLine {
     row: u64,
     fields: Vec<Vec<u8>>,
 }
 
 impl Layout {
-    /// Looks at the first bytes of a table ([`HEAD`] of them, or all there are).
+    /// Examines the first bytes of a table ([`HEAD`] of them, or all if there are fewer).
     ///
     /// # Errors
-    /// [`CaptureError`] where they hold no table with sine and cosine.
+    /// [`CaptureError`] if they contain no table with sine and cosine.
     pub fn detect(head: &[u8], hints: &TableHints) -> Result<Self, CaptureError> {
         let decoded = decode_head(head);
         let text = whole_lines(&decoded, head.len());
@@ -99,7 +99,7 @@ impl Layout {
         let first = lines.iter().position(|line| is_data(line, usual, decimal_comma)).ok_or(CaptureError::NoNumbers)?;
         let (before, data) = lines.split_at(first);
         let width = data.first().map_or(0, |line| filled(&line.fields));
-        // Rows without a value stand between the names and the first row with all of them.
+        // Rows without a value are between the names and the first complete row.
         let gaps = before.iter().rev().take_while(|line| is_gap(line, width, decimal_comma)).count();
         let (before, rows) = lines.split_at(first - gaps);
         let first_row = rows.first().map_or(1, |line| line.row);
@@ -134,7 +134,7 @@ impl Layout {
     }
 }
 
-/// A column that is taken by its name only holds what its name says: a position in metres is no absolute position.
+/// Removes a column whose name has an unsuitable unit: a position in metres is no absolute position.
 fn fitting(columns: Columns, first: Option<&HeaderLine>, decimal_comma: bool) -> Columns {
     let read = |column: usize| {
         let field = first.and_then(|line| line.fields.get(column.checked_sub(1)?));
@@ -154,8 +154,8 @@ fn whole_lines(head: &[u8], read: usize) -> &[u8] {
     }
 }
 
-/// The columns `Start` and `Increment` of a header, and what the line below it says of them: the first column counts
-/// samples then (as oscilloscopes of Rigol write it).
+/// Parses the columns `Start` and `Increment` of a header with the line below it: the first column then counts samples (the
+/// format of Rigol oscilloscopes).
 fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<SampleClock>, CaptureError> {
     let at = |line: &HeaderLine, name: &[u8]| line.fields.iter().position(|field| field.eq_ignore_ascii_case(name));
     let places = |line: &HeaderLine| at(line, b"start").zip(at(line, b"increment"));
@@ -172,7 +172,7 @@ fn sample_clock(before: &[HeaderLine], decimal_comma: bool) -> Result<Option<Sam
     }
 }
 
-/// The delimiter that most lines have, the surest first.
+/// Returns the delimiter that most lines have, the surest first.
 fn delimiter(text: &[u8]) -> Option<Delimiter> {
     let lines = || text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
     let count = lines().count();
@@ -192,7 +192,7 @@ fn lines(text: &[u8], delimiter: Delimiter) -> Vec<HeaderLine> {
         .collect()
 }
 
-/// Fields of one line; a quoted one may hold the delimiter.
+/// Returns the fields of one line; a quoted one may contain the delimiter.
 fn fields(line: &[u8], delimiter: Delimiter) -> Vec<Vec<u8>> {
     let mut fields = vec![Vec::new()];
     let mut quoted = false;
@@ -217,14 +217,14 @@ fn decimal_comma(lines: &[HeaderLine]) -> bool {
     has(b',') && !has(b'.')
 }
 
-/// All fields are numbers; or half of them, in a row as wide as the others: a broken number in the first row is an error
-/// and not a header, while a line about the instrument may hold a number as well.
+/// Returns whether all fields are numbers; or half of them, in a row as wide as the others: a broken number in the first
+/// row is an error and not a header, while a line about the instrument may contain a number as well.
 fn is_data(line: &HeaderLine, usual: usize, decimal_comma: bool) -> bool {
     let (numbers, width) = (numbers(line, decimal_comma), filled(&line.fields));
     (numbers == width && width > 1) || (numbers > 0 && 2 * numbers >= width && width == usual)
 }
 
-/// A row of a time and of fields without a value.
+/// Returns whether it is a row of a time and of fields without a value.
 fn is_gap(line: &HeaderLine, width: usize, decimal_comma: bool) -> bool {
     let is_text = |field: &Vec<u8>| matches!(number(field, decimal_comma), Number::Text);
     line.fields.len() >= width
@@ -236,7 +236,7 @@ fn numbers(line: &HeaderLine, decimal_comma: bool) -> usize {
     line.fields.iter().filter(|field| !matches!(number(field, decimal_comma), Number::Text)).count()
 }
 
-/// The width of most rows that are numbers by half or more; the larger of two.
+/// Returns the width of most rows that are at least half numbers; the larger of two.
 fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     let mut counts = std::collections::BTreeMap::<usize, usize>::new();
     for line in lines.iter().filter(|line| 2 * numbers(line, decimal_comma) >= filled(&line.fields)) {
@@ -245,7 +245,7 @@ fn usual_width(lines: &[HeaderLine], decimal_comma: bool) -> usize {
     counts.into_iter().max_by_key(|(width, count)| (*count, *width)).map_or(0, |(width, _)| width)
 }
 
-/// Fields up to the last that is not empty: some programs end each line with a delimiter.
+/// Returns the number of fields up to the last that is not empty: some programs end each line with a delimiter.
 fn filled(fields: &[Vec<u8>]) -> usize {
     fields.iter().rposition(|field| !field.is_empty()).map_or(0, |at| at + 1)
 }
@@ -256,8 +256,8 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     let name = |field: &Vec<u8>| String::from_utf8_lossy(&latin(field)).into_owned();
     let mut found: Vec<Vec<String>> =
         before.iter().rev().take_while(wide).take(2).map(|line| line.fields.iter().map(name).collect()).collect();
-    // Of two lines the second is one of units, or the first is none of names. What is no unit there may be a count
-    // ("Sequence") or a number of the header.
+    // Of two lines, either the second has the units, or the first has no names. A field there that is no unit may be a
+    // count ("Sequence") or a number of the header.
     let is_named = |line: &Vec<String>| Columns::named(line).is_some();
     let units = |line: &Vec<String>| {
         !is_named(line) && line.iter().any(|name| name.starts_with(['(', '[']) || is_unit(&name.to_lowercase()))
@@ -267,7 +267,7 @@ fn header(before: &[HeaderLine], width: usize) -> Vec<Vec<String>> {
     }
     found.reverse();
     if let [names, units] = found.as_mut_slice() {
-        // A bare unit is written as units behind names are.
+        // A bare unit is written like units after names.
         for unit in units.iter_mut().filter(|unit| is_unit(&unit.to_lowercase())) {
             *unit = format!("({unit})");
         }

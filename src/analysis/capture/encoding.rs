@@ -1,4 +1,4 @@
-//! The characters of a table: UTF-8 as it is, UTF-16 (as Windows programs export "Unicode text") turned into it, piece by
+//! The encoding of a table: UTF-8 unchanged, UTF-16 (as Windows programs export "Unicode text") converted to it, piece by
 //! piece.
 
 use std::borrow::Cow;
@@ -14,7 +14,7 @@ enum Encoding {
     Utf16Be,
 }
 
-/// Turns the pieces of a table into UTF-8, without its byte order mark.
+/// Converts the pieces of a table to UTF-8, without its byte order mark.
 #[derive(Debug)]
 pub(super) struct Decoder {
     encoding: Encoding,
@@ -26,7 +26,7 @@ pub(super) struct Decoder {
     high: Option<u16>,
 }
 
-/// The beginning of a table in UTF-8.
+/// Returns the beginning of a table in UTF-8.
 pub fn decode_head(head: &[u8]) -> Cow<'_, [u8]> {
     Decoder::of(head).decode(head)
 }
@@ -46,7 +46,7 @@ impl Decoder {
         Decoder { encoding, mark, half: None, high: None }
     }
 
-    /// The next piece in UTF-8.
+    /// Returns the next piece in UTF-8.
     pub(super) fn decode<'b>(&mut self, bytes: &'b [u8]) -> Cow<'b, [u8]> {
         let skipped = self.mark.min(bytes.len());
         self.mark -= skipped;

@@ -10,7 +10,7 @@ pub struct Columns {
     pub sine: usize,
     /// Cosine, or COS against ground.
     pub cosine: usize,
-    /// REFSIN and REFCOS against ground, where sine and cosine are not differences already.
+    /// REFSIN and REFCOS against ground, if sine and cosine are not already differences.
     pub references: Option<(usize, usize)>,
     /// The shaft's angle by a reference encoder in degrees.
     pub reference_angle: Option<usize>,
@@ -42,14 +42,14 @@ impl Columns {
     pub const PLAIN: Columns =
         Columns { time: Some(1), sine: 2, cosine: 3, references: None, reference_angle: None, absolute: None };
 
-    /// The last column that is needed.
+    /// Returns the last column that is needed.
     pub fn last(&self) -> usize {
         let (refsin, refcos) = self.references.unwrap_or_default();
         let others = [self.time, self.reference_angle, self.absolute].map(Option::unwrap_or_default);
         [self.sine, self.cosine, refsin, refcos].into_iter().chain(others).max().unwrap_or_default()
     }
 
-    /// The same for a table that counts its samples in the first column, whatever name that has.
+    /// Returns the columns of a table that counts its samples in the first column, whatever its name.
     pub(super) fn counted(self) -> Columns {
         let others = [Some(self.sine), Some(self.cosine), self.reference_angle, self.absolute];
         let (refsin, refcos) = self.references.unzip();
@@ -57,7 +57,7 @@ impl Columns {
         Columns { time: self.time.or((!is_taken).then_some(1)), ..self }
     }
 
-    /// The columns that names tell; `None` where sine or cosine is not among them.
+    /// Returns the columns by their names; `None` if sine or cosine is not among them.
     pub(super) fn named(names: &[String]) -> Option<Columns> {
         let find = |known: &[&str]| {
             let at = names.iter().position(|name| known.contains(&bare_name(name).as_str()));
@@ -70,7 +70,7 @@ impl Columns {
             sine: find(&["sin", "sine", "sinus", "sin+", "+sin", "sinplus"])?,
             cosine: find(&["cos", "cosine", "cosinus", "kosinus", "cos+", "+cos", "cosplus"])?,
             references,
-            // A reference in volts is none of an angle.
+            // A reference in volts is not one of an angle.
             reference_angle: find(&["reference", "referenz", "ref", "angle", "winkel", "mechanical angle"])
                 .filter(|at| !names.get(at - 1).is_some_and(|name| is_in_volts(name))),
             absolute: find(&["absolute", "absolut", "abs", "absolute position", "position", "pos"]),
@@ -79,7 +79,7 @@ impl Columns {
 }
 
 impl TimeUnit {
-    /// Seconds in one of it.
+    /// Returns its length in seconds.
     pub const fn factor(self) -> f64 {
         match self {
             TimeUnit::Seconds => 1.0,
@@ -94,7 +94,7 @@ impl TimeUnit {
         match text {
             "s" | "sec" | "second" | "seconds" => Some(TimeUnit::Seconds),
             "ms" => Some(TimeUnit::Milliseconds),
-            // The two signs for micro that Unicode has.
+            // The two micro signs of Unicode.
             "us" | "\u{b5}s" | "\u{3bc}s" => Some(TimeUnit::Microseconds),
             "ns" => Some(TimeUnit::Nanoseconds),
             _ => None,
@@ -103,7 +103,7 @@ impl TimeUnit {
 }
 
 impl VoltUnit {
-    /// Volts in one of it.
+    /// Returns its size in volts.
     pub const fn factor(self) -> f64 {
         match self {
             VoltUnit::Volts => 1.0,
@@ -123,7 +123,7 @@ impl VoltUnit {
     }
 }
 
-/// A unit of angles, as a header writes it.
+/// Returns whether it is a unit of angles, as a header writes it.
 fn is_degrees(text: &str) -> bool {
     ["deg", "degree", "degrees", "\u{b0}", "grad"].contains(&text)
 }
@@ -132,12 +132,12 @@ fn is_in_volts(name: &str) -> bool {
     unit_of(&name.trim().to_lowercase()).is_some_and(|unit| VoltUnit::parse(unit).is_some())
 }
 
-/// A unit of times, voltages or angles, in small letters.
+/// Returns whether it is a unit of times, voltages or angles, in small letters.
 pub(super) fn is_unit(text: &str) -> bool {
     TimeUnit::parse(text).is_some() || VoltUnit::parse(text).is_some() || is_degrees(text)
 }
 
-/// The name without its unit, in small letters: `Time [ms]` is `time`.
+/// Returns the name without its unit, in lower case: `Time [ms]` is `time`.
 fn bare_name(name: &str) -> String {
     let name = name.trim().to_lowercase();
     let bare = match unit_of(&name) {
@@ -147,8 +147,8 @@ fn bare_name(name: &str) -> String {
     bare.trim_end_matches([' ', '[', '(', '/', '_', ',']).trim().to_owned()
 }
 
-/// Returns the unit after a name, in brackets or after a space, a slash or an underscore: `ms` of `time_ms`. A name
-/// that consists of brackets only, as in a line of units, is all unit. Expects lower case.
+/// Returns the unit after a name, in brackets or after a space, a slash or an underscore: `ms` of `time_ms`. A name that
+/// consists of brackets only, as in a line of units, is all unit. Expects lower case.
 pub(super) fn unit_of(name: &str) -> Option<&str> {
     let name = name.trim();
     let inside = name.strip_suffix([']', ')']).unwrap_or(name);

@@ -1,5 +1,5 @@
-//! From the bytes of a table to samples: split by csv-core, numbers by fast-float2, no text kept of any field. The channels
-//! are those of SICK 8010701.
+//! From the bytes of a table to samples: split by csv-core, numbers by fast-float2, without storing the text of fields. The
+//! channels are those of SICK 8010701.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -13,7 +13,7 @@ use super::{Capture, CaptureError, Wires};
 pub struct Import {
     layout: Layout,
     reader: Reader,
-    /// The row so far, without delimiters and quotes, and where its fields end.
+    /// The present row, without delimiters and quotes, and the ends of its fields.
     row: Vec<u8>,
     written: usize,
     ends: Vec<usize>,
@@ -46,16 +46,16 @@ pub(super) enum Number {
     Text,
 }
 
-/// Longest row. What is longer is no table.
+/// Maximum length of a row. A longer one is not of a table.
 const LONGEST_ROW: usize = 1 << 20;
-/// Rows without which there is nothing to measure: a table of fewer is refused for the first value that is missing.
+/// Minimum number of rows for a measurement: a shorter table is refused for the first missing value.
 const LEAST_ROWS: u64 = 6;
-/// Letters of a wrong field that are told.
+/// Maximum number of characters of a wrong field in a message.
 const SHOWN: usize = 24;
 
 impl Import {
-    /// Begins with the first bytes of a table ([`HEAD`] of them, or all there are), which are only looked at: they are
-    /// to be [fed](Self::feed) as well.
+    /// Begins with the first bytes of a table ([`HEAD`] of them, or all if there are fewer), which are only examined: they
+    /// must be [fed](Self::feed) as well.
     ///
     /// # Errors
     /// As [`Layout::detect`].
@@ -65,7 +65,7 @@ impl Import {
         Ok(Import { decoder: Decoder::of(head), ..import })
     }
 
-    /// Begins with a layout that is known.
+    /// Begins with a known layout.
     pub fn with(layout: Layout) -> Self {
         let taken = ColumnChoice {
             columns: layout.columns,
@@ -103,7 +103,7 @@ impl Import {
         &self.layout
     }
 
-    /// Rows so far.
+    /// Returns the number of rows so far.
     pub fn rows(&self) -> usize {
         self.capture.sine_v.len()
     }
@@ -122,16 +122,16 @@ impl Import {
         Ok(())
     }
 
-    /// The samples, after the last bytes.
+    /// Returns the samples, after the last bytes.
     ///
     /// # Errors
-    /// Where no row had numbers, or most of them had none.
+    /// If no row had numbers, or most of them had none.
     pub fn finish(mut self) -> Result<(Layout, Capture), CaptureError> {
-        // A quotation mark that is not closed makes one row of all that follows: nothing of that was cut off.
+        // An unclosed quotation mark makes one row of everything after it: nothing of that was truncated.
         if self.last != Some(b'"') && self.lines_in_row() > 0 {
             return Err(self.open_quote());
         }
-        // No more bytes: a row without an end of line ends here, and may be cut off.
+        // No more bytes: a row without a line end ends here, and may be truncated.
         if let Err(error) = self.step(&[]) {
             self.leave_out(self.reader.line(), error);
         }
@@ -144,7 +144,7 @@ impl Import {
         }
     }
 
-    /// Line breaks in the row that is not at its end yet: they stand between quotation marks.
+    /// Returns the line breaks in the incomplete row, which are between quotation marks.
     fn lines_in_row(&self) -> usize {
         let row = self.row.get(..self.written).unwrap_or_default();
         row.iter().filter(|byte| **byte == b'\n').count()
@@ -208,7 +208,7 @@ impl ColumnChoice {
             return Ok(None);
         }
         let columns = &self.columns;
-        // A time is always there: a table without one is broken.
+        // A time is always required: a table without one is broken.
         let time = columns.time.map(|column| self.time(row, ends, line, column)).transpose()?;
         let (refsin, refcos) = columns.references.unzip();
         let taken =
@@ -264,7 +264,7 @@ impl ColumnChoice {
         }
     }
 
-    /// A value; the inner error where the instrument had none.
+    /// Parses a value; the inner error if the instrument had none.
     fn value(
         &self,
         row: &[u8],
@@ -292,7 +292,7 @@ impl ColumnChoice {
     }
 }
 
-/// Returns whether a field is what instruments write without a value: nothing, dashes, or an overload.
+/// Returns whether a field is an instrument's notation for no value: empty, dashes, or an overload.
 pub(super) fn is_no_value(field: &[u8]) -> bool {
     const WORDS: [&str; 10] =
         ["overload", "overrange", "overflow", "ovld", "ol", "over", "clipped", "\u{221e}", "-\u{221e}", "n/a"];
@@ -300,7 +300,7 @@ pub(super) fn is_no_value(field: &[u8]) -> bool {
     text.chars().all(|sign| matches!(sign, '-' | '*' | '?')) && text.len() != 1 || WORDS.contains(&text.as_str())
 }
 
-/// The whole number that a value is; nothing beyond 2⁵³, where not every number can be told from the next.
+/// Returns the value as a whole number; `None` beyond 2⁵³, where neighbouring numbers are not distinct.
 pub(super) fn whole(value: f64) -> Option<i64> {
     const MOST: f64 = (1_i64 << 53) as f64;
     (value.fract() == 0.0 && value.abs() <= MOST).then_some(value as i64)

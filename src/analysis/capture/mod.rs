@@ -1,8 +1,8 @@
-//! A recorded capture as a table of text (CSV), as oscilloscopes and data loggers write it: what its columns mean is found
-//! out from the first lines and can be corrected. Files are read elsewhere; here bytes are handed in, piece by piece.
+//! A recorded capture as a table of text (CSV), as written by oscilloscopes and data loggers: the meaning of its columns is
+//! detected from the first lines and can be corrected. Files are read elsewhere; here bytes are passed in, piece by piece.
 //!
-//! The columns are those that SICK 8010701 names: SIN, REFSIN, COS, REFCOS against ground, or sine and cosine as the
-//! differences; and beside them what belongs to the same moment: the angle of a reference encoder, the absolute position.
+//! The columns are those named by SICK 8010701: SIN, REFSIN, COS, REFCOS against ground, or sine and cosine as the
+//! differences; and further values of the same moment: the angle of a reference encoder, the absolute position.
 
 mod detect;
 mod encoding;
@@ -19,24 +19,24 @@ use super::wiring::Wires;
 /// Samples of a sine/cosine signal.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Capture {
-    /// Times in seconds; empty where the table has none.
+    /// Times in seconds; empty if the table has none.
     pub time_s: Vec<f64>,
     /// Sine channel in volts, the reference already taken off.
     pub sine_v: Vec<f64>,
     /// Cosine channel in volts, likewise.
     pub cosine_v: Vec<f64>,
-    /// The four wires against ground as they were measured, where the table has the references.
+    /// The four wires against ground as measured, if the table has the references.
     pub wires: Option<Wires>,
-    /// The shaft's angle by a reference encoder in degrees, where the table has it: wrapped at a turn or running on.
+    /// The shaft's angle by a reference encoder in degrees, if the table has it: wrapped at a turn or not.
     pub reference_deg: Option<Vec<f64>>,
-    /// Absolute positions in steps of 1/32 period, where the table has them.
+    /// Absolute positions in steps of 1/32 period, if the table has them.
     pub absolute: Option<Vec<i64>>,
-    /// Rows without a measured value (empty, NaN, overload) beside their time, and a last line that is cut off: they are left out.
+    /// Rows without a measured value (empty, NaN, overload) after their time, and a truncated last line: they are left out.
     pub left_out: u64,
 }
 
 impl Capture {
-    /// REFSIN and REFCOS in volts, where the table has them.
+    /// Returns REFSIN and REFCOS in volts, if the table has them.
     pub fn references_v(&self) -> Option<(&[f64], &[f64])> {
         self.wires.as_ref().map(|wires| (wires.refsin_v.as_slice(), wires.refcos_v.as_slice()))
     }
@@ -45,10 +45,10 @@ impl Capture {
 /// Why a table is not a capture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CaptureError {
-    /// There is nothing in it.
+    /// The table is empty.
     #[error("it is empty")]
     Empty,
-    /// No line holds numbers in two columns or more.
+    /// No line has numbers in two columns or more.
     #[error("no line has numbers")]
     NoNumbers,
     #[error("it has one column")]
@@ -101,7 +101,7 @@ pub enum CaptureError {
         /// Rows without one.
         left_out: u64,
         rows: u64,
-        /// The first of them: the line in the file, from 1.
+        /// Line of the first of them in the file, from 1.
         row: u64,
     },
     /// The header names a start and an increment of the time, and the line below does not give them.
@@ -110,7 +110,7 @@ pub enum CaptureError {
         /// The line in the file, from 1.
         row: u64,
     },
-    /// The header names a start and an increment of the time, and the column of sample numbers has something else.
+    /// The header gives a start and an increment of the time, but the column of sample numbers contains something else.
     #[error("row {row}, column {column}: {text} is no sample number, though the header names Start and Increment")]
     NotASampleNumber {
         /// The line in the file, from 1.

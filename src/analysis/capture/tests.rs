@@ -22,7 +22,7 @@ fn read(text: impl AsRef<[u8]>) -> Result<(Layout, Capture), CaptureError> {
     whole
 }
 
-/// Every one of them says 0 s, 0.25 V, 0.5 V and then 0.001 s, −0.3 V, 0.4 V.
+/// Each of them contains 0 s, 0.25 V, 0.5 V and then 0.001 s, −0.3 V, 0.4 V.
 #[test]
 fn the_same_table_in_many_ways() {
     let ways: [(&str, &[u8]); 17] = [
@@ -55,7 +55,7 @@ fn the_same_table_in_many_ways() {
         assert_eq!(capture.wires.is_some(), label == "four channels", "{label}");
     }
     let (_, capture) = read("t,SIN,REFSIN,COS,REFCOS\n0,0.1,2.5,3,2.5\n1,0.2,2.5,2.9,2.5\n").unwrap();
-    // As it stands there: (0.1 − 2.5) + 2.5 is another number.
+    // As in the table: (0.1 − 2.5) + 2.5 is another number.
     assert_eq!(capture.wires.unwrap().sin_v, [0.1, 0.2]);
 }
 
@@ -176,13 +176,13 @@ fn start_and_increment_give_the_times() {
         let text = format!("X,CH1,CH2,Start,Increment\n{second}\n0,0.1,0.2,,\n1,0.3,0.4,,\n");
         assert_eq!(read(text).unwrap_err(), CaptureError::NoSampleClock { row: 2 }, "{second}");
     }
-    // Who says what the column is in is right.
+    // A unit given by the user takes precedence.
     let wishes = TableHints { time_unit: Some(TimeUnit::Milliseconds), ..TableHints::default() };
     assert_eq!(read_in(99, text.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 1e-3, 2e-3]);
 }
 
-/// Issue 22.13: rows without a value are left out and counted; so is a last line that is cut off. Six rows are enough to
-/// measure something.
+/// Issue 22.13: rows without a value are left out and counted; so is a truncated last line. Six rows are enough for a
+/// measurement.
 #[test]
 fn rows_without_a_value_are_left_out() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
@@ -242,7 +242,7 @@ fn encodings_and_rows_of_units_do_not_reject_a_table() {
     }
 }
 
-/// Issue 22.13: rows without a value before the first that has all of them do not hide the names and units of the columns.
+/// Issue 22.13: rows without a value before the first complete one do not hide the names and units of the columns.
 #[test]
 fn rows_without_a_value_at_the_beginning_leave_the_header_as_it_is() {
     let rows = "2,3,4\n3,4,5\n4,5,6\n5,6,7\n6,7,8\n7,8,9\n";
@@ -255,7 +255,7 @@ fn rows_without_a_value_at_the_beginning_leave_the_header_as_it_is() {
     assert_eq!((layout.names, capture.left_out, capture.sine_v.len()), (Vec::new(), 2, 6), "without names");
 }
 
-/// Issue 22.13: a last line that is cut off is one line; what follows an open quotation mark is no such line.
+/// Issue 22.13: a truncated last line is one line; the text after an open quotation mark is not.
 #[test]
 fn an_open_quotation_mark_swallows_no_rows() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";
@@ -282,7 +282,7 @@ fn sample_numbers_are_whole_and_in_the_first_column() {
     assert_eq!(read_in(99, times.as_bytes(), &wishes).unwrap().1.time_s, [0.0, 0.5]);
 }
 
-/// Issue 22.13: 9.9E37 and 9.91E37 are how SCPI instruments write an overload and a value that they do not have.
+/// Issue 22.13: 9.9E37 and 9.91E37 are the notation of SCPI instruments for an overload and a missing value.
 #[test]
 fn what_scpi_instruments_send_for_no_value_is_none() {
     let six = "0,1,2\n1,2,3\n2,3,4\n3,4,5\n4,5,6\n5,6,7\n";

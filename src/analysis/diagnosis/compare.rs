@@ -1,5 +1,5 @@
-//! Comparison of two captures of one signal, as with the drive off and on: what became worse, what only changed, and
-//! what cannot be compared. Both have to be judged by the same limits.
+//! Comparison of two captures of one signal, as with the drive off and on: what became worse, what only changed, and what
+//! cannot be compared. Both must be judged by the same limits.
 
 use std::mem::discriminant;
 
@@ -20,17 +20,17 @@ pub struct Changes {
 /// Something that cannot be compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotComparable {
-    /// Anything about the ellipse: the first capture has none.
+    /// The ellipse: the first capture has none.
     NoEllipseBefore,
-    /// Likewise: the second has none.
+    /// The ellipse: the second capture has none.
     NoEllipseAfter,
     /// Hum, interference and noise: one of them has no spectrum.
     NoSpectrum,
 }
 
-/// A disturbance is more when it is more by this factor.
+/// Factor above which a disturbance counts as increased.
 const MORE: f64 = 1.5;
-/// A parameter of the ellipse is further out of its limits when it is by this factor.
+/// Factor above which a parameter of the ellipse counts as further out of its limits.
 const FURTHER: f64 = 1.1;
 /// And by this share of the amplitude, for noise.
 const LEAST_NOISE: f64 = 0.001;
@@ -45,7 +45,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     match (before.amplitude_v, after.amplitude_v) {
         (Some(from_v), Some(to_v)) => {
             if (to_v / from_v - 1.0).abs() >= AMPLITUDE {
-                // One that left its limits is among what is worse as well.
+                // One that left its limits is also among the worse ones.
                 let what = FindingKind::AmplitudeChanged { from_v, to_v };
                 changes.changed.push(DiagnosisFinding { severity: Severity::Notice, kind: what });
             }
@@ -58,7 +58,7 @@ pub fn compare(before: &Diagnosis, after: &Diagnosis) -> Changes {
     changes
 }
 
-/// Noise and the lines of the spectrum, which are compared by their size.
+/// Compares noise and the lines of the spectrum by their size.
 fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: &mut Changes) {
     let (Some(earlier), Some(later)) = (&before.interference, &after.interference) else {
         changes.untold.push(NotComparable::NoSpectrum);
@@ -75,10 +75,10 @@ fn disturbances(before: &Diagnosis, after: &Diagnosis, amplitude: f64, changes: 
     changes.worse.extend(later.iter().filter_map(|line| rose(line, earlier, spacing, amplitude)));
 }
 
-/// A finding of the second capture is new, or more than in the first.
+/// Returns whether a finding of the second capture is new, or more than in the first.
 fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -> bool {
     match finding.kind {
-        // Without an ellipse to compare with, only these can be told.
+        // Without an ellipse for comparison, only these can be reported.
         FindingKind::Still
         | FindingKind::AtRest
         | FindingKind::Same
@@ -89,7 +89,7 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
         FindingKind::Hum { .. } | FindingKind::Interference { .. } | FindingKind::Noise { .. } => return false,
         // Consequences of the others, and properties of the motion.
         FindingKind::Uncertain { .. } | FindingKind::Reversed { .. } => return false,
-        // Something else may have explained it in the first.
+        // Another finding may have explained it in the first capture.
         FindingKind::Limit(OutOfLimits::Residual(_)) => {
             return match (before.residual, after.residual) {
                 (Some(before), Some(after)) => after >= FURTHER * before,
@@ -105,7 +105,7 @@ fn is_worse(finding: &DiagnosisFinding, before: &Diagnosis, after: &Diagnosis) -
     finding.severity > earlier.severity || comparable && amount(&finding.kind) >= factor * amount(&earlier.kind)
 }
 
-/// The first finding is of the kind of the second, or a worse form of it.
+/// Returns whether the first finding is of the kind of the second, or a worse form of it.
 fn covers(earlier: &FindingKind, later: &FindingKind) -> bool {
     match (earlier, later) {
         (FindingKind::Limit(earlier), FindingKind::Limit(later)) => discriminant(earlier) == discriminant(later),

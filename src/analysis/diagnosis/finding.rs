@@ -6,29 +6,29 @@ use crate::analysis::wiring::Wire;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// Good to know; the signal is usable.
+    /// For information; the signal is usable.
     Notice,
-    /// Outside of its limits, or a disturbance that costs accuracy.
+    /// Out of its limits, or a disturbance that reduces accuracy.
     Warning,
     /// The position is wrong or will be.
     Fault,
 }
 
-/// Something to look at.
+/// Finding of a diagnosis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DiagnosisFinding {
     pub severity: Severity,
     pub kind: FindingKind,
 }
 
-/// A kind of finding. Shares are of the amplitude of the cosine channel.
+/// Kind of finding. Shares are of the amplitude of the cosine channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FindingKind {
     /// A parameter outside of the family's limits.
     Limit(OutOfLimits),
     /// Neither channel moves.
     Still,
-    /// Both channels stay where they are, away from zero: the shaft stands.
+    /// Both channels are constant, away from zero: the shaft stands still.
     AtRest,
     /// One channel does not move while the other does.
     Dead {
@@ -39,7 +39,7 @@ pub enum FindingKind {
     /// One channel has half of the other's amplitude: one of its two wires is open.
     Half {
         channel: Channel,
-        /// Its amplitude over the other's.
+        /// Ratio of its amplitude to the other's.
         share: f64,
     },
     /// Both channels show the same, or one the opposite of the other.
@@ -60,17 +60,17 @@ pub enum FindingKind {
         /// All of its lines together, peak, in volts.
         volts: f64,
         share: f64,
-        /// In phase and about equally strong in both channels: it comes in by the screen or the ground.
+        /// In phase and about equally strong in both channels: coupled in by the screen or the ground.
         common: bool,
     },
     /// A line that is no harmonic of the signal.
     Interference {
         /// Its frequency in hertz.
         frequency_hz: f64,
-        /// Peak in the channel that has more of it, in volts.
+        /// Peak in the stronger channel, in volts.
         volts: f64,
         share: f64,
-        /// As of the hum.
+        /// As for the hum.
         common: bool,
     },
     /// White noise.
@@ -79,11 +79,11 @@ pub enum FindingKind {
         volts: f64,
         share: f64,
     },
-    /// The distance from the ellipse repeats so many times a period: harmonics one below and one above that.
+    /// The distance from the ellipse repeats this many times per period: harmonics one below and one above that.
     Harmonics {
         /// Order, 3 to 8.
         order: usize,
-        /// As a share, peak; so many radians are what it costs.
+        /// As a share, peak; also the resulting error in radians.
         share: f64,
     },
     /// A channel is cut off.
@@ -91,7 +91,7 @@ pub enum FindingKind {
         channel: Channel,
         /// Level in volts.
         volts: f64,
-        /// Share of the samples that stand there.
+        /// Share of the samples at that level.
         samples: f64,
     },
     /// The amplitude changes over a revolution.
@@ -115,7 +115,7 @@ pub enum FindingKind {
     },
     /// Samples are missing.
     Missing {
-        /// In how many places.
+        /// Number of gaps.
         gaps: usize,
         /// The longest time from one sample to the next, in seconds.
         longest_s: f64,
@@ -130,7 +130,7 @@ pub enum FindingKind {
         /// Number of times.
         times: usize,
     },
-    /// So few samples a period that the angle cannot be followed for certain.
+    /// Too few samples per period to follow the angle with certainty.
     Coarse {
         /// Median angle from one sample to the next, in degrees.
         step_deg: f64,
@@ -142,12 +142,12 @@ pub enum FindingKind {
     },
     /// The position error after the correction is larger than before.
     CorrectionHarms {
-        /// Peak to peak before, in electrical degrees.
+        /// Both channels are at the level of a single wire: no reference was subtracted.
         raw_deg: f64,
         /// And after.
         corrected_deg: f64,
     },
-    /// Both channels lie at the level of a single wire: no reference was taken off.
+    /// Of two captures, the second has more noise.
     SingleEnded {
         /// Mean of the sine channel in volts.
         sine_v: f64,
@@ -165,11 +165,11 @@ pub enum FindingKind {
     InterferenceRose {
         /// Its frequency in hertz.
         frequency_hz: f64,
-        /// First, peak, in volts; 0 where there was none to be seen.
+        /// In the first, peak, in volts; 0 if none was visible.
         from_v: f64,
         /// Second.
         to_v: f64,
-        /// In the second, as of the hum.
+        /// In the second, as for the hum.
         common: bool,
     },
     /// Of two captures, the second has another amplitude.
@@ -188,6 +188,6 @@ pub enum Stuck {
     Together,
     Ground(Wire),
     Supply(Wire),
-    /// This many volts apart: one of them is shorted, or open where no resistor joins them.
+    /// This many volts apart: one of them is shorted, or open without a resistor between them.
     Apart(f64),
 }

@@ -1,9 +1,9 @@
-//! Lines of the spectrum that are no harmonics of the signal: what a drive, the mains or a switching supply adds to it.
+//! Lines of the spectrum that are no harmonics of the signal: added by a drive, the mains or a switching supply.
 //!
-//! A motion that is not quite even, or an amplitude that changes over the revolution, puts lines beside those of the signal
-//! as well. They are told from interference by direction: what is added from outside moves the vector of both channels any
-//! way, half of it (on average over the period) along the radius; an uneven motion moves it along the circle only, and an
-//! uneven amplitude along the radius only.
+//! An uneven motion, or an amplitude that changes over the revolution, also adds lines beside those of the signal. They are
+//! distinguished from interference by direction: external interference moves the vector of both channels in any direction,
+//! half of it (on average over the period) along the radius; an uneven motion moves it along the circle only, and an uneven
+//! amplitude along the radius only.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -18,27 +18,27 @@ use crate::analysis::spectrum::{Spectrum, sample_rate_hz};
 pub(super) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
 /// Multiples of the mains that are taken for it.
 const MULTIPLES: f64 = 10.0;
-/// Lines of a spectrum further apart than this cannot be told to be the mains.
+/// Spacing of the lines of a spectrum above which they cannot be identified as the mains.
 const MAINS_SPACING_HZ: f64 = 10.0;
 
-/// A record is looked at so long at least, as far as there is so much of it: ten periods of the mains.
+/// Minimum length of the examined record in seconds, if available: ten periods of the mains.
 const SECONDS: f64 = 0.2;
 /// Fewest and most samples of the spectrum.
 const SAMPLES: (usize, usize) = (1 << 16, 1 << 20);
-/// Fewest periods: of less, the signal's own line covers everything.
+/// Minimum number of periods: with fewer, the signal's own line covers everything.
 const LEAST_PERIODS: f64 = 8.0;
-/// Harmonics of the signal that are passed over; of an uneven motion fewer, because they cover much, and what is spread
-/// so far does not stand out.
+/// Harmonics of the signal that are skipped; fewer for an uneven motion, because they cover much, and spread lines do not
+/// stand out.
 const HARMONICS: (usize, usize) = (25, 5);
 /// Lines to each side of a harmonic that belong to it in a Hann window.
 const REACH: usize = 3;
-/// The signal's line is as wide as it is above this share of its peak.
+/// Share of its peak down to which the signal's line counts as wide.
 const WIDTH: f64 = 0.01;
-/// Lines on each side among which the noise is looked for.
+/// Lines on each side from which the noise is determined.
 const NEIGHBOURS: usize = 50;
-/// Above the median of its neighbours by this factor, a line is no noise.
+/// Factor above the median of its neighbours from which a line is no noise.
 const ABOVE: f64 = 6.0;
-/// Most lines that are told.
+/// Maximum number of lines reported.
 const MOST: usize = 8;
 /// Share of an interference that moves the vector along the radius.
 const RADIAL: Range<f64> = 0.25..0.75;
@@ -50,15 +50,15 @@ const IN_PHASE: f64 = TAU / 12.0;
 pub struct Interference {
     /// Its frequency in hertz.
     pub frequency_hz: f64,
-    /// Peak in the channel that has more of it, in volts.
+    /// Peak in the stronger channel, in volts.
     pub volts: f64,
     /// In phase and about equally strong in both channels.
     pub common: bool,
-    /// The mains that it is, or is a multiple of.
+    /// The mains frequency, if it is this or a multiple of it.
     pub mains_hz: Option<f64>,
 }
 
-/// A line and what it does to the distance from the ellipse, mean square in V².
+/// Line with its contribution to the distance from the ellipse, mean square in V².
 struct StrongLine {
     line: Interference,
     radial_v2: f64,
@@ -126,7 +126,7 @@ pub(super) fn look(samples: &Samples<'_>, analysis: &Analysis) -> Option<Spectru
     Some(SpectrumContent { lines, noise_v, spacing_hz, radial_v2 })
 }
 
-/// Outliers have the value before them: a spike would raise every line.
+/// Replaces outliers by the value before them: a spike would raise every line.
 fn hold(values: &mut [f64], start: usize, analysis: &Analysis) {
     let end = start + values.len();
     let stretches = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);
@@ -143,13 +143,12 @@ fn height(lines: &[f64], at: usize) -> f64 {
     lines.get(at).copied().unwrap_or(0.0)
 }
 
-/// Returns which lines belong to the signal: its own and its harmonics, also where they are folded back at half the
-/// sample rate.
+/// Returns which lines belong to the signal: its own and its harmonics, also those aliased at half the sample rate.
 fn signal(both: &[f64]) -> Vec<bool> {
     let mut belongs = vec![false; both.len()];
     let first = REACH.min(both.len());
     let peak = (first..both.len()).max_by(|a, b| height(both, *a).total_cmp(&height(both, *b))).unwrap_or(0);
-    // An uneven motion widens a line, and the harmonics by as many times.
+    // An uneven motion widens a line, and the harmonics by their order.
     let above = |at: usize| height(both, at) > WIDTH * height(both, peak);
     let up = (peak..both.len()).take_while(|at| above(*at)).count();
     let down = (0..=peak).rev().take_while(|at| above(*at)).count();
@@ -178,7 +177,7 @@ fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
         .collect();
     found.sort_by(|a, b| height(both, *b).total_cmp(&height(both, *a)));
     let mut taken: Vec<usize> = Vec::new();
-    // Of many that are no more than noise none is taken, however many there are.
+    // Of many lines at noise level none is taken, however many there are.
     for at in found.into_iter().take(4 * MOST) {
         let near =
             (at.saturating_sub(NEIGHBOURS)..at + NEIGHBOURS).filter(|other| free(*other) && other.abs_diff(at) > REACH);
@@ -190,8 +189,8 @@ fn candidates(both: &[f64], is_signal: &[bool], amplitude: f64) -> Vec<usize> {
     taken
 }
 
-/// White noise of one channel from the median line of both together: the square of such a line is the sum of four squares
-/// of the normal distribution, whose median is 3.3567 times their variance.
+/// Returns the white noise of one channel from the median line of both together: the square of such a line is the sum of
+/// four squares of the normal distribution, whose median is 3.3567 times their variance.
 fn noise(median: f64, samples: usize) -> f64 {
     const MEDIAN: f64 = 3.356_694;
     // A line is 4/n times a sum whose real and imaginary part each have the variance σ²·Σw²/2, Σw² = 3n/8.
@@ -245,7 +244,7 @@ impl Complex {
     }
 }
 
-/// Looks at one frequency in both channels, and in what of them goes along the radius.
+/// Examines one frequency in both channels, and its part along the radius.
 struct Projector<'a> {
     sine: &'a [f64],
     cosine: &'a [f64],
@@ -255,11 +254,11 @@ struct Projector<'a> {
 }
 
 impl Projector<'_> {
-    /// The line at a frequency, if it is interference.
+    /// Returns the line at a frequency, if it is interference.
     fn line(&self, frequency_hz: f64) -> Option<StrongLine> {
         let [sine, cosine, along_sine, along_cosine] = self.at(frequency_hz);
         let stretch = self.correction.stretch();
-        // The correction is linear, so that it can be done to the line instead of the samples.
+        // The correction is linear, so it can be applied to the line instead of the samples.
         let corrected = sine.times(stretch.1).plus(cosine.times(stretch.0)).square() + cosine.square();
         let radial = (along_sine.square() + along_cosine.square()) / corrected;
         if !RADIAL.contains(&radial.sqrt()) {
@@ -270,11 +269,11 @@ impl Projector<'_> {
         let equal = (0.5..2.0).contains(&(sine_v / cosine_v));
         let common = equal && apart.abs() < IN_PHASE;
         let line = Interference { frequency_hz, volts: sine_v.max(cosine_v), common, mains_hz: None };
-        // Of the mean squares of both channels half goes along the radius.
+        // Of the mean squares of both channels half is along the radius.
         Some(StrongLine { line, radial_v2: (sine.square() + cosine.square()) / 4.0 })
     }
 
-    /// Amplitude and phase of sine, cosine and what of their corrected values goes along the radius, in a Hann window.
+    /// Returns amplitude and phase of sine, cosine and the radial part of their corrected values, in a Hann window.
     fn at(&self, frequency_hz: f64) -> [Complex; 4] {
         let count = self.sine.len() as f64;
         let turn = |angle: f64| Complex { re: angle.cos(), im: angle.sin() };
@@ -285,7 +284,7 @@ impl Projector<'_> {
             let (own_y, own_x) = self.correction.apply(*y, *x);
             let length = own_y.hypot(own_x);
             let off = 1.0 - self.analysis.ellipse.amplitude_v / length.max(f64::MIN_POSITIVE);
-            // The mean level is taken off, or it would leak into low frequencies.
+            // The mean level is subtracted, or it would leak into low frequencies.
             let y = y - self.analysis.ellipse.offset_sine_v;
             let x = x - self.analysis.ellipse.offset_cosine_v;
             let weight = 1.0 - window.re;

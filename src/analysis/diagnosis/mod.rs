@@ -3,7 +3,7 @@
 //! distribution of the samples (sections 1 and 2 of the project's sine/cosine reference), by lines of the spectrum and
 //! by what repeats with the period or the revolution.
 //!
-//! Thresholds without a source are assumptions (U) and stand in one place, below.
+//! Thresholds without a source are assumptions (U) and are in one place, below.
 
 mod compare;
 mod finding;
@@ -21,11 +21,11 @@ use super::quality::{Limits, QualityFinding as OutOfLimits, Verdict, within};
 use super::signal_analysis::{Analysis, AnalysisError};
 use super::wiring::Wire;
 
-/// Hum and interference below this share of the amplitude are not told.
+/// Share of the amplitude below which hum and interference are not reported.
 pub const LEAST_LINE: f64 = 0.002;
-/// From this share of the amplitude on, a disturbance is a warning and no notice: it costs 0.6 electrical degrees.
+/// Share of the amplitude from which a disturbance is a warning and not a notice: it costs 0.6 electrical degrees.
 pub const WARNING_SHARE: f64 = 0.01;
-/// A channel whose amplitude is this share of the other's has lost one of its two wires.
+/// Ratio of a channel's amplitude to the other's at which it has lost one of its two wires.
 const HALF: (f64, f64) = (0.4, 0.6);
 /// Volts from zero within which both wires of a pair count as equal.
 const SAME_LEVEL_V: f64 = 0.1;
@@ -33,9 +33,9 @@ const SAME_LEVEL_V: f64 = 0.1;
 const RAILS_V: (f64, f64) = (0.5, 4.5);
 /// Samples left out of the fit, as a share of all, from which on they are a warning.
 const MANY_SPIKES: f64 = 1e-3;
-/// Samples in a row from which on it is no spike but a contact that lets go.
+/// Number of consecutive samples from which an outlier is not a spike but an intermittent contact.
 const LETS_GO: usize = 16;
-/// Amplitude modulation over a revolution: told, and warned of.
+/// Amplitude modulation over a revolution from which it is reported, and warned of.
 const MODULATION: (f64, f64) = (0.03, 0.1);
 
 /// The part of the residual's mean square that other findings have to explain.
@@ -46,9 +46,9 @@ const EXPLAINED: f64 = 0.7;
 pub struct Record<'a> {
     /// The samples, references taken off.
     pub samples: Samples<'a>,
-    /// REFSIN and REFCOS in volts, where they were recorded.
+    /// REFSIN and REFCOS in volts, if they were recorded.
     pub references_v: Option<(&'a [f64], &'a [f64])>,
-    /// Signal periods in a revolution, where known.
+    /// Signal periods per revolution, if known.
     pub periods: Option<u32>,
 }
 
@@ -57,12 +57,12 @@ pub struct Record<'a> {
 pub struct Diagnosis {
     /// The findings, the worst first.
     pub findings: Vec<DiagnosisFinding>,
-    /// Amplitude of the cosine channel, peak, in volts; `None` where there is no ellipse.
+    /// Amplitude of the cosine channel, peak, in volts; `None` without an ellipse.
     pub amplitude_v: Option<f64>,
     /// White noise of one channel, rms, in volts.
     pub noise_v: Option<f64>,
-    /// Lines that are no harmonics of the signal, the mains among them, the strongest first; `None` where the capture has
-    /// no even times, or too little of them for a spectrum.
+    /// Lines that are no harmonics of the signal, including the mains, strongest first; `None` if the times are not even,
+    /// or the capture is too short for a spectrum.
     pub interference: Option<Vec<Interference>>,
     /// Distance of two lines of that spectrum in hertz.
     pub spacing_hz: Option<f64>,
@@ -72,7 +72,7 @@ pub struct Diagnosis {
     explained: bool,
 }
 
-/// Looks at a capture and at what its analysis gave.
+/// Diagnoses a capture with the result of its analysis.
 pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>, limits: &Limits) -> Diagnosis {
     let mut diagnosis = Diagnosis::default();
     let mut say = |severity, what| diagnosis.findings.push(DiagnosisFinding { severity, kind: what });
@@ -106,14 +106,14 @@ pub fn diagnose(record: &Record<'_>, analysis: Result<&Analysis, &AnalysisError>
             diagnosis.interference = seen.map(|seen| seen.lines);
         }
     }
-    // The order of one severity stays.
+    // The order within one severity stays.
     diagnosis.findings.sort_by_key(|finding| std::cmp::Reverse(finding.severity));
     diagnosis
 }
 
 impl Diagnosis {
-    /// The same by other limits, without the samples: what depends on limits is judged again by the analysis and the mean
-    /// levels of REFSIN and REFCOS in volts that belong to it.
+    /// Returns the same by other limits, without the samples: findings that depend on limits are judged again from the
+    /// analysis and the mean levels of REFSIN and REFCOS in volts.
     #[must_use]
     pub fn by_limits(
         &self,
@@ -142,7 +142,7 @@ impl Diagnosis {
         diagnosis
     }
 
-    /// A residual whose causes are told needs no words of its own.
+    /// Removes a residual whose causes are reported.
     fn leave_out_explained(&mut self) {
         if self.explained {
             self.findings.retain(|finding| !matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))));
@@ -154,7 +154,7 @@ fn severity(share: f64) -> Severity {
     if share >= WARNING_SHARE { Severity::Warning } else { Severity::Notice }
 }
 
-/// Mean levels of REFSIN and REFCOS in volts.
+/// Reports mean levels of REFSIN and REFCOS outside their limits, in volts.
 fn levels(levels_v: Option<(Option<f64>, Option<f64>)>, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Some((refsin, refcos)) = levels_v else { return };
     let ok_v = limits.level_v;
@@ -188,7 +188,7 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
     };
     let difference = mean(values).unwrap_or(0.0);
     let level = mean(reference);
-    // Both may stand at ground, where the pair is open at the encoder and the receiver has no bias.
+    // Both may be at ground, if the pair is open at the encoder and the receiver has no bias.
     let wires = level.map(|level| [(wires.0, level + difference), (wires.1, level)]);
     let at = |is: fn(f64) -> bool| wires.and_then(|wires| wires.into_iter().find(|(_, level)| is(*level)));
     match (at(|level| level < RAILS_V.0), at(|level| level > RAILS_V.1)) {
@@ -199,7 +199,7 @@ fn stuck(record: &Record<'_>, channel: Channel) -> Stuck {
     }
 }
 
-/// The ellipse against its limits. A channel that has lost a wire explains amplitude and gain.
+/// Judges the ellipse by its limits. A channel that has lost a wire explains amplitude and gain.
 fn parameters(analysis: &Analysis, limits: &Limits, say: &mut dyn FnMut(Severity, FindingKind)) {
     let ratio = analysis.ellipse.gain_ratio;
     let half = if within(1.0 / ratio, HALF) {

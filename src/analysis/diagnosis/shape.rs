@@ -10,30 +10,30 @@ use crate::analysis::signal_analysis::Analysis;
 
 /// Sectors of the period in which the distance from the ellipse is averaged.
 const SECTORS: usize = 64;
-/// Most samples that are looked at for that.
+/// Maximum number of samples examined for that.
 const SAMPLES: usize = 1 << 18;
-/// Orders of that curve; the first two are what the ellipse takes.
+/// Orders of that curve; the ellipse absorbs the first two.
 const ORDERS: std::ops::RangeInclusive<usize> = 3..=8;
 /// Sectors of a revolution.
 const OF_REVOLUTION: usize = 36;
-/// Samples a period that are enough to follow the angle.
+/// Samples per period that are enough to follow the angle.
 const FOLLOWED: f64 = 16.0;
 
 /// Distance from the end of the range at which a sample counts as there, as a share of the amplitude.
 const AT_END: f64 = 0.002;
 /// Factor over the share of an unclipped sine, which has √(2·0.002)/π = 2 % there.
 const CUT_OFF: f64 = 3.0 * 0.0201;
-/// Fewest periods: a shaft that stands would leave its samples in one place.
+/// Minimum number of periods: a shaft at rest would have its samples in one place.
 const LEAST_PERIODS: f64 = 2.0;
-/// A sine that is cut off keeps at least so far off its ellipse, rms as a share of the amplitude.
+/// Minimum distance of a clipped sine from its ellipse, rms as a share of the amplitude.
 const LEAST_RESIDUAL: f64 = 0.002;
 
-/// The strongest order of the distance from the ellipse over the period, and its peak as a share of the amplitude; `None`
-/// where not every part of the period has samples.
+/// Returns the strongest order of the distance from the ellipse over the period, and its peak as a share of the amplitude;
+/// `None` if not every part of the period has samples.
 pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(usize, f64)> {
     let correction = analysis.ellipse.correction();
     let mut sectors = [(0.0, 0_u32); SECTORS];
-    // An odd stride does not keep step with a period of 2ⁿ samples.
+    // An odd stride is not synchronous with a period of 2ⁿ samples.
     let stride = (analysis.samples / SAMPLES) | 1;
     for (y, x) in good(samples, analysis).step_by(stride) {
         let (y, x) = correction.apply(y, x);
@@ -53,14 +53,14 @@ pub(super) fn harmonics(samples: &Samples<'_>, analysis: &Analysis) -> Option<(u
             let height = sum / f64::from(*count);
             (sine, cosine) = (sine + height * angle.sin(), cosine + height * angle.cos());
         }
-        // The mean over a sector lessens the higher orders.
+        // The mean over a sector reduces the higher orders.
         let half = TAU / 2.0 * order as f64 / SECTORS as f64;
         2.0 / SECTORS as f64 * f64::hypot(sine, cosine) * half / half.sin()
     };
     ORDERS.map(|order| (order, order_of(order))).max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Channels that are cut off: at which voltage, and the share of the samples that stand there.
+/// Returns clipped channels: the voltage, and the share of the samples at it.
 pub(super) fn clipping(samples: &Samples<'_>, analysis: &Analysis) -> Vec<(Channel, f64, f64)> {
     if analysis.coverage.periods < LEAST_PERIODS || analysis.coverage.residual_rms < LEAST_RESIDUAL {
         return Vec::new();
@@ -117,7 +117,7 @@ pub(super) fn modulation(samples: &Samples<'_>, analysis: &Analysis, periods: u3
     Some((most - least) / (most + least))
 }
 
-/// Sine and cosine of the samples that were not left out.
+/// Returns the sine and cosine of the samples that were not left out.
 fn good<'a>(samples: &Samples<'a>, analysis: &'a Analysis) -> impl Iterator<Item = (f64, f64)> {
     let (sine, cosine) = (samples.sine_v, samples.cosine_v);
     let left_out = analysis.outliers.as_ref().map_or(&[][..], |outliers| &outliers.stretches);

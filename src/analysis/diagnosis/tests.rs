@@ -1,4 +1,4 @@
-//! Signals made by arithmetic with one thing wrong, and good ones of which nothing may be said.
+//! Calculated signals with one fault each, and good ones without any finding.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ mod trust;
 const RATE: f64 = 100_000.0;
 const COUNT: usize = 40_000;
 
-/// Sine and cosine of 0.5 V; of each sample: time, angle in periods.
+/// Sine and cosine of 0.5 V; for each sample: time, angle in periods.
 struct Made {
     time: Vec<f64>,
     sine: Vec<f64>,
@@ -18,7 +18,8 @@ struct Made {
     periods: Option<u32>,
 }
 
-/// 40 000 samples in 0.4 s, with 0.5 mV of noise; `motion` gives periods from seconds, `disturbed` changes sine and cosine.
+/// Returns 40 000 samples in 0.4 s, with 0.5 mV of noise; `motion` gives periods from seconds, `disturbed` changes sine and
+/// cosine.
 fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) -> (f64, f64)) -> Made {
     let mut random = fastrand::Rng::with_seed(3);
     // Four even numbers have a variance of a third.
@@ -35,7 +36,7 @@ fn made(motion: impl Fn(f64) -> f64, disturbed: impl Fn(f64, f64, (f64, f64)) ->
     made
 }
 
-/// 1234.5 periods a second.
+/// 1234.5 periods per second.
 fn steady(time: f64) -> f64 {
     1234.5 * time
 }
@@ -61,7 +62,7 @@ impl Made {
         diagnose(&record, Analysis::of(record.samples).as_ref(), &Limits::HIPERFACE)
     }
 
-    /// The one finding, beside that parameters are uncertain where it is a disturbance.
+    /// Returns the only finding, apart from uncertain parameters if it is a disturbance.
     #[track_caller]
     fn finding(&self) -> DiagnosisFinding {
         let mut found = self.diagnosed().findings;
@@ -100,7 +101,7 @@ fn of_a_good_signal_nothing_is_said() {
 
 #[test]
 fn an_amplitude_that_changes_over_the_revolution_is_no_interference() {
-    // 16 periods a revolution: 77 Hz beside the signal on both sides.
+    // 16 periods per revolution: 77 Hz beside the signal on both sides.
     let wobbling = |_, angle: f64, (sine, cosine)| {
         let amplitude = 1.0 + 0.04 * (angle / 16.0).cos();
         (sine * amplitude, cosine * amplitude)
@@ -111,10 +112,10 @@ fn an_amplitude_that_changes_over_the_revolution_is_no_interference() {
     let finding = capture.finding();
     let FindingKind::Modulation { share } = finding.kind else { panic!("{finding:?}") };
     assert_eq!(finding.severity, Severity::Notice);
-    // The mean over a 36th of a revolution lessens it by a thousandth.
+    // The mean over a 36th of a revolution reduces it by a thousandth.
     near(share, 0.04, 3e-4);
     capture.periods = Some(2_000);
-    // Less than a revolution says nothing of it, so that the distance from the ellipse is what there is to tell.
+    // Less than a revolution does not show it, so the distance from the ellipse is reported.
     let finding = capture.finding();
     assert!(matches!(finding.kind, FindingKind::Limit(OutOfLimits::Residual(_))), "{finding:?}");
 }
@@ -158,7 +159,7 @@ fn the_mains_are_told_with_their_multiples() {
         near(volts, 0.01, 5e-5);
         near(share, 0.02, 1e-4);
     }
-    // Ten milliseconds cannot tell 50 Hz from the mean level.
+    // Ten milliseconds cannot distinguish 50 Hz from the mean level.
     let mut short = made(steady, added(0.01, 0.01, 50.0));
     for column in [&mut short.time, &mut short.sine, &mut short.cosine] {
         column.truncate(1_000);
@@ -190,7 +191,7 @@ fn a_third_harmonic_is_told_whatever_the_motion() {
     let third =
         |_, angle: f64, (sine, cosine)| (sine + 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
     for made in [made(steady, third), made(|time| 30.0 * time * time, third)] {
-        // Of a few periods of an uneven motion the ellipse takes a part of it, which is told as well.
+        // With few periods of an uneven motion the ellipse absorbs a part of it, which is reported as well.
         let finding = made.diagnosed().findings[0];
         let FindingKind::Harmonics { order, share } = finding.kind else { panic!("{finding:?}") };
         assert_eq!((order, finding.severity), (4, Severity::Warning));
@@ -202,7 +203,7 @@ fn a_third_harmonic_is_told_whatever_the_motion() {
 fn a_channel_that_is_cut_off_is_told_with_its_voltage() {
     let cut = |_, _, (sine, cosine): (f64, f64)| (sine, cosine.min(0.45));
     let mut capture = made(steady, cut);
-    // A converter at its end has no noise.
+    // A converter at its limit has no noise.
     capture.cosine.iter_mut().for_each(|value| *value = value.min(0.45));
     let found = capture.diagnosed().findings;
     let cut_off = found.iter().find_map(|finding| match finding.kind {
@@ -212,7 +213,7 @@ fn a_channel_that_is_cut_off_is_told_with_its_voltage() {
     let (channel, volts, samples) = cut_off.unwrap();
     assert_eq!(channel, Channel::Cosine);
     near(volts, 0.45, 1e-9);
-    // arccos(0.9)/π of the time, and what is within 0.2 % below.
+    // arccos(0.9)/π of the time, and the samples within 0.2 % below.
     near(samples, 0.1436, 0.003);
 }
 
@@ -332,7 +333,7 @@ fn of_two_captures_it_is_told_what_became_worse() {
     near(*to_v, (0.01 * 0.01 / 12.0 + 5e-4 * 5e-4_f64).sqrt(), 6e-5);
 }
 
-/// Amplitude, offset of the sine, phase error in radians.
+/// Returns the amplitude, offset of the sine, phase error in radians.
 fn ellipse(amplitude: f64, offset: f64, phase: f64) -> Made {
     made(steady, move |_, angle, (_, cosine)| (amplitude * 0.5 * (angle - phase).sin() + offset, amplitude * cosine))
 }
@@ -403,7 +404,7 @@ fn what_cannot_be_compared_is_told() {
     let died = compare(&good, &dead);
     assert_eq!(died.untold, [NotComparable::NoEllipseAfter]);
     assert!(matches!(died.worse.as_slice(), [DiagnosisFinding { kind: FindingKind::Dead { .. }, .. }]), "{died:?}");
-    // Nobody knows the offset that the first had.
+    // The offset of the first capture is not known.
     let mended = compare(&dead, &ellipse(1.0, 0.05, 0.0).diagnosed());
     assert_eq!(mended, Changes { untold: vec![NotComparable::NoEllipseBefore], ..Changes::default() });
 }

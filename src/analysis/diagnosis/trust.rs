@@ -1,4 +1,4 @@
-//! Reasons to doubt the numbers of an analysis: gaps in the times, a shaft that reversed, few samples a period,
+//! Reasons to doubt the numbers of an analysis: gaps in the times, a shaft that reversed, few samples per period,
 //! disturbances in the samples of the ellipse, columns that are not differences.
 
 use super::{DiagnosisFinding, FindingKind, OutOfLimits, Severity, WARNING_SHARE};
@@ -7,10 +7,10 @@ use crate::analysis::position_error::Basis;
 use crate::analysis::signal_analysis::Analysis;
 
 /// Mean level of a wire, and its amplitude, peak, in volts: 2.0 … 3.0 V and 0.5 Vpp by section 1 of the project's
-/// sine/cosine reference, with room for levels and amplitudes that are not in order.
+/// sine/cosine reference, with a margin for levels and amplitudes out of their limits.
 const WIRE_LEVEL_V: (f64, f64) = (1.5, 3.5);
 const WIRE_AMPLITUDE_V: (f64, f64) = (0.1, 0.6);
-/// A correction harms where it makes the error larger by this factor and by so many electrical degrees.
+/// A correction is harmful if it increases the error by this factor and by this many electrical degrees.
 const LARGER: f64 = 1.1;
 const LARGER_DEG: f64 = 0.2;
 
@@ -30,8 +30,8 @@ pub(super) fn times(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKi
     }
 }
 
-/// An ellipse that takes harmonics for gain or phase adds them once more. Only a motion shows it: the distance from the
-/// ellipse has noise in it.
+/// Checks for an ellipse that takes harmonics for gain or phase and adds them once more. Only a motion shows it: the
+/// distance from the ellipse contains noise.
 pub(super) fn correction(analysis: &Analysis, say: &mut dyn FnMut(Severity, FindingKind)) {
     let Basis::Motion { noise_deg } = analysis.error.basis else { return };
     let (raw_deg, corrected_deg) = (analysis.error.raw_pp_deg(), analysis.error.corrected_pp_deg);
@@ -53,7 +53,7 @@ pub(super) fn uncertain(findings: &[DiagnosisFinding]) -> Option<FindingKind> {
     (share > 0.0).then_some(FindingKind::Uncertain { share })
 }
 
-/// SIN and COS against ground instead of against their references.
+/// Returns SIN and COS against ground instead of against their references.
 pub(super) fn single_ended(ellipse: &Ellipse) -> Option<FindingKind> {
     let within = |value: f64, (least, most): (f64, f64)| (least..=most).contains(&value);
     let (sine_v, cosine_v) = (ellipse.offset_sine_v, ellipse.offset_cosine_v);

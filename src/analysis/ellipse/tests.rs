@@ -12,7 +12,7 @@ const REFERENCE: Ellipse = Ellipse {
     phase_error_rad: 0.052_359_877_559_829_89, // 3°
 };
 
-/// Samples of the model at evenly spread angles from `start` periods on.
+/// Returns the samples of the model at evenly spread angles from `start` periods on.
 fn signals(ellipse: &Ellipse, count: usize, start: f64, periods: f64) -> (Vec<f64>, Vec<f64>) {
     (0..count).map(|i| ellipse.at(TAU * (start + periods * i as f64 / count as f64))).unzip()
 }
@@ -86,7 +86,7 @@ fn noise_moves_the_parameters_by_no_more_than_its_statistics_allow() {
 
 #[test]
 fn unit_mean_level_and_resting_change_nothing() {
-    // Counts of a converter; 2.5 V with a signal of millivolts; and ten thousand samples of a shaft that stands still.
+    // Counts of a converter; 2.5 V with a signal of millivolts; and ten thousand samples of a shaft at rest.
     let wide = Ellipse { amplitude_v: 31_000.0, offset_cosine_v: 32_768.0, offset_sine_v: 32_700.0, ..REFERENCE };
     let (sine, cosine) = signals(&wide, 1000, 0.0, 1.0);
     assert_close(&Ellipse::fit(&sine, &cosine).unwrap(), &wide, 1e-8);

@@ -1,5 +1,5 @@
-//! A block of samples of one column with its pyramid: over every 8 samples their least and greatest value, over every 8
-//! of those the same, up to the whole block. Knows nothing of time, nor where in the history it stands.
+//! A block of samples of one column with its pyramid: the minimum and maximum of every 8 samples, of every 8 of those, and
+//! so on up to the whole block. Independent of time and of its place in the history.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ struct Level {
     start: usize,
 }
 
-/// The levels between the samples and the whole block, the coarsest first, as they lie in memory.
+/// The levels between the samples and the whole block, coarsest first, as in memory.
 const LEVELS: [Level; 3] = [
     Level { size: FAN * FAN * FAN, start: 0 },
     Level { size: FAN * FAN, start: FAN },
@@ -27,7 +27,7 @@ const LEVELS: [Level; 3] = [
 /// Buckets of all levels.
 const BUCKETS: usize = FAN + FAN * FAN + FAN * FAN * FAN;
 
-/// Least and greatest value of some samples, as distances from the block's base, rounded outward. Nothing in it: (∞, −∞).
+/// Minimum and maximum of some samples, as distances from the block's base, rounded outward. Empty: (∞, −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Bucket {
     low: f32,
@@ -61,13 +61,13 @@ impl Bucket {
         other.low >= self.low && other.high <= self.high
     }
 
-    /// A value is so far from the base that no `f32` reaches it.
+    /// Returns whether a value is so far from the base that no `f32` reaches it.
     fn is_beyond(self) -> bool {
         self.low == f32::NEG_INFINITY || self.high == f32::INFINITY
     }
 }
 
-/// A range of values that contains what it was made of. Nothing in it: (∞, −∞).
+/// Range of values that contains its sources. Empty: (∞, −∞).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extent {
     pub(super) min: f64,
@@ -85,20 +85,20 @@ impl Extent {
     }
 }
 
-/// Up to `BLOCK` samples. What it takes is allocated at once, but for the flags, and used again after
-/// [`clear`](Block::clear). The fields are few, so that those of many blocks are looked through quickly.
+/// Up to `BLOCK` samples. Its memory is allocated at once, except the flags, and reused after [`clear`](Block::clear). It
+/// has few fields, so that those of many blocks are scanned quickly.
 #[derive(Debug)]
 pub(super) struct Block<T> {
     values: Vec<T>,
-    /// `BUCKETS` of them; those of which all samples are there are valid.
+    /// `BUCKETS` of them; those with complete samples are valid.
     buckets: Box<[Bucket]>,
-    /// Of the whole block, when it is full.
+    /// Bucket of the whole block, when it is full.
     top: Bucket,
-    /// Base of the buckets: the median of the first few values, so that one outlier does not coarsen the rest. `None`
-    /// until there is a bucket with a value.
+    /// Base of the buckets: the median of the first few values, so that one outlier does not coarsen the rest. `None` until
+    /// there is a bucket with a value.
     base: Option<T>,
     flags: FlagBlock,
-    /// Of the whole block, when it is full and has a value.
+    /// Spread of the whole block, when it is full and has a value.
     spread: Option<Box<Spread<T>>>,
 }
 
@@ -121,8 +121,7 @@ impl<T: Number> Block<T> {
         self.values.len()
     }
 
-    /// Appends `values`, for which there is room, with their flags (none: nothing is remarkable). A value that is not a
-    /// number is bad.
+    /// Appends `values`, which must fit, with their flags (empty: no flags). A value that is not a number is bad.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags]) {
         let start = self.values.len();
         self.values.extend_from_slice(values);
@@ -139,7 +138,7 @@ impl<T: Number> Block<T> {
         self.complete(start);
     }
 
-    /// The line is broken before the sample `at`.
+    /// Breaks the line before the sample `at`.
     pub(super) fn break_before(&mut self, at: usize) {
         self.flags.mark(at, Flags::BREAK);
     }
@@ -152,8 +151,8 @@ impl<T: Number> Block<T> {
         &self.flags
     }
 
-    /// `known`, widened by the values of some samples: exact where they come from samples, rounded outward where from
-    /// buckets. Looks only at what can widen it.
+    /// Returns `known`, widened by the values of some samples: exact from samples, rounded outward from buckets. Only
+    /// examines what can widen it.
     pub(super) fn widen(&self, known: Extent, range: Range<usize>) -> Extent {
         let Some(base) = self.base else { return known.with(self.scan(range)) };
         let mut search = Search {
@@ -176,7 +175,7 @@ impl<T: Number> Block<T> {
         known.with(Extent { min: base.at_most(search.found.low), max: base.at_least(search.found.high) })
     }
 
-    /// Count, mean and deviation of some samples, from the samples themselves.
+    /// Returns the count, mean and deviation of some samples, from the samples themselves.
     pub(super) fn spread(&self, range: Range<usize>) -> Option<Spread<T>> {
         if range == (0..BLOCK) {
             return self.spread.as_deref().copied();
@@ -184,7 +183,7 @@ impl<T: Number> Block<T> {
         self.spread_of(range)
     }
 
-    /// The first sample in `range` that has a value.
+    /// Returns the first sample in `range` that has a value.
     pub(super) fn first_good(&self, range: Range<usize>) -> Option<usize> {
         if self.flags.is_surely_good(range.start) {
             return (!range.is_empty()).then_some(range.start);
@@ -202,7 +201,7 @@ impl<T: Number> Block<T> {
         None
     }
 
-    /// The last sample in `range` that has a value.
+    /// Returns the last sample in `range` that has a value.
     pub(super) fn last_good(&self, range: Range<usize>) -> Option<usize> {
         if self.flags.is_surely_good(range.end.saturating_sub(1)) {
             return range.end.checked_sub(1).filter(|last| *last >= range.start);
@@ -220,7 +219,7 @@ impl<T: Number> Block<T> {
         None
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let spread = self.spread.as_ref().map_or(0, |_| size_of::<Spread<T>>());
         let buckets = self.buckets.len() * size_of::<Bucket>();
@@ -271,15 +270,15 @@ impl<T: Number> Block<T> {
         }
     }
 
-    /// The bucket of a level that the sample `at` is under, if it is complete.
+    /// Returns the bucket of a level that contains the sample `at`, if it is complete.
     fn bucket(&self, level: Level, at: usize) -> Option<Bucket> {
         let number = at / level.size;
         let complete = (number + 1) * level.size <= self.len();
         self.buckets.get(level.start + number).copied().filter(|_| complete)
     }
 
-    /// Looks for what widens the search in `range`: in the buckets of the coarsest of `levels` that lie in it, then in
-    /// what is left on both sides, where each time it may be known from one bucket that there is nothing.
+    /// Searches `range` for what widens the search: in the buckets of the coarsest of `levels` inside it, then in the rest
+    /// on both sides, where a single bucket may show that there is nothing.
     fn search(&self, levels: &[Level], range: Range<usize>, search: &mut Search) {
         let Some((level, finer)) = levels.split_first() else {
             search.samples = search.samples.with(self.scan(range));
@@ -307,7 +306,7 @@ impl<T: Number> Block<T> {
         extremes.map_or(Extent::EMPTY, |(min, max)| Extent { min: min.below(), max: max.above() })
     }
 
-    /// Returns how many samples from `at` on, before `end`, have no value, as far as one look shows.
+    /// Returns how many samples from `at` on, before `end`, have no value, as far as one check shows.
     fn nothing_from(&self, at: usize, end: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = at.is_multiple_of(level.size) && at + level.size <= end;
@@ -316,7 +315,7 @@ impl<T: Number> Block<T> {
         LEVELS.iter().find(empty).map_or(usize::from(self.flags.get(at).contains(Flags::BAD)), |level| level.size)
     }
 
-    /// Returns how many samples before `end`, from `start` on, have no value, as far as one look shows.
+    /// Returns how many samples before `end`, from `start` on, have no value, as far as one check shows.
     fn nothing_before(&self, end: usize, start: usize) -> usize {
         let empty = |level: &&Level| {
             let inside = end.is_multiple_of(level.size) && start + level.size <= end;

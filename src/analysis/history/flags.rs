@@ -12,9 +12,9 @@ pub struct Flags(u8);
 impl Flags {
     /// Nothing.
     pub const NONE: Flags = Flags(0);
-    /// Something is missing between the sample before and this one: they are not to be joined by a line.
+    /// Samples are missing between the previous one and this one: they must not be joined by a line.
     pub const BREAK: Flags = Flags(1);
-    /// The value is not to be believed: it counts nowhere, and the line is broken. Brings [`BREAK`](Flags::BREAK) with it.
+    /// The value is invalid: it counts nowhere, and the line is broken. Implies [`BREAK`](Flags::BREAK).
     pub const BAD: Flags = Flags(2);
     /// The device warned; the value counts.
     pub const WARNING: Flags = Flags(4);
@@ -48,13 +48,13 @@ const GROUP: usize = BLOCK / u64::BITS as usize;
 
 const KINDS: [Flags; 3] = [Flags::BREAK, Flags::BAD, Flags::WARNING];
 
-/// The flags of a block. What groups of samples have stands right here, so that those of the samples, which lie elsewhere
-/// in memory, are looked at only where there is something. Takes memory from the first flag on.
+/// Flags of a block. The flags of groups of samples are stored here, so that those of the samples, which are elsewhere in
+/// memory, are read only if there are any. Allocates memory with the first flag.
 #[derive(Debug, Default)]
 pub(super) struct FlagBlock {
     /// The union over the block.
     any: Flags,
-    /// For each kind of flag, a bit for each group that has it.
+    /// For each kind of flag, one bit per group that has it.
     groups: [u64; KINDS.len()],
     kept: Option<Box<[Flags; BLOCK]>>,
 }
@@ -105,7 +105,7 @@ impl FlagBlock {
         let mut found = self.of_groups(from..to.max(from));
         let edges = if from > to { [range, 0..0] } else { [range.start..from * GROUP, to * GROUP..range.end] };
         for edge in edges.into_iter().filter(|edge| !edge.is_empty()) {
-            // Part of one group, of which nothing new may be to be had.
+            // Part of one group, which may give nothing new.
             let group = edge.start / GROUP;
             if !found.contains(self.of_groups(group..group + 1)) {
                 found |= union(self.samples(edge));
@@ -114,19 +114,19 @@ impl FlagBlock {
         found
     }
 
-    /// Returns whether a look at its group suffices to know that sample `at` has a valid value.
+    /// Returns whether checking its group is enough to know that sample `at` has a valid value.
     pub(super) fn is_surely_good(&self, at: usize) -> bool {
         !self.of_groups(at / GROUP..at / GROUP + 1).contains(Flags::BAD)
     }
 
-    /// The stretches of `range` whose samples have a value to believe.
+    /// Returns the ranges within `range` whose samples have a valid value.
     pub(super) fn good(&self, range: Range<usize>) -> Good<'_> {
         let bad = self.of_groups(range.start / GROUP..range.end.div_ceil(GROUP)).contains(Flags::BAD);
         let samples = self.kept.as_ref().filter(|_| bad).map_or(&[][..], |kept| kept.as_slice());
         Good { samples, range }
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         self.kept.as_ref().map_or(0, |_| size_of::<[Flags; BLOCK]>())
     }

@@ -1,9 +1,9 @@
-//! Samples as they came, for hours: columns of values over one column of times, in blocks of fixed size, with a pyramid
-//! of least and greatest values that makes a picture of any stretch quickly. What was appended stays as it was until it is
+//! Samples as received, for hours: columns of values over one column of times, in blocks of fixed size, with a pyramid of
+//! minimum and maximum values that gives a picture of any range quickly. Appended samples stay unchanged until they are
 //! evicted; nothing is interpolated, smoothed or thinned out.
 //!
-//! Samples are counted from the first that ever came, and this index stays theirs: blocks and buckets begin at multiples
-//! of their size, so what is drawn of a sample does not change while others come or go.
+//! Samples are counted from the very first, and keep this index: blocks and buckets begin at multiples of their size, so
+//! the drawing of a sample does not change while others are added or evicted.
 
 mod block;
 mod flags;
@@ -29,7 +29,7 @@ use times::Times;
 
 use super::Time;
 
-/// Samples in a block: what is allocated and evicted at once.
+/// Samples in a block, the unit of allocation and eviction.
 const BLOCK: usize = 4096;
 
 /// Samples under a bucket of the pyramid, and buckets under a bucket of the next level.
@@ -58,12 +58,13 @@ enum Values<'a> {
 }
 
 impl<'a> Part<'a> {
-    /// Values of a [`Kind::Real`] column. One that is infinite or NaN is kept, and counts as [bad](Flags::BAD).
+    /// Creates a part with values of a [`Kind::Real`] column. An infinite or NaN value is kept, and counts as
+    /// [bad](Flags::BAD).
     pub fn real(values: &'a [f64]) -> Self {
         Part { values: Values::Real(values), flags: &[] }
     }
 
-    /// Values of a [`Kind::Whole`] column.
+    /// Creates values of a [`Kind::Whole`] column.
     pub fn whole(values: &'a [i64]) -> Self {
         Part { values: Values::Whole(values), flags: &[] }
     }
@@ -107,16 +108,16 @@ pub enum Refused {
 /// A sample of one column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Its number, counted from the first sample that ever came.
+    /// Its number, counted from the very first sample.
     pub index: u64,
-    /// When it was taken.
+    /// Time of the sample.
     pub time: Time,
     /// The value as it was appended.
     pub value: Value,
     pub flags: Flags,
 }
 
-/// Columns of samples that were taken together. A column is named by its place in the list given to
+/// Columns of samples that were taken together. A column is identified by its index in the list given to
 /// [`new`](History::new).
 #[derive(Debug)]
 pub struct History {
@@ -147,18 +148,18 @@ impl History {
         History { times: Times::new(keep), columns, keep, longest_pause: None, broken: false }
     }
 
-    /// Samples further apart than this many nanoseconds are not joined: something is missing between them.
+    /// Sets the pause in nanoseconds beyond which samples are not joined: some are missing between them.
     #[must_use]
     pub fn with_longest_pause(self, nanoseconds: i64) -> Self {
         History { longest_pause: Some(nanoseconds), ..self }
     }
 
-    /// Samples are missing before those that come next, in every column.
+    /// Notes that samples are missing before the next ones, in every column.
     pub fn break_before_next(&mut self) {
         self.broken = true;
     }
 
-    /// Appends samples: their times, none earlier than the one before, and a part as long for every column.
+    /// Appends samples: their times, none earlier than the one before, and a part of the same length for every column.
     pub fn append(&mut self, times: &[Time], parts: &[Part<'_>]) -> Result<(), Refused> {
         let fits = |(column, part): (&Column, &Part<'_>)| column.kind() == part.kind() && part.fits(times.len());
         if parts.len() != self.columns.len() || !self.columns.iter().zip(parts).all(fits) {
@@ -188,7 +189,7 @@ impl History {
         Ok(())
     }
 
-    /// The samples that are there, by index.
+    /// Returns the samples that are there, by index.
     pub fn all(&self) -> Range<u64> {
         self.times.first()..self.times.end()
     }
@@ -201,7 +202,7 @@ impl History {
         self.times.get(first.max(self.times.first()))
     }
 
-    /// The samples from `from` on, before `to`, by index.
+    /// Returns the samples from `from` on, before `to`, by index.
     pub fn indices(&self, from: Time, to: Time) -> Range<u64> {
         let from = self.times.search(from);
         from..self.times.search(to).max(from)
@@ -212,7 +213,7 @@ impl History {
         self.times.get(index)
     }
 
-    /// The sample `index` of a column; `None` when it is not there.
+    /// Returns the sample `index` of a column; `None` if it is not stored.
     pub fn sample(&self, column: usize, index: u64) -> Option<Sample> {
         let time = self.times.get(index)?;
         let (value, flags) = match self.columns.get(column)? {
@@ -222,7 +223,8 @@ impl History {
         Some(Sample { index, time, value, flags })
     }
 
-    /// The index of the sample nearest to `time`, the earlier of two that are as near; `None` when there is none at all.
+    /// Returns the index of the sample nearest to `time`, the earlier of two equally near ones; `None` if there are no
+    /// samples.
     pub fn nearest(&self, time: Time) -> Option<u64> {
         let after = self.times.search(time);
         let before = after.checked_sub(1).and_then(|index| Some((index, self.times.get(index)?)));
@@ -236,13 +238,13 @@ impl History {
         }
     }
 
-    /// Bytes on the heap: what is allocated, used or not.
+    /// Returns the allocated bytes on the heap, used or not.
     pub fn memory(&self) -> usize {
         let columns: usize = self.columns.iter().map(Column::memory).sum();
         self.times.memory() + columns + self.columns.capacity() * size_of::<Column>()
     }
 
-    /// Breaks the line in every column where samples of `range` follow a pause, or what is known to be missing.
+    /// Breaks the line in every column where samples of `range` follow a pause or known missing samples.
     fn mark_breaks(&mut self, times: &[Time], range: Range<usize>, last: Option<Time>, index: u64) {
         let pause = self.longest_pause.unwrap_or(i64::MAX);
         let mut before = range.start.checked_sub(1).and_then(|at| times.get(at).copied()).or(last);
@@ -268,7 +270,7 @@ impl Column {
         }
     }
 
-    /// Appends the values of `part` in `range`; ignores values of another kind, which `History::append` has ruled out.
+    /// Appends the values of `part` in `range`; ignores values of another kind, which `History::append` has excluded.
     fn append(&mut self, part: &Part<'_>, range: Range<usize>, keep: usize) {
         let flags = part.flags.get(range.clone()).unwrap_or_default();
         match (self, part.values) {

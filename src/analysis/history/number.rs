@@ -1,4 +1,4 @@
-//! The two kinds of numbers that are kept, and how they are rounded: outward, so that a range never becomes too small.
+//! The two kinds of numbers that are stored, and their rounding: outward, so that a range never becomes too small.
 
 /// A value as it was appended, with nothing rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// The nearest `f64`; exact for counts below 2⁵³.
+    /// Returns the nearest `f64`; exact for counts below 2⁵³.
     pub fn to_f64(self) -> f64 {
         match self {
             Value::Real(real) => real,
@@ -21,23 +21,24 @@ impl Value {
 
 /// The type of the values of a series.
 pub(super) trait Number: Copy + PartialOrd {
-    /// Neither infinite nor NaN.
+    /// Returns whether it is neither infinite nor NaN.
     fn is_number(self) -> bool;
 
-    /// The number's distance from `base` such that [`at_most`](Number::at_most) gives a number that is not above it, and
-    /// hardly below; −∞ when no `f32` reaches.
+    /// Returns the number's distance from `base` such that [`at_most`](Number::at_most) gives a number that is not above
+    /// it, and hardly below; −∞ if no `f32` reaches.
     fn down(self, base: Self) -> f32;
 
-    /// Likewise for [`at_least`](Number::at_least); +∞ when no `f32` reaches.
+    /// Returns the same for [`at_least`](Number::at_least); +∞ if no `f32` reaches.
     fn up(self, base: Self) -> f32;
 
-    /// `self + distance`, rounded down if at all.
+    /// Returns `self + distance`, rounded down if at all.
     fn at_most(self, distance: f32) -> f64;
 
-    /// `self + distance`, rounded up if at all.
+    /// Returns `self + distance`, rounded up if at all.
     fn at_least(self, distance: f32) -> f64;
 
-    /// A distance such that what is not below it, counted from `self`, is not below `known` either; +∞ when none is found.
+    /// Returns a distance such that a value not below it, counted from `self`, is not below `known` either; +∞ if none is
+    /// found.
     fn within_up(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_up(), distance.next_up().next_up()];
@@ -45,7 +46,7 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::INFINITY)
     }
 
-    /// Likewise, of what is not above; −∞ when none is found.
+    /// Returns the same for a value that is not above; −∞ if none is found.
     fn within_down(self, known: f64) -> f32 {
         let distance = (known - self.value().to_f64()) as f32;
         let candidates = [distance, distance.next_down(), distance.next_down().next_down()];
@@ -53,16 +54,16 @@ pub(super) trait Number: Copy + PartialOrd {
         candidates.into_iter().find(holds).unwrap_or(f32::NEG_INFINITY)
     }
 
-    /// `self − base`, rounded to the nearest.
+    /// Returns `self − base`, rounded to the nearest.
     fn minus(self, base: Self) -> f64;
 
-    /// The greatest `f64` that is not above.
+    /// Returns the greatest `f64` that is not above.
     fn below(self) -> f64;
 
-    /// The least `f64` that is not below.
+    /// Returns the least `f64` that is not below.
     fn above(self) -> f64;
 
-    /// The number itself.
+    /// Returns the number itself.
     fn value(self) -> Value;
 }
 
@@ -76,7 +77,7 @@ impl Number for f64 {
         if distance.is_infinite() {
             return f32::NEG_INFINITY;
         }
-        // Every second number is rounded to the wrong side, which no processor foresees: hence no branch.
+        // Every second number is rounded to the wrong side, which no processor predicts: hence no branch.
         distance = moved(distance, -i32::from(base.at_most(distance) > self));
         while base.at_most(distance) > self {
             distance = distance.next_down();
@@ -122,9 +123,9 @@ impl Number for f64 {
     }
 }
 
-/// The `f32` so many steps up, of a finite one by one step; −0 lies a step below 0.
+/// Returns the `f32` this many steps up, of a finite one by one step; −0 is a step below 0.
 fn moved(distance: f32, steps: i32) -> f32 {
-    // Turned over below zero, the bits of the numbers stand in their order.
+    // Inverted below zero, the bits of the numbers are in their order.
     let ordered = |bits: i32| bits ^ ((bits >> 31) & i32::MAX);
     let place = ordered(distance.to_bits().cast_signed()).wrapping_add(steps);
     f32::from_bits(ordered(place).cast_unsigned())

@@ -1,5 +1,5 @@
-//! A stretch of time cut into pixel columns, and what is drawn in each. Contains every extreme, break and flag of the raw
-//! samples however far it is zoomed out; knows nothing of screens.
+//! A range of time divided into pixel columns, and what is drawn in each. Contains every extreme, break and flag of the raw
+//! samples at any zoom; independent of screens.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use super::series::Series;
 use super::{Column, FAN, History};
 use crate::analysis::Time;
 
-/// Equal steps of time, one a pixel column, whose edges are multiples of their width: a picture that scrolls at one zoom
+/// Equal steps of time, one per pixel column, whose edges are multiples of their width: a picture that scrolls at one zoom
 /// keeps its columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
@@ -20,7 +20,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Covers the time from `from` until `to` by as many columns as there are `pixels`, or one more.
+    /// Creates the columns for the time from `from` until `to`: as many as there are `pixels`, or one more.
     pub fn new(from: Time, to: Time, pixels: usize) -> Self {
         let span = i128::from(to.nanoseconds()) - i128::from(from.nanoseconds());
         let width = match i128::try_from(pixels) {
@@ -34,7 +34,7 @@ impl Grid {
         Grid { start: Time::from_nanoseconds(start), width, pixels: usize::try_from(columns).unwrap_or(0) }
     }
 
-    /// Pixel columns.
+    /// Returns the number of pixel columns.
     pub fn pixels(&self) -> usize {
         self.pixels
     }
@@ -51,7 +51,7 @@ impl Grid {
     }
 }
 
-/// The cut of a [`Grid`] through the samples of a history; the same for all of its columns. Samples appended later are
+/// Intersection of a [`Grid`] with the samples of a history; the same for all of its columns. Samples appended later are
 /// not included, and evicted ones are not drawn.
 #[derive(Clone, Debug)]
 pub struct GridCut {
@@ -62,27 +62,27 @@ pub struct GridCut {
 /// The boundary between two pixel columns.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
-    /// Index of the first sample behind it.
+    /// Index of the first sample after it.
     index: u64,
-    /// When the last sample before it was taken.
+    /// Time of the last sample before it.
     before: Option<Time>,
-    /// When the first sample behind it was taken.
+    /// Time of the first sample after it.
     after: Option<Time>,
 }
 
 /// The content of one pixel column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
-    /// When the first sample with a value was taken, or without any value the first sample.
+    /// Time of the first sample with a value, or without any value of the first sample.
     pub from: Time,
-    /// When the last one was taken.
+    /// Time of the last one.
     pub to: Time,
     /// `None` when no sample has a value to believe.
     pub values: Option<Reduced>,
-    /// The union of the flags of the samples; [`BREAK`](Flags::BREAK) if the line is broken in this column or before
-    /// it.
+    /// The union of the flags of the samples; [`BREAK`](Flags::BREAK) if the line is broken in this column or before it.
     pub flags: Flags,
-    /// A line leads from the last value of the pixel column before to the first of this one: no break lies between them.
+    /// A line leads from the last value of the previous pixel column to the first of this one: there is no break between
+    /// them.
     pub joined: bool,
 }
 
@@ -91,35 +91,35 @@ pub struct Pixel {
 pub struct Reduced {
     /// The first, exactly.
     pub first: f64,
-    /// Not above the least of them, and below it by no more than 2⁻²² of the range of the values within 4096 samples around.
+    /// Not above the minimum, and below it by at most 2⁻²² of the range of the values within 4096 samples around.
     pub min: f64,
-    /// Not below the greatest of them, and above it by no more than 2⁻²² of the range of the values within 4096 samples around.
+    /// Not below the maximum, and above it by at most 2⁻²² of the range of the values within 4096 samples around.
     pub max: f64,
     /// The last, exactly.
     pub last: f64,
 }
 
-/// The picture of a column: pixel columns that have samples, in order of time. A line goes through first, min, max and
-/// last of each. The nearest samples to the left and right are included, so that the line leads there.
+/// Picture of a column: pixel columns that have samples, in order of time. A line goes through first, min, max and last of
+/// each. The nearest samples to the left and right are included, so that the line leads there.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     /// The pixel columns; see `raw`.
     pub pixels: Vec<Pixel>,
-    /// There are so few samples that each is a pixel of its own, with the time it was taken.
+    /// There are so few samples that each is a pixel of its own, with its own time.
     pub raw: bool,
 }
 
-/// Up to so many samples a pixel column are given as they are, which is no more to draw than first, min, max and last.
+/// Up to this many samples per pixel column are included unchanged, which is no more to draw than first, min, max and last.
 const FEW: u64 = 4;
 
-/// By no more than this part of its width a pixel column reaches over its edge, to begin where a bucket of the pyramid does.
+/// Part (as divisor) of its width by which a pixel column may extend over its edge, to begin with a bucket of the pyramid.
 const REACH: i64 = 16;
 /// Sizes of the buckets in samples, the largest first.
 const BUCKETS: [u64; 3] = [(FAN * FAN * FAN) as u64, (FAN * FAN) as u64, FAN as u64];
 
 impl History {
     /// Finds the samples of each pixel column. A column of many samples begins where a bucket of the pyramid does, up to a
-    /// sixteenth of its width before its edge; which samples it has depends on nothing but them and the edge.
+    /// sixteenth of its width before its edge; its samples depend only on them and the edge.
     pub fn cut(&self, grid: &Grid) -> GridCut {
         let edge = |pixel: usize| {
             let exact = self.times.search(grid.edge(pixel));
@@ -131,7 +131,7 @@ impl History {
         GridCut { edges: (0..=grid.pixels()).map(edge).collect() }
     }
 
-    /// The beginning of a bucket in place of the first sample behind an edge, where it is hardly earlier.
+    /// Returns the beginning of a bucket in place of the first sample after an edge, if it is only slightly earlier.
     fn rounded(&self, exact: u64, grid: &Grid, pixel: usize) -> u64 {
         let earliest = grid.edge(pixel).plus(-(grid.width() / REACH));
         let is_near = |start: &u64| *start == exact || self.times.get(*start).is_some_and(|time| time >= earliest);
@@ -152,7 +152,7 @@ impl History {
 struct Painter<'a, T> {
     history: &'a History,
     series: &'a Series<T>,
-    /// The last sample with a value in what is painted already.
+    /// The last sample with a value that is already painted.
     last: Option<u64>,
     picture: &'a mut Picture,
 }
@@ -170,7 +170,7 @@ impl<T: Number> Painter<'_, T> {
         if self.picture.raw {
             (from..to).for_each(|index| self.sample(index));
         } else {
-            // Fetched together: these lie far apart in memory, and one does not wait for the other.
+            // Fetched together: these are far apart in memory, and do not wait for each other.
             let ends: Vec<Option<(T, T)>> =
                 pixels.clone().map(|(from, to)| self.series.ends(from.index..to.index)).collect();
             for ((from, to), ends) in pixels.zip(ends) {
@@ -213,7 +213,7 @@ impl<T: Number> Painter<'_, T> {
         if let (Some(first), Some(last)) = (self.series.first_good(range.clone()), self.series.last_good(range)) {
             let good = first..last + 1;
             pixel.joined = self.is_joined(first);
-            // Mostly the first and the last sample are good, and what is known of them need not be fetched again.
+            // Usually the first and the last sample are good, and their known values need not be fetched again.
             let ends = if good == (from.index..to.index) { Some(ends) } else { self.series.ends(good.clone()) };
             pixel.values = ends.map(|ends| self.reduced(good, ends));
             pixel.from = if first == from.index { start } else { self.history.time(first).unwrap_or(start) };
@@ -223,7 +223,7 @@ impl<T: Number> Painter<'_, T> {
         self.picture.pixels.push(pixel);
     }
 
-    /// A line leads from the last sample with a value to the sample `index`.
+    /// Returns whether a line leads from the last sample with a value to the sample `index`.
     fn is_joined(&self, index: u64) -> bool {
         self.last.is_some_and(|last| !self.series.flags(last + 1..index + 1).contains(Flags::BREAK))
     }

@@ -1,4 +1,4 @@
-//! The blocks of one column, found by absolute sample index. When there are enough of them the oldest is used again.
+//! The blocks of one column, found by absolute sample index. When the limit is reached, the oldest is reused.
 
 use std::collections::VecDeque;
 use std::ops::Range;
@@ -18,13 +18,12 @@ pub(super) struct Series<T> {
 }
 
 impl<T: Number> Series<T> {
-    /// Room for `blocks` blocks, which are allocated when they are needed.
+    /// Creates room for `blocks` blocks, which are allocated when they are needed.
     pub(super) fn new(blocks: usize) -> Self {
         Series { blocks: VecDeque::with_capacity(blocks), first: 0 }
     }
 
-    /// Appends `values`, for which there is room in the newest block or which begin a new one. At most `keep` blocks
-    /// are kept.
+    /// Appends `values`, which fit into the newest block or begin a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, values: &[T], flags: &[Flags], keep: usize) {
         if self.blocks.back().is_none_or(|block| block.len() == BLOCK) {
             self.open(keep);
@@ -34,7 +33,7 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// The line is broken before the sample `index`.
+    /// Breaks the line before the sample `index`.
     pub(super) fn break_before(&mut self, index: u64) {
         let (block, at) = self.place(index);
         if let Some(block) = self.blocks.get_mut(block) {
@@ -42,14 +41,14 @@ impl<T: Number> Series<T> {
         }
     }
 
-    /// The sample `index` as it was appended.
+    /// Returns the sample `index` as it was appended.
     pub(super) fn get(&self, index: u64) -> Option<(T, Flags)> {
         let (block, at) = self.place(index);
         let block = self.blocks.get(block).filter(|_| index >= self.first)?;
         Some((block.value(at)?, block.flags().get(at)))
     }
 
-    /// The values of the first and the last sample of `range`, as they were appended; `None` when one is not there.
+    /// Returns the values of the first and the last sample of `range`, as appended; `None` if one is not stored.
     pub(super) fn ends(&self, range: Range<u64>) -> Option<(T, T)> {
         if range.start < self.first || range.is_empty() {
             return None;
@@ -61,8 +60,8 @@ impl<T: Number> Series<T> {
         Some((value(range.start)?, value(range.end - 1)?))
     }
 
-    /// `known`, widened by the values of the samples in `range`, which are all there; see [`Block::widen`]. Whole blocks
-    /// first: what they give saves most of the work on the rest.
+    /// Returns `known`, widened by the values of the samples in `range`, which must all be stored; see [`Block::widen`].
+    /// Whole blocks first: they save most of the work on the rest.
     pub(super) fn widen(&self, known: Extent, range: Range<u64>) -> Extent {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end - 1));
         let widen = |known: Extent, block: usize, range: Range<usize>| {
@@ -85,7 +84,7 @@ impl<T: Number> Series<T> {
     /// Returns the union of the flags in `range`.
     pub(super) fn flags(&self, range: Range<u64>) -> Flags {
         let ((first, from), (last, to)) = (self.place(range.start), self.place(range.end.saturating_sub(1)));
-        // Mostly a single sample, or some of one block.
+        // Usually a single sample, or some of one block.
         if first == last && range.start >= self.first && !range.is_empty() {
             return self.blocks.get(first).map_or(Flags::NONE, |block| block.flags().within(from..to + 1));
         }
@@ -96,7 +95,7 @@ impl<T: Number> Series<T> {
         self.parts(range).map(|(_, block, range)| block.spread(range)).fold(None, together)
     }
 
-    /// The first sample in `range` that has a value.
+    /// Returns the first sample in `range` that has a value.
     pub(super) fn first_good(&self, range: Range<u64>) -> Option<u64> {
         if !range.is_empty() && self.is_surely_good(range.start) {
             return Some(range.start);
@@ -104,7 +103,7 @@ impl<T: Number> Series<T> {
         self.parts(range).find_map(|(start, block, range)| Some(start + block.first_good(range)? as u64))
     }
 
-    /// The last sample in `range` that has a value.
+    /// Returns the last sample in `range` that has a value.
     pub(super) fn last_good(&self, range: Range<u64>) -> Option<u64> {
         if !range.is_empty() && self.is_surely_good(range.end - 1) {
             return Some(range.end - 1);
@@ -112,14 +111,14 @@ impl<T: Number> Series<T> {
         self.parts(range).rev().find_map(|(start, block, range)| Some(start + block.last_good(range)? as u64))
     }
 
-    /// The sample `index` is there and has a value: a quick look, which may miss that it has.
+    /// Returns whether the sample `index` is stored and has a value: a quick check, which may miss that it has.
     fn is_surely_good(&self, index: u64) -> bool {
         let (block, at) = self.place(index);
         let has_it = |block: &&Block<T>| index >= self.first && at < block.len();
         self.blocks.get(block).filter(has_it).is_some_and(|block| block.flags().is_surely_good(at))
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Block::memory).sum();
         blocks + self.blocks.capacity() * size_of::<Block<T>>()
@@ -138,13 +137,14 @@ impl<T: Number> Series<T> {
         self.blocks.push_back(block);
     }
 
-    /// The block of the sample `index`, and where it stands in it.
+    /// Returns the block of the sample `index`, and its place in it.
     fn place(&self, index: u64) -> (usize, usize) {
         let at = index.saturating_sub(self.first) as usize;
         (at / BLOCK, at % BLOCK)
     }
 
-    /// The blocks that `range` touches, as far as there are samples: index of the block's first sample, block, range in it.
+    /// Returns the blocks that `range` touches, as far as there are samples: index of the block's first sample, block,
+    /// range in it.
     fn parts(&self, range: Range<u64>) -> impl DoubleEndedIterator<Item = (u64, &Block<T>, Range<usize>)> {
         let from = range.start.saturating_sub(self.first) as usize;
         let to = range.end.saturating_sub(self.first) as usize;

@@ -1,5 +1,5 @@
-//! Mean and deviation that can be put together from parts, and stay sound for small noise on a large value. Welford's
-//! recurrence in the form for groups: Chan, Golub, LeVeque 1979. Only ever of raw samples.
+//! Mean and deviation that can be combined from parts, and are accurate for small noise on a large value. Welford's
+//! recurrence in the form for groups: Chan, Golub, LeVeque 1979. Only of raw samples.
 
 use super::number::Number;
 
@@ -16,7 +16,7 @@ pub(super) struct Spread<T> {
 }
 
 impl<T: Number> Spread<T> {
-    /// The spread of `values`, which are all numbers; `None` when there are none.
+    /// Returns the spread of `values`, which must all be numbers; `None` if there are none.
     pub(super) fn of(values: &[T]) -> Option<Self> {
         let base = *values.first()?;
         let (min, max) = extremes(values)?;
@@ -53,7 +53,8 @@ pub(super) fn together<T: Number>(one: Option<Spread<T>>, other: Option<Spread<T
     }
 }
 
-/// Returns the least and greatest of `values`, which are all numbers; eight are compared in parallel, as with the sums.
+/// Returns the minimum and maximum of `values`, which must all be numbers; eight are compared in parallel, as with the
+/// sums.
 pub(super) fn extremes<T: Number>(values: &[T]) -> Option<(T, T)> {
     let (groups, rest) = values.as_chunks::<8>();
     let of_groups = groups.split_first().map(|(first, others)| {
@@ -88,7 +89,7 @@ fn greater<T: Number>(one: T, other: T) -> T {
     if other > one { other } else { one }
 }
 
-/// Eight sums side by side, which a processor does in little more time than one.
+/// Returns the eight sums side by side, which a processor does in little more time than one.
 fn sum<T: Number>(values: &[T], term: impl Fn(T) -> f64) -> f64 {
     let (groups, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -1,5 +1,5 @@
-//! Numbers about a stretch of a column. From the raw samples, each of which counts once: what was reduced for a picture is
-//! not used here.
+//! Statistics of a range of a column. From the raw samples, each of which counts once: samples reduced for a picture are
+//! not used.
 
 use std::ops::Range;
 
@@ -7,7 +7,7 @@ use super::number::{Number, Value};
 use super::series::Series;
 use super::{Column, History};
 
-/// The statistics of a range of samples. All but `bad` are of those that have a value.
+/// Statistics of a range of samples. All but `bad` are of those that have a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
     /// Samples with a value, at least 1.
@@ -25,7 +25,7 @@ pub struct Statistics {
 }
 
 impl History {
-    /// The statistics of the samples `indices` of a column; `None` when none of them has a value.
+    /// Returns the statistics of the samples `indices` of a column; `None` if none of them has a value.
     pub fn statistics(&self, column: usize, indices: Range<u64>) -> Option<Statistics> {
         let all = self.all();
         let indices = indices.start.max(all.start)..indices.end.min(all.end);

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use super::BLOCK;
 use crate::analysis::Time;
 
-/// When the samples were taken, in blocks that begin and end with those of the values.
+/// Times of the samples, in blocks that begin and end with those of the values.
 #[derive(Debug)]
 pub(super) struct Times {
     blocks: VecDeque<Vec<Time>>,
@@ -16,7 +16,7 @@ pub(super) struct Times {
 }
 
 impl Times {
-    /// Room for `blocks` blocks, which are allocated when they are needed.
+    /// Creates room for `blocks` blocks, which are allocated when they are needed.
     pub(super) fn new(blocks: usize) -> Self {
         Times { blocks: VecDeque::with_capacity(blocks), starts: VecDeque::with_capacity(blocks), first: 0 }
     }
@@ -46,8 +46,7 @@ impl Times {
         self.blocks.get(at / BLOCK)?.get(at % BLOCK).copied()
     }
 
-    /// Appends `times`, for which there is room in the newest block or which begin a new one. At most `keep` blocks are
-    /// kept.
+    /// Appends `times`, which fit into the newest block or begin a new one. At most `keep` blocks are kept.
     pub(super) fn append(&mut self, times: &[Time], keep: usize) {
         let Some(start) = times.first() else { return };
         if self.room() == 0 {
@@ -76,14 +75,14 @@ impl Times {
         self.first + (number * BLOCK + inside) as u64
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn memory(&self) -> usize {
         let blocks: usize = self.blocks.iter().map(Vec::capacity).sum();
         (blocks + self.starts.capacity()) * size_of::<Time>() + self.blocks.capacity() * size_of::<Vec<Time>>()
     }
 }
 
-/// Returns the index of the first time at or after `time`. Samples are mostly evenly spaced, so the expected place is
+/// Returns the index of the first time at or after `time`. Samples are usually evenly spaced, so the expected place is
 /// tried first.
 fn search_in(times: &[Time], time: Time) -> usize {
     const NEAR: usize = 4;

@@ -1,4 +1,4 @@
-//! Captures with samples that do not belong there, and captures that only look so.
+//! Captures with outliers, and captures that only seem to have some.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +14,7 @@ struct Made {
     cosine: Vec<f64>,
 }
 
-/// `count` samples over so many periods, with noise of that deviation.
+/// Returns `count` samples over this many periods, with noise of that deviation.
 fn made(count: usize, periods: f64, noise_v: f64) -> Made {
     let mut random = fastrand::Rng::with_seed(7);
     let mut noise = || noise_v * ((0..12).map(|_| random.f64()).sum::<f64>() - 6.0);
@@ -67,12 +67,12 @@ fn sparks_in_a_long_capture_leave_no_trace() {
     for at in 0..40 {
         capture.cosine[at * 2_399 + 17] += if at % 2 == 0 { 0.4 } else { -3.0 };
     }
-    // A contact that lets go for 30 samples, and both ends of the capture.
+    // A contact that opens for 30 samples, and both ends of the capture.
     for at in (50_000..50_030).chain([0, 99_999]) {
         (capture.sine[at], capture.cosine[at]) = (0.0, 0.0);
     }
     let told = capture.comes_out(6.0 * 1.8e-5);
-    // Some of the sparks go along the ellipse and not away from it.
+    // Some of the sparks are along the ellipse and not away from it.
     assert!(told.count <= 72 && told.count >= 66, "{}", told.count);
     assert_eq!(told.longest, 30);
     assert_eq!((told.stretches.first(), told.stretches.last()), (Some(&(0..1)), Some(&(99_999..100_000))));
@@ -107,7 +107,7 @@ fn what_belongs_to_the_signal_stays() {
     let mut often = made(20_000, 20.0, 5e-4);
     (0..20_000).step_by(10).for_each(|at| often.sine[at] += 0.3);
     let rest = |share: usize| {
-        // The shaft stands, and turns for the last part.
+        // The shaft stands still, and turns for the last part.
         let (still, turning) = (made(100_000, 0.0, 5e-4), made(100_000 / share, 10.0, 5e-4));
         Made { sine: [still.sine, turning.sine].concat(), cosine: [still.cosine, turning.cosine].concat() }
     };

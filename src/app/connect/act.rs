@@ -46,7 +46,7 @@ impl Studio {
                 let device = connect.device;
                 match connect.url() {
                     Ok(url) => {
-                        // A search may still hold the wire.
+                        // A search may still hold the connection.
                         self.close_dialog();
                         self.open_link(device, url);
                     }
@@ -77,11 +77,11 @@ impl Studio {
         self.edit(|connect| connect.typed = None);
     }
 
-    /// Asks what looks for devices.
+    /// Passes an action to the search.
     fn find(&mut self, action: Payload) {
         let is_its = |form: &dyn AnyForm| form.is_of_finder(&action);
         let Some((tab, place)) = self.place_of_form(is_its) else {
-            // Without a dialog it comes too late.
+            // Without a dialog it is too late.
             if self.connect.is_some() {
                 self.refuse_kind(None);
             }
@@ -96,7 +96,7 @@ impl Studio {
         }
     }
 
-    /// The user says that no other master is on the line of the form.
+    /// Continues after the user has confirmed that no other master is on the line of the form.
     pub(in crate::app) fn find_confirmed(&mut self, tab: Tab) {
         let at = |connect: &Connect| connect.forms.iter().position(|(own, _)| *own == tab);
         if let Some(place) = self.connect.as_ref().and_then(at) {
@@ -104,7 +104,7 @@ impl Studio {
         }
     }
 
-    /// A task of a search has come back.
+    /// Handles the result of a task of a search.
     pub(in crate::app) fn finder_done(&mut self, tab: Tab, done: Payload) {
         let Some(kind) = self.services.world.kinds.of_tab(tab) else { return self.refuse_kind(None) };
         let forms = self.connect.as_mut().map(|connect| &mut connect.forms);
@@ -120,7 +120,7 @@ impl Studio {
         forms.iter().enumerate().find_map(|(at, (tab, form))| is_it(form.as_ref()).then_some((*tab, at)))
     }
 
-    /// Hands the rest of the studio to a form of the dialog, and does what that asks for.
+    /// Passes the rest of the studio to a form of the dialog, and carries out its requests.
     fn with_finder(&mut self, tab: Tab, place: usize, act: impl FnOnce(&mut dyn AnyForm, &mut FinderContext<'_>)) {
         let Some(mut connect) = self.connect.take() else { return };
         let link = connect.url();
@@ -137,7 +137,7 @@ impl Studio {
         }
     }
 
-    /// Looks for the serial ports; those used before for this kind of device come first.
+    /// Lists the serial ports; those used before for this kind of device come first.
     fn list_ports(&self) {
         if let Some(connect) = &self.connect {
             list_ports(&self.services, self.settings.links(connect.device));

@@ -1,4 +1,4 @@
-//! What a search may use besides the connection form it belongs to.
+//! Resources that a search may use besides the connection form it belongs to.
 
 use crossbeam_channel::Receiver;
 
@@ -9,7 +9,7 @@ use crate::app::studio::Studio;
 use crate::app::tab::Tab;
 use crate::link::LinkUrl;
 
-/// The context of a search: what it may use besides the connection form it belongs to.
+/// Resources that a search may use besides the connection form it belongs to.
 pub struct FinderContext<'a> {
     studio: &'a mut Studio,
     tab: Tab,
@@ -23,7 +23,7 @@ pub struct FinderContext<'a> {
 pub(super) struct Next {
     /// Closes, and connects to this device.
     pub(super) found: Option<LinkUrl>,
-    /// Says why that was not done.
+    /// Shows why that was not done.
     pub(super) problem: Option<Text>,
 }
 
@@ -44,7 +44,7 @@ impl<'a> FinderContext<'a> {
     /// Returns the link of the dialog.
     ///
     /// # Errors
-    /// A sentence that says why it cannot be used.
+    /// A sentence that tells why it cannot be used.
     pub fn link(&self) -> Result<LinkUrl, Text> {
         self.link.clone()
     }
@@ -54,18 +54,18 @@ impl<'a> FinderContext<'a> {
         self.studio.new_number()
     }
 
-    /// Lets go of the session on this wire, and of a tool on it, unless the session writes: `why` is told there. The channel,
-    /// where there is one, closes when the wire is free.
+    /// Releases the session on this connection, and a tool on it, unless the session writes: `why` is reported there. The
+    /// channel, if any, closes when the connection is free.
     ///
     /// # Errors
-    /// The session writes: which one.
+    /// The session that writes.
     pub fn free_wire(&mut self, url: &LinkUrl, why: Text) -> Result<Option<Receiver<()>>, Text> {
         let earlier = self.studio.free_wire(url, why)?;
         self.studio.free_wire_of_tools(url);
         Ok(earlier)
     }
 
-    /// Asks whether another master is on the line; the search goes on where there is none.
+    /// Asks whether another master is on the line; the search continues if there is none.
     pub fn ask_other_master(&mut self, url: &LinkUrl) {
         self.studio.question = Some(Question::other_master(url, Then::Find(self.tab)));
     }
@@ -75,7 +75,7 @@ impl<'a> FinderContext<'a> {
         self.problem = Some(problem);
     }
 
-    /// Closes the dialog and connects to a device that was found: about other masters on its line it was asked before.
+    /// Closes the dialog and connects to a device that was found: other masters on its line were asked about before.
     pub fn open_found(&mut self, url: LinkUrl) {
         self.found = Some(url);
     }

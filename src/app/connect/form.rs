@@ -1,5 +1,5 @@
-//! The connection form of a kind of device, and what looks for such devices from there: typed in the device's folder,
-//! object-safe for the dialog. One adapter stands between the two.
+//! The connection form of a kind of device, and its search for devices: typed in the device's folder, object-safe for the
+//! dialog. One adapter connects the two.
 
 #![warn(missing_docs)]
 
@@ -14,7 +14,7 @@ use crate::app::payload::{Payload, WrongKind};
 use crate::app::services::Services;
 use crate::link::LinkUrl;
 
-/// A link to a kind of device as entries to be filled in. Entries of another way to the device are kept.
+/// Link to a kind of device as entries. Entries of another kind of connection are kept.
 pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// The search for devices of the form; [`NoFinder`] for none.
     type Finder: Finder<Form = Self>;
@@ -22,23 +22,23 @@ pub trait FormModel: Clone + PartialEq + Send + 'static {
     /// Returns the link to the virtual device that the window begins with.
     fn usual() -> LinkUrl;
 
-    /// Returns the form filled in as a link says.
+    /// Returns the form filled in from a link.
     fn from_url(url: &LinkUrl) -> Self;
 
-    /// Returns the link that the entries stand for. What is as usual is left out.
+    /// Returns the link of the entries. Default values are left out.
     ///
     /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
+    /// A sentence that names the invalid entry and the allowed values.
     fn url(&self) -> Result<LinkUrl, Text>;
 
     /// Fills in the file of a recording.
     fn set_file(&mut self, _file: String) {}
 
-    /// Returns what a link to such a device looks like.
+    /// Returns an example of a link to such a device.
     fn example(&self) -> &'static str;
 }
 
-/// Looks for devices from a connection form: on its line, or in the network.
+/// Searches for devices from a connection form: on its line, or in the network.
 pub trait Finder: Default + 'static {
     /// The form that it fills in.
     type Form;
@@ -50,13 +50,13 @@ pub trait Finder: Default + 'static {
     /// Carries out an action.
     fn act(&mut self, action: Self::Action, form: &mut Self::Form, context: &mut FinderContext<'_>);
 
-    /// Handles the result of a task; `None` where the dialog was closed meanwhile.
+    /// Handles the result of a task; `None` if the dialog was closed meanwhile.
     fn done(finder: Option<&mut Self>, done: Self::Done, services: &mut Services);
 
-    /// Goes on after the user has confirmed that no other master is on the line.
+    /// Continues after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, _context: &mut FinderContext<'_>) {}
 
-    /// Looks what has happened since the last time.
+    /// Takes in all events since the last call.
     fn pump(&mut self) {}
 
     /// Returns whether it holds the wire of the form.
@@ -67,13 +67,13 @@ pub trait Finder: Default + 'static {
     /// Stops.
     fn stop(&mut self) {}
 
-    /// Ends and forgets what it found. The channel, where there is one, closes when the wire is free.
+    /// Ends the search and forgets its results. The channel, if any, closes when the connection is free.
     fn end(&mut self, _services: &mut Services) -> Option<Receiver<()>> {
         None
     }
 }
 
-/// Looks for nothing.
+/// No search.
 pub struct NoFinder<F>(PhantomData<fn() -> F>);
 
 impl<F> Default for NoFinder<F> {
@@ -96,48 +96,48 @@ impl<F: 'static> Finder for NoFinder<F> {
     }
 }
 
-/// The form of a kind of device, as the dialog uses it. Implemented for every [`FormModel`].
+/// Form of a kind of device, as used by the dialog. Implemented for every [`FormModel`].
 pub trait AnyForm {
     /// Returns the entries.
     fn form(&self) -> &dyn Any;
-    /// Returns what looks for devices.
+    /// Returns the search.
     fn finder(&self) -> &dyn Any;
-    /// Returns what looks for devices, to be changed.
+    /// Returns the search, to be changed.
     fn finder_mut(&mut self) -> &mut dyn Any;
-    /// Returns the link that the entries stand for.
+    /// Returns the link of the entries.
     ///
     /// # Errors
-    /// A sentence that says which entry cannot be used and what would be allowed.
+    /// A sentence that names the invalid entry and the allowed values.
     fn url(&self) -> Result<LinkUrl, Text>;
-    /// Fills in the entries as a link says.
+    /// Fills in the entries from a link.
     fn take(&mut self, url: &LinkUrl);
     /// Fills in the file of a recording.
     fn set_file(&mut self, file: String);
-    /// Returns what a link to such a device looks like.
+    /// Returns an example of a link to such a device.
     fn example(&self) -> &'static str;
     /// Returns whether these are entries of this form.
     fn is_of_form(&self, entries: &Payload) -> bool;
-    /// Returns whether this is an action of its finder.
+    /// Returns whether this is an action of its search.
     fn is_of_finder(&self, action: &Payload) -> bool;
     /// Takes edited entries.
     ///
     /// # Errors
     /// They are of another kind of device.
     fn edit(&mut self, entries: Payload) -> Result<(), WrongKind>;
-    /// Passes an action to the finder. Returns whether it has filled in the form.
+    /// Passes an action to the search. Returns whether it has filled in the form.
     ///
     /// # Errors
     /// The action is of another kind of device.
     fn find(&mut self, action: Payload, context: &mut FinderContext<'_>) -> Result<bool, WrongKind>;
-    /// Goes on after the user has confirmed that no other master is on the line.
+    /// Continues after the user has confirmed that no other master is on the line.
     fn confirmed(&mut self, context: &mut FinderContext<'_>);
-    /// Looks what its finder has come to.
+    /// Takes in the events of its search.
     fn pump(&mut self);
-    /// Returns whether its finder holds the wire.
+    /// Returns whether its search holds the connection.
     fn is_running(&self) -> bool;
-    /// Stops its finder.
+    /// Stops its search.
     fn stop(&mut self);
-    /// Ends its finder. The channel, where there is one, closes when the wire is free.
+    /// Ends its search. The channel, if any, closes when the connection is free.
     fn end(&mut self, services: &mut Services) -> Option<Receiver<()>>;
 }
 

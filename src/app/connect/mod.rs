@@ -1,5 +1,5 @@
-//! The connection dialog: a link as a form, the ports of this machine, and what looks for devices. It knows no kind of
-//! device: each brings its form.
+//! The connection dialog: a link as a form, the ports of this computer, and the search for devices. Independent of the
+//! kinds of devices: each brings its form.
 
 mod act;
 pub mod context;
@@ -28,9 +28,9 @@ use crate::link::LinkUrl;
 /// An action of the dialog.
 pub enum ConnectAction {
     Open,
-    /// Close it; a search ends.
+    /// Close the dialog; a search ends.
     Close,
-    /// Look for serial ports again.
+    /// List the serial ports again.
     ListPorts,
     /// Another kind of device.
     Device(Tab),
@@ -38,12 +38,12 @@ pub enum ConnectAction {
     Edit(Payload),
     /// A request to the search for devices; see [`ConnectAction::find`].
     Find(Payload),
-    /// A link was typed, pasted or chosen; where it can be used, it fills in the form.
+    /// A link was typed, pasted or selected; if it is valid, it fills in the form.
     Use(String),
     AskRecording,
     /// A recording was chosen.
     Recording(PathBuf),
-    /// Connect as the form says.
+    /// Connect with the link of the form.
     Connect,
     /// End the search.
     StopSearch,
@@ -55,7 +55,7 @@ impl ConnectAction {
         ConnectAction::Edit(Payload::of(form))
     }
 
-    /// Returns an action of what looks for devices.
+    /// Returns an action of a search.
     pub fn find<S: Finder>(action: S::Action) -> Self {
         ConnectAction::Find(Payload::of(action))
     }
@@ -67,9 +67,9 @@ pub struct Connect {
     pub device: Tab,
     kinds: Kinds,
     forms: Vec<(Tab, Box<dyn AnyForm>)>,
-    /// The link as it was typed, until the form is edited; `None`: it is what the form stands for.
+    /// The typed link, until the form is edited; `None`: the link is that of the form.
     pub typed: Option<String>,
-    /// The ports of this machine; `None` while they are being looked for.
+    /// The ports of this computer; `None` while they are being listed.
     pub ports: Option<Result<Vec<Offer>, Text>>,
     /// Why the last request was not carried out.
     pub problem: Option<Text>,
@@ -87,7 +87,7 @@ impl Connect {
         self.forms.iter().find_map(|(_, form)| form.form().downcast_ref())
     }
 
-    /// Returns what looks for devices, of that type.
+    /// Returns the search of that type.
     pub fn finder<S: Any>(&self) -> Option<&S> {
         self.forms.iter().find_map(|(_, form)| form.finder().downcast_ref())
     }
@@ -100,10 +100,10 @@ impl Connect {
         self.forms.iter_mut().map(|(_, form)| form)
     }
 
-    /// The link that was typed, else the one that the form stands for.
+    /// Returns the typed link, else that of the form.
     ///
     /// # Errors
-    /// A sentence that says what cannot be used and what would be allowed.
+    /// A sentence that names what is invalid and what would be allowed.
     pub fn url(&self) -> Result<LinkUrl, Text> {
         match &self.typed {
             Some(link) => self.read(link),
@@ -117,7 +117,7 @@ impl Connect {
         target::checked(url, |url| self.kinds.of_tab(self.device).map_or(Ok(()), |kind| kind.check(url)))
     }
 
-    /// A link was typed; the form follows it where it can be used.
+    /// Takes a typed link; the form follows it if it is valid.
     pub(super) fn take(&mut self, link: String) {
         let (device, url) = (self.device, self.read(&link));
         if let (Ok(url), Some((_, form))) = (url, self.forms.iter_mut().find(|(tab, _)| *tab == device)) {
@@ -126,12 +126,12 @@ impl Connect {
         self.typed = Some(link);
     }
 
-    /// A search for a device runs, on the wire of the form.
+    /// Returns whether a search for a device runs, on the wire of the form.
     pub fn is_searching(&self) -> bool {
         self.forms.iter().any(|(_, form)| form.is_running())
     }
 
-    /// The link as text: as it was typed, else as the form stands for it; empty where it stands for none.
+    /// Returns the link as text: as typed, else of the form; empty if the form has none.
     pub fn link(&self) -> String {
         match &self.typed {
             Some(link) => link.clone(),
@@ -144,7 +144,7 @@ impl Connect {
         self.own().map(AnyForm::example).unwrap_or_default()
     }
 
-    /// Looks what searches have come to.
+    /// Takes in the events of searches.
     pub(super) fn pump(&mut self) {
         self.forms_mut().for_each(|form| form.pump());
     }
@@ -155,7 +155,7 @@ impl Connect {
     }
 }
 
-/// The serial ports, as a task's result; `links` are the links used, the latest first.
+/// Lists the serial ports, as a task's result; `links` are the links used, the latest first.
 pub(super) fn list_ports(services: &Services, links: &[String]) {
     let (ports, links) = (services.world.ports.clone(), links.to_vec());
     services.tasks.run("ports", move || {

@@ -1,4 +1,5 @@
-//! The parameters of a link beside the entries of its form, in both directions: what an entry says, and what has none.
+//! Conversion between the parameters of a link and the entries of its form, in both directions, and parameters without an
+//! entry.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +8,7 @@ use crate::app::{Text, explain};
 use crate::link::{LinkUrl, Query, Scheme};
 use crate::parameter::Entry;
 
-/// A parameter of a link and its value.
+/// Parameter of a link with its value.
 pub(crate) type Pair = (String, String);
 
 /// Returns the parameters of a link that have no entry; `take` fills an entry in and returns whether there was one.
@@ -35,14 +36,14 @@ impl Typed {
         };
     }
 
-    /// Fills in the entry of a parameter; false where there is none.
+    /// Fills in the entry of a parameter; returns false if there is none.
     pub(crate) fn take(&mut self, entries: &[Entry], name: &str, value: &str) -> bool {
         let entry = entries.iter().find(|entry| entry.key == name);
         entry.inspect(|entry| self.set(entry.key, value)).is_some()
     }
 }
 
-/// The parameters of a link as the entries of its form say them, in that order. What is as usual is left out.
+/// Parameters of a link from the entries of its form, in that order. Default values are left out.
 #[derive(Default)]
 pub(crate) struct Parameters(Vec<Pair>);
 
@@ -67,7 +68,7 @@ impl Parameters {
         }
     }
 
-    /// The same of a number: a German keyboard has a comma where the point should be.
+    /// Adds a number: a German keyboard has a comma for the decimal point.
     pub(crate) fn decimal(&mut self, name: &str, entry: &str) {
         self.entry(name, &entry.replace(',', "."));
     }
@@ -81,10 +82,10 @@ impl Parameters {
         }
     }
 
-    /// The link with them.
+    /// Returns the link with them.
     ///
     /// # Errors
-    /// A sentence where a character would end a part of the link, or the parts make none.
+    /// A sentence if a character would end a part of the link, or the parts make no link.
     pub(crate) fn link(&self, (scheme, target): (Scheme, String)) -> Result<LinkUrl, Text> {
         let unfit = |text: &str, characters: &[char]| text.contains(characters).then(|| text.to_owned());
         let unfit = unfit(&target, &['?'])
@@ -103,7 +104,7 @@ impl Parameters {
 pub(crate) mod tests {
     use super::*;
 
-    /// Each link fills a form, and what that stands for is the same link; parameters may stand in another order.
+    /// Checks that each link fills a form that gives the same link; parameters may be in another order.
     pub(crate) fn assert_comes_back(links: &[&str], through: impl Fn(&LinkUrl) -> Result<LinkUrl, Text>) {
         let sorted = |url: &LinkUrl| {
             let mut pairs = url.query.pairs().to_vec();

@@ -1,4 +1,4 @@
-//! The serial ports that the connection form offers, in the order in which they are likely to be meant.
+//! The serial ports offered by the connection form, the most likely first.
 
 use crate::link::{LinkUrl, PortInfo, Scheme};
 
@@ -11,13 +11,13 @@ pub struct Offer {
     pub description: String,
     /// It was used before.
     pub used: bool,
-    /// It is there now: the system lists it, or it is a path that exists, as that of a pseudo-terminal does, which is never
-    /// listed. A port used before may be unplugged.
+    /// It exists now: the system lists it, or its path exists, like that of a pseudo-terminal, which is never listed. A
+    /// port used before may be unplugged.
     pub listed: bool,
 }
 
-/// Ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest first;
-/// `exists` looks for a path that the system does not list.
+/// Returns ports used before, the latest first, then USB adapters, then the rest. `links` are the links used, the latest
+/// first; `exists` checks a path that the system does not list.
 pub fn offered_ports(ports: &[PortInfo], links: &[String], exists: impl Fn(&str) -> bool) -> Vec<Offer> {
     let mut offers: Vec<Offer> = Vec::new();
     for url in links.iter().filter_map(|link| link.parse::<LinkUrl>().ok()) {

@@ -9,21 +9,21 @@ use crate::link::{LinkUrl, UrlError};
 use crate::sim::ConfigError;
 use crate::worker::OpenError;
 
-/// An entry without the blanks around it.
+/// Returns an entry without the blanks around it.
 ///
 /// # Errors
-/// `missing`, where it is empty.
+/// `missing`, if it is empty.
 pub(crate) fn entered(entry: &str, missing: &'static str) -> Result<String, Text> {
     let entry = entry.trim();
     if entry.is_empty() { Err(Text::new(missing)) } else { Ok(entry.to_owned()) }
 }
 
-/// An entry, unless it is empty.
+/// Returns an entry unless it is empty.
 pub(crate) fn filled(entry: &str) -> Option<String> {
     Some(entry.trim().to_owned()).filter(|entry| !entry.is_empty())
 }
 
-/// Sentences that say that something is still to be entered.
+/// Texts that ask for a missing entry.
 const MISSING: [&str; 6] = [
     "form.port_missing",
     "form.host_missing",
@@ -38,7 +38,7 @@ pub fn is_missing(problem: &Text) -> bool {
     MISSING.contains(&problem.id())
 }
 
-/// The link, where its kind of device takes it.
+/// Returns the link if its kind of device accepts it.
 ///
 /// # Errors
 /// As [`refused`].
@@ -69,15 +69,15 @@ pub(crate) fn refused(url: &LinkUrl, error: &OpenError) -> Text {
     }
 }
 
-/// A link that no entry stands for cannot be used.
+/// Returns the text for a link without any invalid entry that cannot be used.
 pub(crate) fn other(why: Text) -> Text {
     Text::new("form.other").with_text("why", why)
 }
 
-/// Host and port as a link takes them.
+/// Returns the host and port as a link takes them.
 ///
 /// # Errors
-/// A sentence that says which of them cannot be used.
+/// A sentence that names the invalid one.
 pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     let host = entered(host, "form.host_missing")?;
     let host = match host.parse::<Ipv6Addr>() {
@@ -94,21 +94,21 @@ pub(crate) fn host_and_port(host: &str, port: &str) -> Result<String, Text> {
     }
 }
 
-/// The same, where an empty port stands for the usual one.
+/// Returns the same, with the default for an empty port.
 ///
 /// # Errors
-/// As [`host_and_port`]; `missing`, where no host is entered.
+/// As [`host_and_port`]; `missing`, if no host is entered.
 pub(crate) fn host_and_usual_port(host: &str, missing: &'static str, port: &str, usual: &str) -> Result<String, Text> {
     host_and_port(&entered(host, missing)?, filled(port).as_deref().unwrap_or(usual))
 }
 
-/// Host and port of a place in the network, as a link has them; an empty port where it has none.
+/// Splits a network address into host and port as in a link; an empty port if it has none.
 pub(crate) fn parted(place: &str) -> (String, String) {
     let (host, port) = place.rsplit_once(':').unwrap_or((place, ""));
     (host.to_owned(), port.to_owned())
 }
 
-/// The same; the port is empty where it is the usual one.
+/// Returns the same; the port is empty if it is the default.
 pub(crate) fn parted_from_usual(place: &str, usual: &str) -> (String, String) {
     let (host, port) = parted(place);
     (host, Some(port).filter(|port| port != usual).unwrap_or_default())
@@ -122,7 +122,7 @@ pub(crate) fn adapter_in_network(target: &str) -> Option<&str> {
     target.strip_prefix(TCP)
 }
 
-/// The target of a link to an adapter in the network.
+/// Returns the target of a link to an adapter in the network.
 ///
 /// # Errors
 /// As [`host_and_port`].

@@ -17,7 +17,7 @@ use crate::profile::Document;
 use crate::store::{Backup, DeviceKey, Entry, StatusEntry};
 
 impl AnyDevice {
-    /// Returns the device as what it is; `None` where it is of another kind.
+    /// Returns the device as its type; `None` if it is of another kind.
     pub fn get<M: Any>(&self) -> Option<&M> {
         (self as &dyn Any).downcast_ref()
     }
@@ -31,7 +31,7 @@ impl AnyDevice {
         self.state().id
     }
 
-    /// The name by which the log and the jobs call it.
+    /// Returns the name by which the log and the jobs call it.
     pub fn name(&self) -> String {
         self.state().name()
     }
@@ -69,17 +69,17 @@ impl AnyDevice {
         &self.state().trace
     }
 
-    /// This is the attempt to open its link that counts.
+    /// Returns whether this is the attempt to open its link that counts.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.state().is_attempt(attempt)
     }
 
-    /// Backups, or why there are none; `None`: not asked for yet.
+    /// Returns the backups, or why there are none; `None`: not requested yet.
     pub fn backups(&self) -> Option<&Result<Vec<Backup>, Text>> {
         self.state().backups.as_ref()
     }
 
-    /// Writes of this device that the logbook knows, or why it does not tell; `None`: not asked for yet.
+    /// Returns the writes of this device in the logbook, or why it has none; `None`: not requested yet.
     pub fn writes(&self) -> Option<&Result<Vec<Entry>, Text>> {
         self.state().writes.as_ref()
     }
@@ -99,12 +99,12 @@ impl AnyDevice {
         !matches!(self.phase(), Phase::Opening)
     }
 
-    /// A review of a write is open.
+    /// Returns whether a review of a write is open.
     pub fn is_reviewing(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_reviewing)
     }
 
-    /// The review of a write, where one is on its way.
+    /// Returns the review of a write, if there is one.
     pub fn sheet(&self) -> Option<ReviewSheet> {
         self.memory()?.sheet()
     }
@@ -128,7 +128,7 @@ impl AnyDevice {
         }
     }
 
-    /// A backup was read, or not.
+    /// Handles the end of reading a backup.
     pub(in crate::app) fn take_backup(
         &mut self,
         of: &DeviceKey,
@@ -150,7 +150,7 @@ impl AnyDevice {
         self.state().suggested_file()
     }
 
-    /// A save has come to a question: another one may begin.
+    /// Notes that a save has led to a question: another one may begin.
     pub(in crate::app) fn save_waits(&mut self) {
         self.state_mut().is_saving = false;
     }

@@ -16,7 +16,7 @@ pub enum DeviceCommand {
     Read,
     /// Ask where to save a profile.
     AskSave,
-    /// Show what writing the edits would do.
+    /// Show the effect of writing the edits.
     Review,
     /// Read the position all the time, or no more.
     Poll(Option<Duration>),
@@ -28,7 +28,7 @@ pub enum DeviceCommand {
     Redo,
     /// Take all edits back.
     RevertAll,
-    /// Show what restoring a backup would do.
+    /// Show the effect of restoring a backup.
     Restore(PathBuf),
     /// Ask for a profile to restore.
     AskRestore,
@@ -36,7 +36,7 @@ pub enum DeviceCommand {
     AskCompare,
     /// Show what differs from a profile on disk.
     Compare(PathBuf),
-    /// Show what writing this profile into a connected device would do.
+    /// Show the effect of writing this profile to a connected device.
     WriteInto(SessionId),
 }
 

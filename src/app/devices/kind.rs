@@ -1,5 +1,5 @@
-//! A kind of device, before there is one on the desk: its tab, its links, its profiles. A device implements [`DeviceType`];
-//! one adapter makes [`DeviceKind`] of it, which the studio has a list of.
+//! A kind of device before any is open: its tab, its links, its profiles. A device implements [`DeviceType`]; one adapter
+//! makes a [`DeviceKind`] of it, which the studio lists.
 
 #![warn(missing_docs)]
 
@@ -22,33 +22,33 @@ use crate::worker::OpenError;
 
 /// A kind of device, as the device implements it.
 pub trait DeviceType: DeviceModel + Sized {
-    /// It for the list of kinds.
+    /// Entry for the list of kinds.
     const KIND: &'static dyn DeviceKind = &KindOf::<Self>(PhantomData);
 
-    /// The name of its bus, the same in every language.
+    /// Name of its bus, the same in every language.
     const BUS: &'static str;
 
-    /// Its profile.
+    /// Type of its profile.
     type Profile: Profile;
 
-    /// Its form in the connection dialog.
+    /// Type of its form in the connection dialog.
     type Form: FormModel;
 
-    /// Tables that its profiles are read with, besides their own text.
+    /// Tables required to read its profiles, besides their text.
     type Tables: Send + 'static;
 
-    /// Checks whether a link can lead to such a device, as far as that can be told without opening it.
+    /// Checks whether a link can lead to such a device, as far as possible without opening it.
     ///
     /// # Errors
-    /// It cannot: why.
+    /// Why it cannot.
     fn check(url: &LinkUrl) -> Result<(), OpenError>;
 
-    /// Returns whether another master may be on the line behind a link: then a person is asked before anything is sent.
+    /// Returns whether another master may be on the line behind a link: the user is then asked before anything is sent.
     fn may_have_other_master(_url: &LinkUrl) -> bool {
         false
     }
 
-    /// Returns a device of which nothing is known but what the profile says that was opened, with what that is read with.
+    /// Creates a device with nothing known but the profile that was opened, with the tables for reading it.
     fn begin(
         session: Session<Self::Device>,
         profile: Option<(&Self::Profile, Self::Tables)>,
@@ -60,7 +60,7 @@ pub trait DeviceType: DeviceModel + Sized {
         Self::begin(Session::at_link(id, url), None, services)
     }
 
-    /// Reads what its profiles are read with. Runs on the thread of a task.
+    /// Reads the tables for its profiles. Runs on the thread of a task.
     fn tables(store: &Store) -> Self::Tables;
 
     /// Returns a profile.
@@ -77,13 +77,13 @@ pub trait DeviceType: DeviceModel + Sized {
         own
     }
 
-    /// Returns the words for why a profile of this kind is refused; `None` for a cause that is not this kind's.
+    /// Returns the text for the refusal of a profile of this kind; `None` for a cause of another kind.
     fn explain(_cause: &Cause) -> Option<Text> {
         None
     }
 
-    /// Returns a profile that is in no file yet; `None` for a kind whose profiles come from devices alone. `is_taken` tells
-    /// which names others have.
+    /// Returns a profile that is in no file yet; `None` for a kind whose profiles come only from devices. `is_taken` tells
+    /// whether a name is in use.
     fn new_profile(_id: SessionId, _is_taken: &dyn Fn(&Path) -> bool, _services: &mut Services) -> Option<Self> {
         None
     }
@@ -92,7 +92,7 @@ pub trait DeviceType: DeviceModel + Sized {
 /// Puts a profile on the desk.
 pub(crate) type OpenProfile = Box<dyn FnOnce(SessionId, ProfileFile, Document, &mut Services) -> Box<AnyDevice> + Send>;
 
-/// A kind of device, as the studio uses it. Implemented for every [`DeviceType`].
+/// Kind of device, as used by the studio. Implemented for every [`DeviceType`].
 pub trait DeviceKind: Sync {
     /// Returns the tab that shows it.
     fn tab(&self) -> Tab;
@@ -105,15 +105,15 @@ pub trait DeviceKind: Sync {
     /// Checks whether a link can lead to such a device.
     ///
     /// # Errors
-    /// It cannot: why.
+    /// Why it cannot.
     fn check(&self, url: &LinkUrl) -> Result<(), OpenError>;
     /// Returns the link to the virtual device of this kind.
     fn virtual_link(&self) -> LinkUrl;
     /// Returns whether another master may be on the line behind a link.
     fn may_have_other_master(&self, url: &LinkUrl) -> bool;
-    /// Returns the words for why a profile of this kind is refused; `None` for a cause that is not this kind's.
+    /// Returns the text for the refusal of a profile of this kind; `None` for a cause of another kind.
     fn explain(&self, cause: &Cause) -> Option<Text>;
-    /// Returns the form in the connection dialog, filled in as a link says.
+    /// Returns the form in the connection dialog, filled in from a link.
     fn form(&self, link: Option<LinkUrl>) -> Box<dyn AnyForm>;
     #[doc(hidden)]
     fn finder_done(

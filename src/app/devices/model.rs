@@ -1,4 +1,4 @@
-//! A kind of device as the studio sees it, typed: what a device brings so that the rest is done for all of them alike.
+//! A kind of device as seen by the studio, typed: the parts that a device provides so that the rest is common to all.
 
 #![warn(missing_docs)]
 
@@ -22,7 +22,7 @@ use crate::worker;
 
 type Job<T> = <<T as HasSession>::Device as worker::Device>::Job;
 
-/// A device, or a profile of one, with everything that is known of it.
+/// Device, or profile of one, with all known data.
 pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The tab that shows it.
     const TAB: Tab;
@@ -33,7 +33,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// The results of its own tasks.
     type Done: Any + Send;
 
-    /// Returns what is done with a session before it goes to its thread.
+    /// Returns what is done with a session before it moves to its thread.
     fn prepare(&self, _world: &Environment) -> Prepare<Self::Device> {
         Box::new(|_| ())
     }
@@ -50,13 +50,13 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// Returns the job that reads the position once.
     fn position_job(&self) -> Job<Self>;
 
-    /// Returns what is recorded of it.
+    /// Returns its recording.
     fn record(&self) -> &dyn Recording;
 
-    /// Returns what is recorded of it, to be changed.
+    /// Returns its recording, to be changed.
     fn record_mut(&mut self) -> &mut dyn Recording;
 
-    /// Returns all its recorders, that of what is shown first.
+    /// Returns all its recorders, the displayed one first.
     fn recorders(&self) -> Vec<&Recorder> {
         vec![self.record().recorder()]
     }
@@ -114,7 +114,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.session().ask_where_to_save(services);
     }
 
-    /// Returns whether its positions can be streamed, thousands a second.
+    /// Returns whether its positions can be streamed, thousands per second.
     fn streams(&self) -> bool {
         false
     }
@@ -124,7 +124,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.session().is_active()
     }
 
-    /// Ends what runs.
+    /// Stops the running job.
     fn stop(&mut self, services: &mut Services) {
         self.session_mut().stop(services);
     }
@@ -132,13 +132,13 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
     /// Switches to another link for the same wire.
     fn take_link(&mut self, _url: &LinkUrl) {}
 
-    /// Returns its memory; `None` for a kind into which nothing is written.
+    /// Returns its memory; `None` for a kind to which nothing is written.
     fn memory(&self) -> Option<&dyn DeviceMemory>;
 
     /// Returns its memory, to be changed.
     ///
     /// # Errors
-    /// The reason why nothing is written into such a device.
+    /// Why nothing is written to such a device.
     fn memory_mut(&mut self) -> Result<&mut dyn DeviceMemory, Text>;
 
     /// Calls `act` with the memory, or reports why there is none.
@@ -156,7 +156,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         }
     }
 
-    /// Returns the profile as the user wants it, to be written into another device; `None` where there is none.
+    /// Returns the edited profile, to be written to another device; `None` if there is none.
     fn wanted_body(&self) -> Option<Body> {
         self.memory()?.wanted_body()
     }
@@ -182,12 +182,12 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         self.with_memory(services, |memory, services| memory.save(path, services));
     }
 
-    /// A profile can be saved now.
+    /// Returns whether a profile can be saved now.
     fn is_savable(&self) -> bool {
         self.memory().is_some_and(DeviceMemory::is_savable)
     }
 
-    /// Returns its sine and cosine; `None` for a kind that gives none.
+    /// Returns its sine and cosine; `None` for a kind without them.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource> {
         None
     }
@@ -197,17 +197,17 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
         None
     }
 
-    /// Returns what moves; `None` for a kind of which nothing moves.
+    /// Returns its motion; `None` for a kind that moves nothing.
     fn motion(&self) -> Option<&dyn MotionControl> {
         None
     }
 
-    /// Returns what moves, to be stopped.
+    /// Returns its motion, to be stopped.
     fn motion_mut(&mut self) -> Option<&mut dyn MotionControl> {
         None
     }
 
-    /// Returns the drives that the settings remember; `None` for a kind of which they remember none.
+    /// Returns the access to stored data about drives; `None` for a kind without any.
     fn remembers_drives(&mut self) -> Option<&mut dyn RemembersDrives> {
         None
     }
@@ -216,7 +216,7 @@ pub trait DeviceModel: SessionEvents + Drafted + 'static {
 /// Prepares a session before it goes to its thread.
 pub(crate) type Prepare<D> = Box<dyn FnOnce(&mut worker::Session<D>) + Send>;
 
-/// The context of an action: what it may use besides the device.
+/// Resources that an action may use besides the device.
 pub struct ActContext<'a> {
     /// The log, tasks, questions.
     pub(crate) services: &'a mut Services,
@@ -239,22 +239,22 @@ impl<'a> ActContext<'a> {
         self.next
     }
 
-    /// Returns the profile as it is edited in another session; `None` where there is none.
+    /// Returns the profile as edited in another session; `None` if there is none.
     ///
     /// # Errors
-    /// The refusal of a profile that is only looked at.
+    /// The refusal of a read-only profile.
     pub(crate) fn profile_of(&self, id: SessionId) -> Result<Option<Body>, Text> {
         let Some(other) = self.others.iter().find(|other| other.id() == id) else { return Ok(None) };
         only_looked_at(other.source()).map_or_else(|| Ok(other.wanted_body()), Err)
     }
 }
 
-/// Motion that was asked for in this window. Stop and let-go go this way alone, never as an action of a kind.
+/// Motion requested in this window. Stop and release use only this interface, never an action of a kind.
 pub trait MotionControl {
     /// Stops everything that moves.
     fn stop(&mut self);
 
-    /// Ends what lives only as long as it is held: a jog, and a run without an end.
+    /// Ends motion that lasts only while it is held: a jog, and a run without an end.
     fn let_go(&mut self);
 
     /// Returns whether something moves or is about to.
@@ -263,10 +263,10 @@ pub trait MotionControl {
     /// Returns whether something moves, or is about to, at the request of this window.
     fn moves_by_hand(&self) -> bool;
 
-    /// A motion that was asked for in this window has not ended.
+    /// Returns whether a motion that was asked for in this window has not ended.
     fn is_under_way(&self) -> bool;
 
-    /// This window has the control: values come without being asked for.
+    /// Returns whether this window has control: values then arrive unrequested.
     fn is_in_control(&self) -> bool;
 }
 
@@ -275,19 +275,19 @@ pub trait DeviceMemory {
     /// Reviews the write of the edits.
     fn review_edits(&mut self, services: &mut Services);
 
-    /// A review of a write is open.
+    /// Returns whether a review of a write is open.
     fn is_reviewing(&self) -> bool;
 
-    /// Returns the review of a write, where one is on its way.
+    /// Returns the review of a write, if there is one.
     fn sheet(&self) -> Option<ReviewSheet>;
 
     /// Carries out an action of the review.
     fn act_review(&mut self, action: ReviewAction, services: &mut Services);
 
-    /// Closes the review; what is being written goes on.
+    /// Closes the review; a running write continues.
     fn close_review(&mut self);
 
-    /// Returns the profile as the user wants it; `None` where this is a device.
+    /// Returns the edited profile; `None` if this is a device.
     fn wanted_body(&self) -> Option<Body>;
 
     /// Returns the profile of what was read last; `None` if nothing was.
@@ -305,7 +305,7 @@ pub trait DeviceMemory {
     /// Saves a profile.
     fn save(&mut self, path: PathBuf, services: &mut Services);
 
-    /// A profile can be saved now.
+    /// Returns whether a profile can be saved now.
     fn is_savable(&self) -> bool;
 
     /// Reads a backup, to be restored.

@@ -1,5 +1,5 @@
-//! A device of any kind, as the studio, the window's common parts and other devices see it. There is one implementation for
-//! all kinds.
+//! A device of any kind, as seen by the studio, the common parts of the window and other devices. There is one
+//! implementation for all kinds.
 
 #![warn(missing_docs)]
 
@@ -20,22 +20,22 @@ use crate::link::LinkUrl;
 use crate::profile::{Body, Document, ProfileError};
 use crate::store::FileError;
 
-/// A device, or a profile of one, of whatever kind.
+/// Device, or profile of one, of any kind.
 pub type AnyDevice = dyn OpenDevice;
 
 /// The interface of every device. A kind implements `DeviceModel`; this follows from it.
 pub trait OpenDevice: Any {
-    /// Returns what is the same of every session.
+    /// Returns the state common to all sessions.
     fn state(&self) -> &SessionState;
     #[doc(hidden)]
     fn state_mut(&mut self) -> &mut SessionState;
-    /// The tab that shows it.
+    /// Returns the tab that shows it.
     fn tab(&self) -> Tab;
-    /// The device lives in this process.
+    /// Returns whether the device lives in this process.
     fn is_virtual(&self) -> bool;
-    /// Returns whether its line is open.
+    /// Returns whether its connection is open.
     fn is_connected(&self) -> bool;
-    /// Returns whether a job runs on its line.
+    /// Returns whether a job is running.
     fn is_busy(&self) -> bool;
     /// Returns whether its memory is being changed.
     fn is_writing(&self) -> bool;
@@ -43,13 +43,13 @@ pub trait OpenDevice: Any {
     fn is_polling(&self) -> bool;
     /// Returns whether there is something to stop.
     fn is_active(&self) -> bool;
-    /// Connected and nothing runs: a job may begin.
+    /// Returns whether it is connected and idle: a job may begin.
     fn is_ready(&self) -> bool;
     /// Returns whether it can be read again; also true for a device that did not answer, and for a profile.
     fn is_readable(&self) -> bool;
-    /// A profile of it can be saved now.
+    /// Returns whether a profile of it can be saved now.
     fn is_savable(&self) -> bool;
-    /// Returns whether its positions can be streamed, thousands a second.
+    /// Returns whether its positions can be streamed, thousands per second.
     fn streams(&self) -> bool;
     /// Returns the job that runs.
     fn running(&self) -> Option<Progressing>;
@@ -61,21 +61,21 @@ pub trait OpenDevice: Any {
     fn can_undo(&self) -> bool;
     /// Returns whether there is an edit to redo.
     fn can_redo(&self) -> bool;
-    /// Returns whether its edits come back after it is closed.
+    /// Returns whether its edits are restored after it is closed.
     fn keeps_edits(&self) -> bool;
     /// Returns whether every edit is on disk, as far as the disk accepts it.
     fn is_draft_kept(&self) -> bool;
     /// Returns the number of samples that were taken and dropped before they were recorded.
     fn dropped(&self) -> u64;
-    /// Returns what was recorded of it.
+    /// Returns its displayed recorder.
     fn recorder(&self) -> &Recorder;
     #[doc(hidden)]
     fn recorder_mut(&mut self) -> &mut Recorder;
-    /// Returns its recorders, that of what is shown first.
+    /// Returns its recorders, the displayed one first.
     fn recorders(&self) -> Vec<&Recorder>;
     #[doc(hidden)]
     fn recorders_mut(&mut self) -> Vec<&mut Recorder>;
-    /// Returns its sine and cosine; `None` for a kind that gives none.
+    /// Returns its sine and cosine; `None` for a kind without them.
     fn sine_cosine(&self) -> Option<&dyn SineCosineSource>;
     #[doc(hidden)]
     fn sine_cosine_mut(&mut self) -> Option<&mut dyn SineCosineSource>;

@@ -15,12 +15,12 @@ pub(crate) struct Selection {
 }
 
 impl Selection {
-    /// The device that a tab shows.
+    /// Returns the device that a tab shows.
     pub(crate) fn of(&self, tab: Tab) -> Option<SessionId> {
         self.by_tab.get(&tab).copied()
     }
 
-    /// The device that was shown last, in whichever tab.
+    /// Returns the device that was shown last, in whichever tab.
     pub(in crate::app) fn last(&self) -> Option<SessionId> {
         self.last
     }
@@ -30,7 +30,8 @@ impl Selection {
         self.last = Some(id);
     }
 
-    /// A device is gone; `left` are the others. Its tab shows the one that came last; what was shown last is that of the last tab.
+    /// Removes a device; `left` are the others. Its tab shows the one opened last; the device shown last becomes that of
+    /// the last tab.
     pub(in crate::app) fn remove(&mut self, kinds: Kinds, left: &[Box<AnyDevice>], id: SessionId) {
         for (tab, shown) in &mut self.by_tab {
             if *shown == id

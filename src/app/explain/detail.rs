@@ -12,7 +12,7 @@ use crate::profile::{ProfileError, SyntaxProblem};
 use crate::sim::{ConfigError, FaultError, VirtualDevice};
 use crate::store::{LogbookError, LogbookProblem};
 
-/// A text that is no link, or a parameter that it does not take.
+/// Returns the text for a text that is no link, or a parameter that it does not take.
 pub fn url(error: &UrlError) -> Text {
     match error {
         UrlError::Scheme(text) => Text::new("url.no_link").with("text", format!("{text:?}")),
@@ -38,7 +38,7 @@ pub fn url(error: &UrlError) -> Text {
     }
 }
 
-/// A setting that a virtual device does not take.
+/// Returns the text for a setting that a virtual device does not take.
 pub fn setting(error: &ConfigError) -> Text {
     match error {
         ConfigError::Key { device, key, known } => {
@@ -61,7 +61,7 @@ pub fn setting(error: &ConfigError) -> Text {
     }
 }
 
-/// A text that is no profile. `kinds` know why one of them refuses a value.
+/// Returns the text for a text that is not a profile. `kinds` know why one of them refuses a value.
 pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
@@ -80,7 +80,7 @@ pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
         ProfileError::Refused { path, cause } => {
             Text::new("detail.value").with("path", path).with_text("what", kinds.explain(cause))
         }
-        // These have sentences of their own.
+        // These have their own texts.
         ProfileError::Schema { .. } | ProfileError::Device { .. } | ProfileError::OtherKind { .. } => plain(error),
     }
 }
@@ -101,7 +101,7 @@ fn hex(error: &HexError) -> Text {
     }
 }
 
-/// A file that is no recording.
+/// Returns the text for a file that is no recording.
 pub fn recording(error: &TraceFileError) -> Text {
     match error {
         TraceFileError::Header => Text::new("detail.no_trace").with("header", TRACE_HEADER),
@@ -112,7 +112,7 @@ pub fn recording(error: &TraceFileError) -> Text {
     }
 }
 
-/// A logbook that cannot be used.
+/// Returns the text for a logbook that cannot be used.
 pub fn logbook_problem(error: &LogbookError) -> Text {
     let problem = match &error.problem {
         LogbookProblem::Folder(error) => file(error),
@@ -128,7 +128,7 @@ pub fn logbook_problem(error: &LogbookError) -> Text {
     Text::new("detail.logbook").with("path", error.path.display()).with_text("problem", problem)
 }
 
-/// A place in a text, and what is wrong there.
+/// Returns the text of a place in a file, with the error there.
 pub(crate) fn syntax(line: usize, column: usize, what: Text) -> Text {
     Text::new("detail.syntax").with("line", line).with("column", column).with_text("what", what)
 }

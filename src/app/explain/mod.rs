@@ -1,5 +1,5 @@
-//! Errors in words for a person: what happened, and what to do. The one place where it is done; what concerns one kind of
-//! device stands in a module of its own.
+//! Errors as texts for the user: what happened, and what to do. This is the only place for them; those of one kind of
+//! device are in a module of its own.
 
 mod detail;
 mod expected;
@@ -45,7 +45,7 @@ pub fn link(error: &LinkError) -> Text {
     }
 }
 
-/// A link that cannot be opened.
+/// Returns the text for a link that cannot be opened.
 pub fn open(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => Text::new("link.url").with_text("why", url(why)),
@@ -59,7 +59,8 @@ pub fn open(error: &OpenError) -> Text {
     }
 }
 
-/// A link that could not be opened, or had no thread to run on; `open` has the words of the kind for the former.
+/// Returns the text for a link that could not be opened, or had no thread to run on; `open` gives the kind's text for the
+/// former.
 pub fn open_failed(failed: &OpenFailed, open: impl Fn(&OpenError) -> Text) -> Text {
     match failed {
         OpenFailed::Link(error) => open(error),
@@ -87,17 +88,18 @@ pub fn file(error: &FileError) -> Text {
     }
 }
 
-/// The program's folders. What a device says of its own files is in the words of that device where it is read.
+/// Returns the text for the program's folders. A device's texts about its own files are used where they are read.
 pub fn store(error: &StoreError) -> Text {
     match error {
         StoreError::NoHome => Text::new("store.no_home"),
         StoreError::File(error) => file(error),
-        // The device's own words say more: this is for a kind that has none.
+        // The device's own text is more specific: this is for a kind that has none.
         StoreError::Refused(cause) => Text::new("store.refused").with_text("why", plain(cause)),
     }
 }
 
-/// A profile in a file. `kinds` know why one of them refuses it; the command line, which speaks English, needs none.
+/// Returns the text for a profile in a file. `kinds` know why one of them refuses it; the command line, which is in
+/// English, needs none.
 pub fn profile(path: &Path, error: &ProfileError, kinds: Kinds) -> Text {
     let path = path.display();
     match error {
@@ -124,7 +126,7 @@ pub fn profile_remarks(path: &Path, document: &Document) -> Vec<Text> {
     if document.beyond.is_empty() { Vec::new() } else { vec![beyond()] }
 }
 
-/// A profile of a newer schema, with what is not known of it.
+/// Returns the text for a profile of a newer schema, with its unknown content.
 pub fn newer_profile(path: &Path, document: &Document) -> Text {
     let id = if document.beyond.is_empty() { "profile.newer" } else { "profile.newer_entries" };
     Text::new(id)

@@ -1,4 +1,4 @@
-//! A capture of sine and cosine in words: why it cannot be read or analysed, and what is wrong with the signals.
+//! Texts for a capture of sine and cosine: why it cannot be read or analysed, and what is wrong with the signals.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::app::number::decimals;
 use crate::sim::sine_cosine::{Quantity, SettingError};
 use crate::store::ReadCaptureError;
 
-/// A file that could not be read as a capture.
+/// Returns the text for a file that could not be read as a capture.
 pub fn read(path: &Path, error: &ReadCaptureError) -> Text {
     match error {
         ReadCaptureError::File(error) => file(error),
@@ -55,7 +55,7 @@ fn capture(path: &Path, error: &CaptureError) -> Text {
     }
 }
 
-/// Samples that cannot be analysed; `path` is where they came from.
+/// Returns the text for samples that cannot be analysed; `path` is their file.
 pub fn analysis(path: &Path, error: &AnalysisError) -> Text {
     let text = |id| Text::new(id).with("path", path.display());
     match error {
@@ -233,7 +233,7 @@ pub fn finding(finding: &Parameter) -> Text {
     }
 }
 
-/// The name of a setting of the virtual sine/cosine source, without its unit.
+/// Returns the name of a setting of the virtual sine/cosine source, without its unit.
 pub fn quantity(quantity: Quantity) -> Text {
     Text::new(match quantity {
         Quantity::Periods => "source.periods",
@@ -256,7 +256,7 @@ pub fn quantity(quantity: Quantity) -> Text {
     })
 }
 
-/// A setting of the virtual source that is outside of its range.
+/// Returns the text for a setting of the virtual source that is out of range.
 pub fn setting(error: &SettingError) -> Text {
     let SettingError { quantity: of, value, least, most } = *error;
     let id = if of == Quantity::Periods { "source.not_whole_in_range" } else { "source.out_of_range" };

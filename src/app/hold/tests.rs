@@ -1,4 +1,4 @@
-//! What begins a hold, and what ends it, picture by picture.
+//! What starts a hold, and what ends it, frame by frame.
 
 use super::HoldEvent::{Hold, Press, Release, Stop};
 use super::PressKey::{Enter, Space};
@@ -24,7 +24,7 @@ impl Pad {
         Pad { state: HoldState::default(), now: 0.0, apart: 0.2, scene: SCENE, pointer: false, follows: true }
     }
 
-    /// With the keyboard, and after Space and Enter were seen up.
+    /// Creates a pad with the keyboard focus, after Space and Enter were seen up.
     fn armed() -> Self {
         let mut pad = Pad::new();
         assert_eq!(pad.picture(&[]), None);
@@ -55,14 +55,14 @@ impl Pad {
     }
 }
 
-/// Issue 21.2: what X11 delivers where Space is held and the window loses the keyboard and gets it back.
+/// Issue 21.2: the events of X11 when Space is held and the window loses and regains the keyboard focus.
 #[test]
 fn a_key_that_is_held_while_the_keyboard_goes_and_comes_holds_nothing() {
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
     assert_eq!(pad.picture(&[DOWN]), Some(Hold), "it repeats itself");
     pad.scene.window = false;
-    // The release is made up by the toolkit.
+    // The toolkit generates this release.
     assert_eq!(pad.picture(&[HoldInput::Modifiers, UP, HoldInput::WindowFocus(false)]), Some(Release));
     assert_eq!(pad.picture(&[]), None);
     pad.scene.window = true;
@@ -74,13 +74,13 @@ fn a_key_that_is_held_while_the_keyboard_goes_and_comes_holds_nothing() {
     assert_eq!(pad.lift(&[UP]), None);
     assert!(!pad.state.waits_for_release());
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
-    // All of it between two pictures.
+    // All of it between two frames.
     let blink = [UP, HoldInput::WindowFocus(false), HoldInput::WindowFocus(true), DOWN];
     assert_eq!(pad.picture(&blink), Some(Release));
     assert_eq!(pad.picture(&[DOWN]), None);
 }
 
-/// Issue 21.2: whatever changes around the button, a key counts only after it was seen up.
+/// Issue 21.2: after any change around the button, a key counts only after it was seen up.
 #[test]
 fn after_each_change_a_key_counts_only_once_it_was_seen_up() {
     type Change = fn(&mut Pad);
@@ -119,7 +119,7 @@ fn after_each_change_a_key_counts_only_once_it_was_seen_up() {
     }
 }
 
-/// Issue 21.2: a pointer that is down already begins nothing, whatever becomes possible meanwhile.
+/// Issue 21.2: a pointer that is already pressed starts nothing, whatever becomes possible meanwhile.
 #[test]
 fn a_pointer_begins_a_hold_only_by_going_down() {
     let mut pad = Pad::armed();
@@ -140,13 +140,13 @@ fn a_pointer_begins_a_hold_only_by_going_down() {
     let aside = [HoldInput::PointerMoved { inside: false }, HoldInput::PointerMoved { inside: true }];
     assert_eq!(pad.picture(&aside), Some(Release));
     assert_eq!(pad.picture(&[]), None);
-    // In a window without the keyboard, which gets it by that very click.
+    // In a window without the keyboard focus, which gets it by that click.
     pad.picture(&[HoldInput::PointerUp]);
     assert_eq!(pad.picture(&[POINTER, HoldInput::WindowFocus(true)]), None);
     assert_eq!(pad.picture(&[]), None);
 }
 
-/// Issue 21.2: any key while the pointer holds it, any second thing while a key does.
+/// Issue 21.2: any key ends a hold by the pointer, any second input ends a hold by a key.
 #[test]
 fn whatever_comes_beside_what_holds_it_ends_it() {
     let beside = [
@@ -178,13 +178,13 @@ fn whatever_comes_beside_what_holds_it_ends_it() {
     assert_eq!(pad.picture(&[DOWN, POINTER]), None);
     let mut pad = Pad::armed();
     assert_eq!(pad.picture(&[POINTER, DOWN]), None);
-    // The pointer is down elsewhere.
+    // The pointer is pressed elsewhere.
     let mut pad = Pad::armed();
     pad.picture(&[HoldInput::PointerDown { on: false }]);
     assert_eq!(pad.picture(&[DOWN]), None);
 }
 
-/// Issue 21.2: whoever hits a key while something moves means that, also where it does not count as a press.
+/// Issue 21.2: a key press while something moves is meant to stop it, even if it does not count as a press.
 #[test]
 fn a_key_stops_what_moves_and_begins_nothing() {
     for armed in [false, true] {
@@ -201,7 +201,7 @@ fn a_key_stops_what_moves_and_begins_nothing() {
     assert_eq!(pad.picture(&[DOWN]), None, "not meant for it");
 }
 
-/// Issue 21.2: a key that repeats itself by a release and a press at once, which come in two pictures of any distance.
+/// Issue 21.2: a key that repeats by a release and an immediate press, which arrive in two frames of any distance.
 #[test]
 fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -229,7 +229,7 @@ fn a_press_at_once_after_another_key_holds_nothing() {
     assert_eq!(pad.picture(&[DOWN]), Some(Press));
 }
 
-/// Issue 21.2: a person's press a tenth of a second after the release, with no other event in between.
+/// Issue 21.2: a user's press a tenth of a second after the release, with no other event in between.
 #[test]
 fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
     let mut pad = Pad::armed();

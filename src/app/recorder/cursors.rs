@@ -1,4 +1,4 @@
-//! Two cursors, and what lies between them: from the raw samples, not from what was reduced for a picture.
+//! Two cursors, and the samples between them: calculated from the raw samples, not from those reduced for a picture.
 
 use super::{Recorder, Series};
 use crate::analysis::Time;
@@ -24,7 +24,7 @@ impl Cursor {
     }
 }
 
-/// The readings of the cursors on a line, in its unit. `None` where there is no valid sample.
+/// Readings of the cursors on a line, in its unit. `None` without a valid sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// The raw sample nearest to cursor A.
@@ -37,7 +37,7 @@ pub struct Measured {
     pub between: Option<CursorStatistics>,
 }
 
-/// Of the samples between two cursors, in the line's unit.
+/// Values of the samples between two cursors, in the line's unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CursorStatistics {
     /// Samples with a value.
@@ -94,16 +94,16 @@ impl Recorder {
             count: statistics.count,
             bad: statistics.bad,
             mean: statistics.mean * factor,
-            // A unit may count the other way round.
+            // A unit may count in the opposite direction.
             min: ends.0.min(ends.1),
             max: ends.0.max(ends.1),
             deviation: statistics.deviation * factor.abs(),
         })
     }
 
-    /// The raw sample of a line at a point in time: the nearest, where it was recorded then.
+    /// Returns the raw sample of a line at a point in time: the nearest, if it was recorded then.
     pub fn at(&self, line: &Series, time: Time) -> Option<Sample> {
-        /// By so much of what is visible a cursor may stand beside the first or the last sample.
+        /// Fraction (as divisor) of the visible range by which a cursor may be outside the first or the last sample.
         const BESIDE: i64 = 200;
         let history = self.history(line)?;
         let all = history.all();
@@ -112,8 +112,8 @@ impl Recorder {
         (time >= first.plus(-beside) && time <= last.plus(beside)).then(|| self.nearest(line, time)).flatten()
     }
 
-    /// Puts a cursor on the sample that is nearest, so that times and values belong together; where nothing was recorded,
-    /// it stands where it was put.
+    /// Puts a cursor on the nearest sample, so that times and values belong together; where nothing was recorded, it stays
+    /// at the given time.
     pub(super) fn set_cursor(&mut self, cursor: Cursor, time: Option<Time>) {
         let nearest = |time: Time| {
             let samples = self.visible_series().filter_map(|line| self.at(line, time)).map(|sample| sample.time);

@@ -1,12 +1,11 @@
-//! Lines that end, because what comes has another meaning or does not come any more: they keep their samples and units, and
-//! stand behind those that go on.
+//! Lines that end, because later samples have another meaning or no longer arrive: they keep their samples and units, and
+//! come after those that continue.
 
 use super::{LineId, Recorder, Scale, Series};
 use crate::app::Text;
 
 impl Recorder {
-    /// A line that goes on in the place of another one, which has other samples: with its colour, and in its unit where it has
-    /// that. The other one ends with this name.
+    /// Continues a line with other samples: with its colour, and in its unit if possible. The old one ends with this name.
     pub(in crate::app) fn succeed(&mut self, old: LineId, new: Series, (name, heading): (Text, String)) -> LineId {
         let id = self.add_line(new);
         if let (Some(before), Some(at)) = (self.line(old).cloned(), self.lines.iter().position(|line| line.id == old)) {
@@ -38,7 +37,7 @@ impl Recorder {
         self.forget_trigger(id);
     }
 
-    /// A line that had ended goes on, by this name.
+    /// Continues an ended line with this name.
     pub(in crate::app) fn resume_line(&mut self, id: LineId, name: Text, heading: String) {
         let mut group = None;
         self.with_line(id, |line| {
@@ -48,7 +47,7 @@ impl Recorder {
         group.into_iter().for_each(|group| self.break_before_next(group));
     }
 
-    /// The samples of a line are seen in other units from now on.
+    /// Changes the units in which the samples of a line are seen.
     pub(in crate::app) fn rescale(&mut self, id: LineId, scales: Vec<Scale>) {
         if self.line(id).is_none_or(|line| line.scales == scales) {
             return;
@@ -58,7 +57,7 @@ impl Recorder {
             (line.scales, line.range) = (scales, None);
             line.choose(unit.as_ref());
         });
-        // A level is in the unit that it was typed in.
+        // A level is in the unit in which it was entered.
         self.forget_trigger(id);
     }
 

@@ -1,5 +1,5 @@
-//! Samples as a table of text (CSV). They are handed in portions to a thread that writes: neither the window waits for the
-//! disk, nor the samples for the table.
+//! Samples as a table of text (CSV). They are passed in portions to a thread that writes: the window does not wait for the
+//! disk, nor recording for the table.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use crate::store::{FileError, write_by};
 const ROWS: usize = 16_384;
 const WAITING: usize = 2;
 
-/// A table that is being written. When it is dropped before all is handed over, nothing is written.
+/// Table being written. If it is dropped before everything is passed on, nothing is written.
 #[derive(Debug)]
 pub struct Export {
     pub path: PathBuf,
@@ -30,7 +30,7 @@ pub struct Export {
     heads: Vec<Head>,
     columns: Vec<Column>,
     lost: u64,
-    /// All that was recorded until then is in it; `None`: only what was visible.
+    /// Everything recorded until then is included; `None`: only the visible part.
     until: Option<Time>,
 }
 
@@ -50,7 +50,7 @@ impl ExportNumber {
 pub struct Exported {
     pub(in crate::app) number: ExportNumber,
     pub path: PathBuf,
-    /// Rows in it; `None`: it was given up, and there is none.
+    /// Rows in it; `None`: it was cancelled, and there is none.
     pub rows: Result<Option<u64>, FileError>,
 }
 
@@ -80,14 +80,14 @@ enum Portion {
     End,
 }
 
-/// A part of the table: for each row a time and as many cells as there are columns.
+/// Part of the table: for each row a time and one cell per column.
 #[derive(Debug, Default)]
 struct Rows {
     times: Vec<Time>,
     cells: Vec<Cell>,
 }
 
-/// A cell: nothing where the line has no sample at that time, or none to believe.
+/// Cell: empty if the line has no sample at that time, or an invalid one.
 #[derive(Clone, Copy, Debug, Default)]
 struct Cell {
     value: Option<f64>,
@@ -106,12 +106,12 @@ pub(in crate::app) struct Writing {
 }
 
 impl Export {
-    /// Rows written and rows to be written, about.
+    /// Returns the rows written and those to be written, approximately.
     pub fn progress(&self) -> (u64, u64) {
         (self.written.load(Ordering::Relaxed).min(self.total), self.total)
     }
 
-    /// Samples that went while the table was written.
+    /// Returns the number of samples evicted while the table was written.
     pub fn lost(&self) -> u64 {
         self.lost
     }
@@ -122,14 +122,14 @@ impl Export {
 }
 
 impl Recorder {
-    /// The table that is being written.
+    /// Returns the table that is being written.
     pub fn export(&self) -> Option<&Export> {
         self.export.as_ref()
     }
 
-    /// Begins to write a table of the lines that are shown: of what is visible, or of all that was recorded. Gives what
-    /// has to be done on a thread; [`feed_export`](Self::feed_export) hands the rows over. `None`: there is nothing to
-    /// write, or one is being written.
+    /// Begins to write a table of the displayed lines: of the visible part, or of everything recorded. Returns the part to
+    /// run on a thread; [`feed_export`](Self::feed_export) passes the rows on. `None`: there is nothing to write, or a
+    /// table is being written.
     pub(in crate::app) fn begin_export(&mut self, path: &Path, visible: bool) -> Option<Writing> {
         if self.export.is_some() {
             return None;
@@ -200,14 +200,14 @@ impl Recorder {
                 Ok(()) if is_end => export.sender = None,
                 Ok(()) => {}
                 Err(TrySendError::Full(portion)) => export.next = Some(portion),
-                // The receiver is gone: the thread reports why.
+                // The receiver has ended: the thread reports why.
                 Err(TrySendError::Disconnected(_)) => export.sender = None,
             }
         }
         self.export = Some(export);
     }
 
-    /// The thread has ended. Gives the samples that were lost on the way; `None`: that was of an earlier table.
+    /// Notes that the thread has ended. Returns the number of samples that were lost; `None` for an earlier table.
     pub(in crate::app) fn end_export(&mut self, number: ExportNumber, written: bool) -> Option<u64> {
         let export = self.export.take_if(|export| export.number == number)?;
         if written && export.until.is_some() {
@@ -222,13 +222,13 @@ impl Recorder {
         last.nanoseconds_since(self.saved.map_or(first, |saved| saved.max(first)))
     }
 
-    /// The next rows: the samples of all groups in the order of time, those of the same time in one row.
+    /// Returns the next rows: the samples of all groups in the order of time, those of the same time in one row.
     fn portion(&self, heads: &mut [Head], columns: &[Column], lost: &mut u64) -> Portion {
-        // In the order of the heads; a group that was taken away has no samples any more.
+        // In the order of the heads; a removed group no longer has samples.
         let histories: Vec<Option<&History>> =
             heads.iter().map(|head| self.groups.get(&head.group).map(|group| &group.history)).collect();
         for (head, history) in heads.iter_mut().zip(&histories) {
-            // Samples evicted meanwhile are gone.
+            // Samples evicted meanwhile are lost.
             let start = history.map_or(head.end, |history| history.all().start.min(head.end));
             *lost += start.saturating_sub(head.next);
             head.next = head.next.max(start);
@@ -263,7 +263,7 @@ fn cell(column: &Column, histories: &[Option<&History>], due: &[Option<u64>]) ->
     Cell { value, flags }
 }
 
-/// The name and unit as a column of a table has them, which do not depend on the window's language.
+/// Returns the name and unit as a column of a table has them, which do not depend on the window's language.
 fn heading(line: &Series) -> String {
     match line.scale() {
         Some(scale) => format!("{} [{}]", line.heading, scale.unit.terminal()),
@@ -272,7 +272,7 @@ fn heading(line: &Series) -> String {
 }
 
 impl Writing {
-    /// Writes until all rows have come; `wake` tells that more can be handed over.
+    /// Writes until all rows have arrived; `wake` tells that more can be passed on.
     pub(in crate::app) fn run(self, wake: &dyn Fn()) -> Exported {
         let mut given_up = false;
         let rows = write_by(&self.path, |file| {
@@ -288,17 +288,17 @@ impl Writing {
         Exported { number: self.number, path: self.path, rows }
     }
 
-    /// False: it was given up.
+    /// Returns false if it was cancelled.
     fn write(&self, file: &mut dyn Write, wake: &dyn Fn()) -> io::Result<bool> {
         let mut text = String::from(if self.counts { "sample" } else { "time [s]" });
         for heading in &self.headings {
             text.push(',');
-            // No heading has a quote; a comma in one would be another column.
+            // Headings contain no quotes; a comma in one would be another column.
             text.push_str(&heading.replace([',', '"'], " "));
         }
         text.push_str(",remark\n");
         file.write_all(text.as_bytes())?;
-        // More can be handed over.
+        // More can be passed on.
         wake();
         for portion in &self.receiver {
             wake();
@@ -314,7 +314,7 @@ impl Writing {
             file.write_all(text.as_bytes())?;
             self.written.fetch_add(rows.times.len() as u64, Ordering::Relaxed);
         }
-        // The sender is gone.
+        // The sender has ended.
         Ok(false)
     }
 }
@@ -326,7 +326,7 @@ impl Rows {
             let nanoseconds = time.nanoseconds();
             let sign = if nanoseconds < 0 { "-" } else { "" };
             let whole = nanoseconds.unsigned_abs();
-            // Writing into a text cannot fail.
+            // Writing to a string cannot fail.
             let _ = if counts {
                 write!(text, "{}", nanoseconds.div_euclid(SAMPLE))
             } else {
@@ -347,7 +347,7 @@ impl Rows {
     }
 }
 
-/// The gravest of what is remarkable in a row.
+/// Returns the most severe flag in a row.
 fn remark(flags: Flags) -> &'static str {
     if flags.contains(Flags::BAD) {
         "bad"

@@ -1,10 +1,10 @@
-//! A line of a recorder: a column of samples with its name and the units in which it can be seen.
+//! A line of a recorder: a column of samples with its name and its units.
 
 use super::GroupId;
 use crate::analysis::history::{Sample, Value};
 use crate::app::Text;
 
-/// A line's number in its recorder.
+/// Number of a line in its recorder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LineId(pub(super) u32);
 
@@ -20,7 +20,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A unit of which one of the samples' own unit is `factor`.
+    /// Creates a unit of which one of the samples' own unit is `factor`.
     pub fn new(unit: &'static str, factor: f64, decimals: usize) -> Self {
         Scale { unit: Text::new(unit), factor, decimals }
     }
@@ -37,11 +37,11 @@ pub struct Series {
     /// The colour, one of eight; further lines start again.
     pub colour: usize,
     pub shown: bool,
-    /// The stretch of values that is shown, in the line's unit; `None`: what is visible fits.
+    /// The displayed range of values, in the line's unit; `None`: fits the visible samples.
     pub range: Option<(f64, f64)>,
-    /// Nothing is added to it any more; it stays for what was recorded.
+    /// Nothing more is added to it; it stays for its recorded samples.
     pub ended: bool,
-    /// Its values are calculated from another line: where there is none, that is no fault of the device.
+    /// Its values are calculated from another line: a missing one is no fault of the device.
     pub derived: bool,
     /// The present remark: why there are no samples.
     pub remark: Option<Text>,
@@ -52,7 +52,7 @@ pub struct Series {
 }
 
 impl Series {
-    /// The column of a group as a line; the first of the scales, which are one at least, is shown.
+    /// Creates a line from a column of a group; the first of the scales, at least one, is displayed.
     pub fn of(group: GroupId, column: usize, name: Text, heading: impl Into<String>, scales: Vec<Scale>) -> Self {
         Series {
             id: LineId::default(),
@@ -71,24 +71,24 @@ impl Series {
         }
     }
 
-    /// The same, hidden.
+    /// Creates the same, hidden.
     #[must_use]
     pub(crate) fn hidden(self) -> Self {
         Series { shown: false, ..self }
     }
 
-    /// The same, calculated from another line.
+    /// Creates the same, calculated from another line.
     #[must_use]
     pub(crate) fn derived(self) -> Self {
         Series { derived: true, ..self }
     }
 
-    /// The column of its history.
+    /// Returns the column of its history.
     pub fn column(&self) -> usize {
         self.column
     }
 
-    /// The units to choose from.
+    /// Returns the units to choose from.
     pub fn scales(&self) -> &[Scale] {
         &self.scales
     }
@@ -98,17 +98,17 @@ impl Series {
         self.scale
     }
 
-    /// The unit that is shown.
+    /// Returns the unit that is shown.
     pub fn scale(&self) -> Option<&Scale> {
         self.scales.get(self.scale)
     }
 
-    /// The unit that the user has chosen; `None` for the default.
+    /// Returns the unit that the user has chosen; `None` for the default.
     pub(super) fn chosen(&self) -> Option<Text> {
         self.scale().filter(|_| self.scale > 0).map(|scale| scale.unit.clone())
     }
 
-    /// Shows this unit; the usual one, where there is no such.
+    /// Shows this unit; the default if there is no such.
     pub(super) fn choose(&mut self, unit: Option<&Text>) {
         self.scale = self.scales.iter().position(|scale| Some(&scale.unit) == unit).unwrap_or_default();
     }
@@ -123,7 +123,7 @@ impl Series {
         self.scale().map_or(0, |scale| scale.decimals)
     }
 
-    /// The value of a sample in the shown unit.
+    /// Returns the value of a sample in the shown unit.
     pub fn value(&self, sample: &Sample) -> f64 {
         sample.value.to_f64() * self.factor()
     }

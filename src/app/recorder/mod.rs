@@ -1,5 +1,5 @@
-//! A chart recorder: incoming samples as lines over time, with following, zoom, two cursors, a trigger and an export as
-//! a table. It knows no device and draws nothing; the owner sets origin, unit and depth of the samples.
+//! A chart recorder: incoming samples as lines over time, with following, zoom, two cursors, a trigger and an export as a
+//! table. Independent of devices and drawing; the owner sets origin, unit and depth of the samples.
 
 mod cursors;
 mod ended;
@@ -32,25 +32,25 @@ pub enum RecorderAction {
     Show(LineId, bool),
     /// Show a line in the unit of this number.
     SetScale(LineId, usize),
-    /// A stretch of values for a line, in its unit; `None`: what is visible fits.
+    /// Set the range of values of a line, in its unit; `None`: fit the visible samples.
     SetRange(LineId, Option<(f64, f64)>),
-    /// All lines over one axis, or each over its own.
+    /// Draw all lines over one axis, or each over its own.
     ShareAxis(bool),
-    /// Go on with the newest samples.
+    /// Follow the newest samples.
     Follow,
-    /// Stand still; samples are recorded on.
+    /// Hold the view; recording continues.
     Pause,
     /// Everything that was recorded.
     Fit,
     /// This stretch of time.
     Look(Time, Time),
-    /// As many nanoseconds, to where the picture ends now.
+    /// Show this many nanoseconds, up to the present end of the view.
     SetSpan(i64),
     /// Longer (above 1) or shorter (below 1) about a point in time.
     Zoom(Time, f64),
     /// A cursor to a point in time, or away.
     SetCursor(Cursor, Option<Time>),
-    /// Both cursors into what is visible, or away.
+    /// Put both cursors into the visible range, or remove them.
     ShowCursors(bool),
     /// Wait for this.
     Arm(Trigger),
@@ -62,7 +62,7 @@ pub enum RecorderAction {
     CancelExport,
 }
 
-/// Nanoseconds between two samples whose distance is not known.
+/// Nanoseconds between two samples whose interval is not known.
 pub const SAMPLE: i64 = 1_000;
 
 /// Samples that are taken together.
@@ -78,7 +78,7 @@ struct Group {
     longest_pause: Option<i64>,
 }
 
-/// Tells the samples of one group from all others that there are or were: cleared ones and other recorders' too.
+/// Identifies the samples of one group among all others, present or past: also cleared ones and those of other recorders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stamp(u64);
 
@@ -145,7 +145,8 @@ impl Recorder {
         self.counts
     }
 
-    /// Samples of these columns, of which so many are kept; those further apart than so many nanoseconds are not joined.
+    /// Adds a group of samples with these columns and this capacity; samples further apart than this many nanoseconds are
+    /// not joined.
     pub fn add_group(&mut self, columns: &[Kind], capacity: usize, longest_pause: Option<i64>) -> GroupId {
         let history = Group::history(columns, capacity, longest_pause);
         let id = GroupId(self.new_number());
@@ -154,7 +155,7 @@ impl Recorder {
         id
     }
 
-    /// A line for a column of a group. The first of its scales is shown.
+    /// Adds a line for a column of a group. The first of its scales is displayed.
     pub fn add_line(&mut self, line: Series) -> LineId {
         let id = LineId(self.new_number());
         let taken = |colour: &usize| self.lines.iter().all(|own| own.colour != *colour);
@@ -184,7 +185,7 @@ impl Recorder {
         self.with_line(id, |line| line.remark = remark);
     }
 
-    /// Appends samples to a group; as long as a picture that is held would be lost for them, they are left out.
+    /// Appends samples to a group; samples are left out while they would evict a held view.
     ///
     /// # Errors
     /// The batch does not have the group's columns, or its time goes back.
@@ -200,12 +201,12 @@ impl Recorder {
         Ok(())
     }
 
-    /// Samples are missing before the next ones of every group.
+    /// Notes that samples are missing before the next ones of every group.
     pub(in crate::app) fn break_all(&mut self) {
         self.groups.values_mut().for_each(Group::break_before_next);
     }
 
-    /// Samples are missing before the next ones of a group.
+    /// Notes that samples are missing before the next ones of a group.
     pub(crate) fn break_before_next(&mut self, group: GroupId) {
         self.groups.get_mut(&group).into_iter().for_each(Group::break_before_next);
     }
@@ -242,17 +243,17 @@ impl Recorder {
         }
     }
 
-    /// All lines, in the order in which they came.
+    /// Returns all lines, in the order in which they were added.
     pub fn lines(&self) -> &[Series] {
         &self.lines
     }
 
-    /// The line of that number.
+    /// Returns the line of that number.
     pub fn line(&self, id: LineId) -> Option<&Series> {
         self.lines.iter().find(|line| line.id == id)
     }
 
-    /// The lines that are shown; those that have ended, where there are samples of them in what is visible.
+    /// Returns the displayed lines; ended ones only if they have samples in the visible range.
     pub fn visible_series(&self) -> impl Iterator<Item = &Series> {
         let (from, to) = self.window();
         let is_visible = move |line: &&Series| {
@@ -261,12 +262,12 @@ impl Recorder {
         self.selected_series().filter(is_visible)
     }
 
-    /// The lines that are to be shown, whatever is visible.
+    /// Returns the lines selected for display, whatever is visible.
     fn selected_series(&self) -> impl Iterator<Item = &Series> {
         self.lines.iter().filter(|line| line.shown)
     }
 
-    /// The samples of a line: the history that it is a column of.
+    /// Returns the history with the samples of a line.
     pub fn history(&self, line: &Series) -> Option<&History> {
         self.groups.get(&line.group).map(|group| &group.history)
     }
@@ -276,7 +277,7 @@ impl Recorder {
         self.groups.get(&line.group).map(|group| group.stamp)
     }
 
-    /// All lines lie over one axis.
+    /// Returns whether all lines share one axis.
     pub fn has_one_axis(&self) -> bool {
         self.one_axis
     }
@@ -286,18 +287,18 @@ impl Recorder {
         self.groups.values().all(|group| group.history.all().is_empty())
     }
 
-    /// The raw sample of a line that is nearest to a point in time.
+    /// Returns the raw sample of a line that is nearest to a point in time.
     pub fn nearest(&self, line: &Series, time: Time) -> Option<Sample> {
         let history = self.history(line)?;
         history.sample(line.column, history.nearest(time)?)
     }
 
-    /// Bytes that the samples take.
+    /// Returns the number of bytes that the samples take.
     pub fn memory(&self) -> usize {
         self.groups.values().map(|group| group.history.memory()).sum()
     }
 
-    /// The first and the last sample of all, by time.
+    /// Returns the first and the last sample of all, by time.
     pub fn recorded(&self) -> Option<(Time, Time)> {
         let ends = self.groups.values().filter_map(|Group { history, .. }| {
             let all = history.all();
@@ -306,7 +307,7 @@ impl Recorder {
         ends.reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
     }
 
-    /// Forgets the samples, and lines that have ended; the others, units and the length of the view stay.
+    /// Forgets the samples, and ended lines; the others, units and the length of the view stay.
     pub(crate) fn clear(&mut self) {
         let ended: Vec<LineId> = self.lines.iter().filter(|line| line.ended).map(|line| line.id).collect();
         ended.into_iter().for_each(|id| self.remove_line(id));
@@ -314,7 +315,7 @@ impl Recorder {
             *history = Group::history(columns, *capacity, *longest_pause);
             *stamp = Stamp::new();
         }
-        // Of a table that is half written nothing is kept.
+        // Nothing of a half-written table is kept.
         self.export = None;
         self.saved = None;
         self.cursors = [None; 2];
@@ -330,7 +331,7 @@ impl Recorder {
                 line.range = None;
             }
         });
-        // A level is in the unit that it was typed in.
+        // A level is in the unit in which it was entered.
         self.forget_trigger(id);
     }
 

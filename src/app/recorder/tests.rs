@@ -1,4 +1,4 @@
-//! What a recorder does with samples whose values are known.
+//! Recorders with samples of known values.
 
 use super::*;
 use crate::analysis::history::Flags;
@@ -28,7 +28,7 @@ fn add(recorder: &mut Recorder, group: GroupId, time: i64, count: i64, volts: f6
     recorder.append(group, &[at(time)], &parts).unwrap();
 }
 
-/// A sample a millisecond, counts as the time.
+/// Adds one sample per millisecond, which counts as the time.
 fn ramp(recorder: &mut Recorder, group: GroupId, from: i64, to: i64) {
     (from..to).for_each(|time| add(recorder, group, time, time, time as f64 / 1000.0, Flags::NONE));
 }
@@ -98,7 +98,7 @@ fn cursors_measure_on_the_raw_samples() {
     assert_eq!((between.count, between.bad), (100, 1));
     assert_eq!((between.min, between.max), (100.0 * degrees, 200.0 * degrees));
     assert!((between.mean - 150.0 * degrees).abs() < 1e-12);
-    // Without the bad one in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
+    // Without the invalid one in the middle: sqrt(sum((k-150)^2 for k in 100..=200 if k != 150) / 99).
     assert!((between.deviation - 29.447_779_494_755_07 * degrees).abs() < 1e-9, "{}", between.deviation / degrees);
     recorder.act(RecorderAction::SetCursor(Cursor::A, Some(at(150))));
     let measured = recorder.measure(recorder.line(volts).unwrap()).unwrap();
@@ -174,7 +174,7 @@ fn a_trigger_shows_what_was_before_it_and_holds() {
     let (mut recorder, group, [counts, _]) = recorder(100 * MILLISECOND);
     ramp(&mut recorder, group, 0, 500);
     recorder.act(RecorderAction::SetScale(counts, 1));
-    // 600 steps in degrees: a level is in the unit that is shown.
+    // 600 steps in degrees: a level is in the displayed unit.
     arm(&mut recorder, counts, When::Rising, 600.0 * 360.0 / 4096.0, false);
     assert_eq!(state(&recorder), TriggerState::Armed);
     ramp(&mut recorder, group, 500, 601);
@@ -219,7 +219,7 @@ fn nobody_has_seen_an_edge_across_a_gap() {
     add(&mut recorder, group, 0, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 1, 0, 9.0, Flags::BAD);
     add(&mut recorder, group, 2, 0, 9.0, Flags::NONE);
-    // Longer than the group's longest pause.
+    // Longer than the longest pause of the group.
     add(&mut recorder, group, 10, 0, 1.0, Flags::NONE);
     add(&mut recorder, group, 700, 0, 9.0, Flags::NONE);
     assert_eq!(state(&recorder), TriggerState::Armed);
@@ -356,7 +356,7 @@ fn a_long_table_is_whole_and_can_be_given_up() {
     assert!(recorder.export().is_some());
 }
 
-/// Of what is cut off nothing is kept, and the old file stays as it was.
+/// A cancelled table leaves nothing, and the old file stays unchanged.
 #[test]
 fn a_table_whose_samples_go_is_given_up() {
     for clear in [true, false] {

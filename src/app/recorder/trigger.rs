@@ -1,4 +1,4 @@
-//! Waiting for something to happen in a line, and a picture of it with what was before.
+//! Waiting for an event in a line, and the view of it with the samples before it.
 
 use super::{GroupId, LineId, Recorder, TimeWindow};
 use crate::analysis::Time;
@@ -20,7 +20,7 @@ pub enum When {
 }
 
 impl When {
-    /// All of them.
+    /// All events.
     pub const ALL: [When; 5] = [When::Rising, When::Falling, When::Above, When::Below, When::Error];
 
     pub const fn has_level(self) -> bool {
@@ -32,13 +32,13 @@ impl When {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trigger {
     pub line: LineId,
-    /// For what.
+    /// The event.
     pub when: When,
-    /// In the line's unit as it is shown.
+    /// In the displayed unit of the line.
     pub level: f64,
-    /// Share of the picture that lies before it, 0 to 1.
+    /// Share of the view before the event, 0 to 1.
     pub before: f64,
-    /// After each picture wait again; else hold it.
+    /// After each view wait again; otherwise hold it.
     pub repeat: bool,
 }
 
@@ -46,11 +46,11 @@ pub struct Trigger {
 pub enum TriggerState {
     /// It waits.
     Armed,
-    /// It has happened then, and what comes after it is still being recorded.
+    /// The event was at this time, and later samples are still being recorded.
     Fired(Time),
-    /// It has happened then, and the picture is complete.
+    /// The event was at this time, and the view is complete.
     Held(Time),
-    /// It did not happen in a recording to which nothing is added any more.
+    /// The event did not occur in a recording that is complete.
     Missed,
 }
 
@@ -62,7 +62,7 @@ pub(super) struct Watch {
     when: When,
     level: f64,
     state: TriggerState,
-    /// The last value to believe, for an edge; none after a break.
+    /// The last valid value, for an edge; none after a break.
     last: Option<f64>,
     /// Nanoseconds of the picture.
     span: i64,
@@ -83,7 +83,7 @@ impl Watch {
         (from, from.plus(self.span))
     }
 
-    /// Looks at the next sample. True: it is the one.
+    /// Checks the next sample. Returns true if the event is there.
     fn is_it(&mut self, sample: &Sample) -> bool {
         let bad = sample.flags.contains(Flags::BAD);
         let value = Some(sample.value.to_f64()).filter(|value| !bad && value.is_finite());
@@ -103,7 +103,7 @@ impl Watch {
 }
 
 impl Recorder {
-    /// The trigger, and how far it is.
+    /// Returns the trigger with its state.
     pub fn trigger(&self) -> Option<(&Trigger, TriggerState)> {
         self.watch.as_ref().map(|watch| (&watch.trigger, watch.state))
     }
@@ -114,7 +114,7 @@ impl Recorder {
         if trigger.when.has_level() && !level.is_finite() {
             return;
         }
-        // In a unit that counts the other way round, what rises falls.
+        // In a unit that counts in the opposite direction, rising is falling.
         let when = match trigger.when {
             When::Above if factor < 0.0 => When::Below,
             When::Below if factor < 0.0 => When::Above,
@@ -133,7 +133,7 @@ impl Recorder {
         }
     }
 
-    /// Looks for the trigger in what is there already: the first time that it happens.
+    /// Searches the recorded samples for the first event.
     fn search(&mut self) {
         let Some(mut watch) = self.watch else { return };
         let Some(line) = self.line(watch.trigger.line) else { return };
@@ -150,13 +150,13 @@ impl Recorder {
         }
     }
 
-    /// A held picture would lose samples if more were added to this group.
+    /// Returns whether a held picture would lose samples if more were added to this group.
     pub(super) fn would_lose_picture(&self, group: GroupId, more: usize) -> bool {
         let Some(watch) = self.watch else { return false };
         let (TriggerState::Held(at), Some(group)) = (watch.state, self.groups.get(&group)) else { return false };
         let history = &group.history;
         let Some(oldest) = history.time(history.all().start) else { return false };
-        // Samples that are evicted before the picture begins are no loss to it.
+        // Samples that are evicted from before the view are not needed.
         let remains = history.oldest_after(more);
         remains != Some(oldest) && remains.is_none_or(|remains| remains > watch.window(at).0)
     }
@@ -165,7 +165,7 @@ impl Recorder {
         self.watch = None;
     }
 
-    /// Looks at the samples of a group from `from` on, which have just come.
+    /// Searches the samples of a group from `from` on, which have just arrived.
     pub(super) fn look_for_trigger(&mut self, group: GroupId, from: u64) {
         let Some(mut watch) = self.watch else { return };
         let Some(line) = self.line(watch.trigger.line).filter(|line| line.group == group) else { return };
@@ -179,10 +179,10 @@ impl Recorder {
                 watch.state = if watch.trigger.repeat { TriggerState::Armed } else { TriggerState::Held(at) };
                 shown = Some(at);
             }
-            // Each sample is looked at, so that an edge is seen in the first one after a picture too.
+            // Each sample is checked, so that an edge is also seen in the first one after a view.
             if watch.is_it(&sample) && watch.state == TriggerState::Armed {
                 watch.state = TriggerState::Fired(sample.time);
-                // One that is repeated is shown when it is complete: it would never be seen whole otherwise.
+                // A repeated one is shown when it is complete: otherwise it would never be seen whole.
                 shown = if watch.trigger.repeat { shown } else { Some(sample.time) };
             }
         }

@@ -5,7 +5,7 @@ use crate::analysis::Time;
 
 /// Nanoseconds that a view never becomes shorter than.
 const SHORTEST: i64 = 100;
-/// Nanoseconds that a view never becomes longer than: a hundred days.
+/// Maximum length of a view in nanoseconds: a hundred days.
 const LONGEST: i64 = 100 * 86_400 * 1_000_000_000;
 
 /// The range of time that is shown.
@@ -16,10 +16,10 @@ pub enum TimeWindow {
         /// Nanoseconds, at least 1.
         span: i64,
     },
-    /// This stretch, whatever comes.
+    /// This range, whatever arrives.
     Fixed {
         from: Time,
-        /// To here, which is later.
+        /// Its end, which is later.
         to: Time,
     },
 }
@@ -41,7 +41,7 @@ impl Recorder {
         matches!(self.view, TimeWindow::Follow { .. })
     }
 
-    /// The stretch of time that is shown. While there is less than that, it begins with the first sample.
+    /// Returns the displayed range of time. While there are fewer samples, it begins with the first one.
     pub fn window(&self) -> (Time, Time) {
         match self.view {
             TimeWindow::Fixed { from, to } => (from, to),
@@ -60,7 +60,7 @@ impl Recorder {
     }
 
     pub(super) fn follow(&mut self) {
-        // As long as what was looked at.
+        // As long as the previous view.
         self.view = TimeWindow::Follow { span: self.span() };
         self.lines.iter_mut().for_each(|line| line.range = None);
     }
@@ -73,7 +73,7 @@ impl Recorder {
     pub(super) fn fit(&mut self) {
         self.lines.iter_mut().for_each(|line| line.range = None);
         let Some((first, last)) = self.recorded() else { return };
-        // A little more to the right, so that the last sample is to be seen.
+        // Slightly more to the right, so that the last sample is visible.
         let span = last.nanoseconds_since(first).max(SHORTEST);
         self.view = TimeWindow::Fixed { from: first, to: last.plus(span / 200 + 1) };
     }

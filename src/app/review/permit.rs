@@ -5,15 +5,15 @@ use crate::profile::RestoreOptions;
 /// A permit that the user may give for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Permit {
-    /// To write what was made for another device.
+    /// Write a profile of another device.
     OtherDevice,
-    /// To write what was made for another type of device.
+    /// Write a profile of another type of device.
     OtherType,
-    /// To write what belongs to the mounting of another device.
+    /// Write values of another device's mounting.
     Mounting,
-    /// To delete and create again.
+    /// Delete and create fields again.
     Recreate,
-    /// To copy the bytes of unknown meaning of this data field onto another device.
+    /// Copy the bytes of unknown meaning of this data field to another device.
     Copy(u8),
 }
 
@@ -21,12 +21,12 @@ pub enum Permit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Toggle {
     pub permit: Permit,
-    /// It is allowed.
+    /// It is given.
     pub is_on: bool,
 }
 
 impl Permit {
-    /// In the order in which they stand.
+    /// All permissions in display order, except those of single fields.
     pub(super) const ALL: [Permit; 4] = [Permit::OtherDevice, Permit::OtherType, Permit::Mounting, Permit::Recreate];
 
     /// Returns the id of its text.
@@ -50,7 +50,7 @@ impl Permit {
         }
     }
 
-    /// Returns the option of a restore that this stands for; `None` where there is none for every kind of device.
+    /// Returns the option of a restore for it; `None` if there is none common to all kinds of devices.
     pub fn option(self, options: &mut RestoreOptions) -> Option<&mut bool> {
         match self {
             Permit::OtherDevice => Some(&mut options.allow_other_device),

@@ -1,5 +1,5 @@
-//! A device, or a profile of one, whose edits are kept over a crash. A kind says what an edit is and whose it is; when a
-//! draft is looked for, kept and forgotten is the same for all.
+//! A device, or a profile of one, whose edits are kept after a crash. A kind defines its edits and their key; loading,
+//! storing and discarding drafts is common to all.
 
 #![warn(missing_docs)]
 
@@ -18,11 +18,11 @@ type Edits<T> = <<T as HasSession>::Device as Kind>::Edits;
 
 /// A session with edits.
 pub trait Drafted: HasSession {
-    /// Returns the key of the logbook; `None` before the device was read, and for a device that does not say who it is.
+    /// Returns the key of the logbook; `None` before the device was read, and for a device without an identity.
     fn key(&self) -> Option<DeviceKey>;
 
-    /// Returns the type and the serial number of the device that was read, by which its draft is kept: another type may have
-    /// the same number. An empty number where the device does not say who it is; `None` where nothing has been read.
+    /// Returns the type and the serial number of the device that was read, under which its draft is stored: another type
+    /// may have the same number. The number is empty for a device without an identity; `None` if nothing has been read.
     fn type_and_serial(&self) -> Option<(String, String)> {
         self.key().map(|key| (key.device_type, key.serial_number))
     }
@@ -30,10 +30,10 @@ pub trait Drafted: HasSession {
     /// Returns the edits.
     fn edited(&self) -> Edits<Self>;
 
-    /// Edits of an earlier time; those that make no sense any more are left out.
+    /// Takes earlier edits; those that are no longer valid are left out.
     fn take_edits(&mut self, edits: Edits<Self>);
 
-    /// A profile was read again from its file; edits stay.
+    /// Takes a profile that was read again from its file; edits stay.
     fn take_document(&mut self, file: ProfileFile, document: Document);
 
     /// Returns its edits, to be counted.
@@ -42,12 +42,12 @@ pub trait Drafted: HasSession {
     /// Returns its edits, to be undone.
     fn pending_mut(&mut self) -> &mut dyn PendingEdits;
 
-    /// All edits are taken back, as one step.
+    /// Discards all edits, as one step.
     fn revert_edits(&mut self) {
         self.pending_mut().revert();
     }
 
-    /// A profile of a connected device was written.
+    /// Handles the write of a profile of a connected device.
     fn written_beside(&mut self, _document: Document) {}
 
     /// Returns the key of the draft; `None` for a device that does not identify itself.
@@ -65,7 +65,7 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Looks for the edits of an earlier time.
+    /// Looks up the draft of earlier edits.
     fn load_draft(&mut self, services: &Services) {
         if let Some(key) = self.draft_key() {
             self.session_mut().drafting.load(key, services);
@@ -82,7 +82,7 @@ pub trait Drafted: HasSession {
         }
     }
 
-    /// Keeps the edits when they have changed. Called for every picture.
+    /// Stores the edits if they have changed. Called in every frame.
     fn write_draft(&mut self, services: &mut Services) {
         if !self.session().drafting.is_due() {
             return;
@@ -93,24 +93,24 @@ pub trait Drafted: HasSession {
             self.session_mut().drafting.report_no_draft(&name, services);
         }
         if edits.is_nothing() {
-            // They were written, saved or taken back.
+            // They were written, saved or discarded.
             services.log.settle(DRAFT_BACK, Some(&name));
         }
         self.session_mut().drafting.save(key, edits, services);
     }
 
-    /// Returns whether its edits come back after it is closed.
+    /// Returns whether its edits are restored after it is closed.
     fn keeps_edits(&self) -> bool {
         self.session().drafting.is_loaded() && self.draft_key().is_some()
     }
 
-    /// Leaves the edits of the previous device on disk: another device comes, or none.
+    /// Leaves the edits of the previous device on disk: another device is opened, or none.
     fn leave_draft(&mut self, services: &mut Services) {
         let (key, edits) = (self.draft_key(), self.edited());
         self.session_mut().drafting.leave(key, edits, services);
     }
 
-    /// A profile was written, or not. In another file than before it has no draft of an earlier time, and leaves none.
+    /// Handles a written profile, or the failure. In a new file it has no earlier draft, and leaves none.
     fn written(&mut self, saving: Saving, file: ProfileFile, result: Result<(), FileError>, services: &mut Services) {
         let name = self.session().name();
         self.session_mut().is_saving = false;
@@ -137,7 +137,7 @@ pub trait Drafted: HasSession {
         services.notify(severity, std::iter::once(saved).chain(saving.remarks).collect(), Some(&name));
     }
 
-    /// The profile stands in this file now.
+    /// Notes that the profile is in this file now.
     fn take_written(&mut self, file: ProfileFile, document: Document, services: &mut Services) {
         let moves = !matches!(&self.session().source, Source::File { key: own, .. } if *own == file.key);
         if moves {

@@ -1,6 +1,6 @@
-//! Edits outlive a crash: they are kept beside the studio's other data as they are made, one file for each device or
-//! profile, and come back with it. Each has one owner: a second session with the same device, here or in another window,
-//! neither takes nor overwrites them. What an edit is only its kind of device knows.
+//! Edits survive a crash: they are stored beside the studio's other data as they are made, one file for each device or
+//! profile, and come back with it. Each draft has one owner: a second session with the same device, here or in another
+//! window, neither takes nor overwrites it. Only the kind of device knows what an edit is.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub(super) const DRAFT_BACK: &str = "session.draft_back";
 const PATIENCE: Duration = Duration::from_secs(1);
 const RETRY: Duration = Duration::from_millis(20);
 
-/// Whose draft it is.
+/// Owner of a draft.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DraftKey {
     kind: String,
@@ -30,12 +30,12 @@ pub struct DraftKey {
 }
 
 impl DraftKey {
-    /// A device's, by its type and serial number; virtual ones apart.
+    /// Creates the key of a device by its type and serial number; virtual ones are separate.
     pub(in crate::app) fn of_device(kind: &str, is_virtual: bool, name: String) -> Self {
         DraftKey { kind: if is_virtual { format!("{kind}-virtual") } else { kind.to_owned() }, name }
     }
 
-    /// A profile's, by its [`file_key`].
+    /// Creates the key of a profile by its [`file_key`].
     pub(in crate::app) fn of_file(kind: &str, key: &str) -> Self {
         DraftKey { kind: format!("{kind}-files"), name: key.to_owned() }
     }
@@ -45,16 +45,16 @@ impl DraftKey {
 pub enum DraftDone {
     /// Edits of an earlier time.
     Looked {
-        /// Whose they are.
+        /// Key of the draft.
         key: DraftKey,
-        /// The right to keep them; `None`: it belongs to another window or session.
+        /// The claim to store it; `None`: it belongs to another window or session.
         claim: Result<Option<Claim>, FileError>,
         /// The edits.
         result: Result<Option<String>, FileError>,
     },
     /// A draft was kept or removed.
     Kept {
-        /// Whose it is.
+        /// Key of the draft.
         key: DraftKey,
         result: Result<(), FileError>,
     },
@@ -82,15 +82,15 @@ pub(crate) struct Drafting<E> {
     busy: bool,
     /// The edits may be others than those that were handed over.
     due: bool,
-    /// The draft of an earlier time has been looked for: before that, nothing is kept over it.
+    /// The earlier draft has been looked up: before that, it is not overwritten.
     is_loaded: bool,
-    /// The right to keep it; without, it belongs to another window or session.
+    /// The claim to store it; without it, the draft belongs to another window or session.
     claim: Option<Arc<Claim>>,
-    /// The failure to keep it has been reported.
+    /// The failure to store it has been reported.
     is_failure_reported: bool,
 }
 
-/// The name of a file's draft: of the file itself, whichever way leads to it. As a task: it asks the disk.
+/// Returns the name of a file's draft: of the file itself, whatever path leads to it. Run as a task: it accesses the disk.
 pub(in crate::app) fn file_key(path: &Path) -> String {
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // FNV-1a, the same in every version of the program.
@@ -115,7 +115,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// Looks for the draft of an earlier time.
+    /// Looks up the earlier draft.
     pub(in crate::app) fn load(&mut self, key: DraftKey, services: &Services) {
         self.claim(key, services, |drafts, key| drafts.load(&key.kind, &key.name));
     }
@@ -150,8 +150,8 @@ impl<E: DraftEdits> Drafting<E> {
         });
     }
 
-    /// Takes the result of a task: the edits of an earlier session, if any. A result about another draft than `own` is
-    /// out of date; edits made meanwhile (`dirty`) are newer.
+    /// Takes the result of a task: the edits of an earlier session, if any. A result about another draft than `own` is out
+    /// of date; edits made meanwhile (`dirty`) are newer.
     pub(in crate::app) fn take(
         &mut self,
         done: DraftDone,
@@ -175,7 +175,7 @@ impl<E: DraftEdits> Drafting<E> {
                 services.notify(Severity::Warning, vec![Text::new("session.draft_elsewhere")], Some(name));
                 return None;
             }
-            // A draft cannot be kept in such a folder, which is reported when there is something to keep.
+            // A draft cannot be stored in such a folder, which is reported when there is one to store.
             Err(_) => {}
         }
         self.is_loaded = true;
@@ -199,7 +199,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// The edits of an earlier time stand again; `edits` are those that still make sense.
+    /// Notes that the earlier edits are restored; `edits` are those still valid.
     pub(in crate::app) fn came_back(&mut self, edits: E, name: &str, services: &mut Services) {
         if !edits.is_nothing() {
             services.notify(Severity::Warning, vec![Text::new(DRAFT_BACK)], Some(name));
@@ -224,12 +224,12 @@ impl<E: DraftEdits> Drafting<E> {
         self.due = true;
     }
 
-    /// The edits are to be looked at: something has happened since the last time.
+    /// Returns whether the edits must be checked: there were events since the last time.
     pub(in crate::app) fn is_due(&self) -> bool {
         self.due && !self.busy
     }
 
-    /// Keeps the edits when they have changed. One task at a time: what comes meanwhile goes with the next one.
+    /// Stores the edits if they have changed. One task at a time: later changes go with the next one.
     pub(in crate::app) fn save(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         if self.busy {
             return;
@@ -244,14 +244,14 @@ impl<E: DraftEdits> Drafting<E> {
         store_edits(key, edits, self.claim.clone(), self.session, services);
     }
 
-    /// A device without a serial number has no draft, which is said once, with the first edit.
+    /// Reports once, with the first edit, that a device without a serial number has no draft.
     pub(in crate::app) fn report_no_draft(&mut self, name: &str, services: &mut Services) {
         if !std::mem::replace(&mut self.is_failure_reported, true) {
             services.notify(Severity::Warning, vec![Text::new("session.draft_none")], Some(name));
         }
     }
 
-    /// The draft of an earlier time has been looked for: edits come back after the session was closed.
+    /// Returns whether the earlier draft has been looked up: edits are then restored after the session is closed.
     pub(crate) fn is_loaded(&self) -> bool {
         self.is_loaded
     }
@@ -261,7 +261,7 @@ impl<E: DraftEdits> Drafting<E> {
         !self.busy
     }
 
-    /// Leaves the edits of the previous device on disk: another device comes, or none.
+    /// Leaves the edits of the previous device on disk: another device is opened, or none.
     pub(in crate::app) fn leave(&mut self, key: Option<DraftKey>, edits: E, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key
@@ -272,7 +272,7 @@ impl<E: DraftEdits> Drafting<E> {
         }
     }
 
-    /// The edits are in another file now: those for the one before are no draft any more.
+    /// Removes the draft: the edits are in another file now, and those of the previous one are no draft any more.
     pub(in crate::app) fn forget(&mut self, key: Option<DraftKey>, services: &mut Services) {
         let before = std::mem::replace(self, Drafting::new(self.session));
         if let Some(key) = key
@@ -283,7 +283,7 @@ impl<E: DraftEdits> Drafting<E> {
     }
 }
 
-/// Hands edits over to be kept; the claim lives until they are.
+/// Passes edits on to be stored; the claim lives until they are.
 fn store_edits<E: DraftEdits>(
     key: DraftKey,
     edits: E,

@@ -1,4 +1,4 @@
-//! A device on the desk, or a profile of one, whatever its kind.
+//! An open device, or a profile of one, of any kind.
 
 use super::{Kind, Session};
 
@@ -8,6 +8,6 @@ pub trait HasSession {
 
     fn session(&self) -> &Session<Self::Device>;
 
-    /// The same, to be changed.
+    /// Returns the same, to be changed.
     fn session_mut(&mut self) -> &mut Session<Self::Device>;
 }

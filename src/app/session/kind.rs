@@ -18,10 +18,10 @@ pub trait Kind: Device + Sized {
     /// The edits that are kept over a crash.
     type Edits: DraftEdits;
 
-    /// The part of a session that stays outside its thread.
+    /// The part of a session outside its thread.
     type SessionHandle: Send;
 
-    /// A write on its way: the [`Review`](crate::app::review::Review) of a kind with a memory.
+    /// Review of a write: the [`Review`](crate::app::review::Review) of a kind with a memory.
     type Review;
 
     /// Returns the handle of a session before the session moves to its thread.
@@ -30,7 +30,7 @@ pub trait Kind: Device + Sized {
     /// Opens links to such devices.
     ///
     /// # Errors
-    /// The link cannot be opened, or says what is not for such a device.
+    /// The link cannot be opened, or is not for such a device.
     fn open(url: &LinkUrl, store: Store) -> Result<Session<Self>, OpenError>;
 
     /// Returns why a link cannot be opened, and what to do.
@@ -38,23 +38,23 @@ pub trait Kind: Device + Sized {
         explain::open(error)
     }
 
-    /// The same, or that it has no thread to run on.
+    /// Returns the same, or that it has no thread to run on.
     fn open_failed(failed: &OpenFailed) -> Text {
         explain::open_failed(failed, Self::open_error)
     }
 
-    /// A job in words.
+    /// Returns a job as text.
     fn job_text(job: &Self::Job) -> Text;
 
-    /// A job changes the device's memory.
+    /// Returns whether a job changes the device's memory.
     fn writes(_job: &Self::Job) -> bool {
         false
     }
 
-    /// The job that reads what there is to be seen of the device.
+    /// Returns the job that reads everything displayed about the device.
     fn survey() -> Self::Job;
 
-    /// A step of a job in words.
+    /// Returns a step of a job as text.
     fn step_text(what: &Self::JobStep) -> Text;
 
     /// Returns the result of a writing job; `None` for any other.
@@ -65,7 +65,7 @@ pub trait Kind: Device + Sized {
     /// Returns why a job ended early, and what to do.
     fn error_texts(error: &Self::Error) -> Vec<Text>;
 
-    /// The wire itself failed, so that nothing more can be asked over it: why.
+    /// Returns why the connection failed, if nothing more can be requested over it.
     fn connection_error(error: &Self::Error) -> Option<Text>;
 
     /// Returns the last message about the job in an event of a released session.

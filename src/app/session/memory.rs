@@ -1,5 +1,5 @@
-//! A device whose memory is written through a review: from a wish to a plan, from the plan and the consent to it to the job
-//! that carries it out, and what came of it. A kind says what its changes, plans and jobs are, and what else hangs on them.
+//! A device whose memory is written through a review: from a change to a plan, from the plan and the consent to it to the
+//! job that carries it out, and its result. A kind defines its changes, plans and jobs, and their further consequences.
 
 #![warn(missing_docs)]
 
@@ -18,60 +18,60 @@ type Op<T> = review::Op<<T as HasSession>::Device>;
 type Prepared<T> = <<T as HasSession>::Device as Reviewed>::Prepared;
 type Committed<T> = worker::Committed<<<T as HasSession>::Device as Reviewed>::Written>;
 
-/// A plan that a person consented to.
+/// Plan with the user's consent.
 pub type ApprovedPlanOf<K> = worker::commit::ApprovedPlan<<K as Reviewed>::Prepared>;
 
-/// A device whose memory can be written.
+/// Device whose memory can be written.
 pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
-    /// A write on its way.
+    /// Returns the review of a write.
     fn review(&self) -> Option<&Review<Self::Device>> {
         self.session().review.as_ref()
     }
 
-    /// The same, to be changed.
+    /// Returns the same, to be changed.
     fn review_mut(&mut self) -> &mut Option<Review<Self::Device>> {
         &mut self.session_mut().review
     }
 
-    /// An operation of a plan, in words.
+    /// Returns an operation of a plan, as text.
     fn op(&self, prepared: &Prepared<Self>, op: &Op<Self>) -> OpWords {
         Self::Device::op(prepared, op)
     }
 
-    /// The review as a person sees it; `done` operations have been carried out.
+    /// Returns the review as displayed; `done` operations have been carried out.
     fn sheet(&self, done: usize) -> Option<ReviewSheet> {
         self.review().map(|review| review.sheet_with(done, |prepared, op| self.op(prepared, op)))
     }
 
-    /// Returns the change that writes the edits; `None` where there are none.
+    /// Returns the change that writes the edits; `None` if there are none.
     fn edited_change(&self) -> Option<Change<Self>>;
 
     /// Returns whether a change was made for another device than this one.
     fn is_for_another(&self, change: &Change<Self>) -> bool;
 
-    /// Returns whether a change was made for another type of device, where that needs its own permit.
+    /// Returns whether a change was made for another type of device, if that needs its own permission.
     fn is_for_another_type(&self, _change: &Change<Self>) -> bool {
         false
     }
 
-    /// A plan was made for another device than the one that was read before.
+    /// Returns whether a plan was made for another device than the one that was read before.
     fn is_of_another(&self, prepared: &Prepared<Self>) -> bool {
         self.key().is_some_and(|own| own != prepared.device(own.is_virtual))
     }
 
-    /// The job that makes a plan.
+    /// Creates the job that makes a plan.
     fn prepare(change: Change<Self>) -> Job<Self>;
 
-    /// The job that carries a plan out.
+    /// Returns the job that carries a plan out.
     fn commit(&mut self, agreed: ApprovedPlanOf<Self::Device>) -> Job<Self>;
 
-    /// Forgets what it knows of the device: another one answers.
+    /// Forgets all known data of the device: another one replies.
     fn forget_device(&mut self);
 
-    /// A review is about to stand over it.
+    /// Prepares for the display of a review.
     fn before_review(&mut self) {}
 
-    /// Returns why a change is not possible, as far as that is known without asking the device.
+    /// Returns why a change is not possible, as far as known without querying the device.
     fn objection(&self, _change: &Change<Self>) -> Option<Text> {
         None
     }
@@ -84,10 +84,10 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
     /// Marks the values that the running plan changes to be read again, however it ends.
     fn reads_again(&mut self) {}
 
-    /// The plan that is being carried out is done.
+    /// Handles the end of the plan that was carried out.
     fn carried_out(&mut self, _committed: &Committed<Self>, _services: &mut Services) {}
 
-    /// A write has begun: what it changes.
+    /// Logs that a write has begun, with its changes.
     fn log_begin(&self, what: &Text, prepared: &Prepared<Self>, services: &mut Services) {
         let ops = &prepared.plan().ops;
         let operations = ops.iter().map(|op| Self::Device::op(prepared, op).item);
@@ -95,7 +95,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         services.note(Severity::Note, vec![text], Some(&self.session().name()));
     }
 
-    /// Makes the plan of the edits, to be looked at.
+    /// Makes the plan of the edits, for review.
     fn review_edits(&mut self, services: &mut Services) {
         match self.edited_change() {
             Some(change) => self.plan(change, services),
@@ -106,7 +106,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Makes the plan of a change, to be looked at.
+    /// Makes the plan of a change, for review.
     fn plan(&mut self, change: Change<Self>, services: &mut Services) {
         self.before_review();
         if let Some(why) = self.session().why_not_ready() {
@@ -123,7 +123,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// Makes the plan again with one of the review's toggles the other way round.
+    /// Makes the plan again with one of the review's permissions toggled.
     fn plan_with(&mut self, permit: Permit, services: &mut Services) {
         if self.session().is_busy() {
             return;
@@ -140,12 +140,12 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// A plan is there. For a device that was exchanged behind the line it is none: what was wanted for the one before is
-    /// not for it.
+    /// Takes a plan. If the device was exchanged on the line, the plan is discarded: the change was meant for the previous
+    /// one.
     fn planned(&mut self, prepared: Box<Prepared<Self>>, services: &mut Services) {
         if self.is_of_another(&prepared) {
             *self.review_mut() = None;
-            // If something is edited, the other device was reported when it was read.
+            // If there are edits, the other device was reported when it was read.
             if !self.pending().is_dirty() {
                 let serial = prepared.device(self.session().is_virtual()).serial_number;
                 let text = Text::new("session.plan_of_another").with("serial", serial);
@@ -183,7 +183,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         }
     }
 
-    /// The consent: to the plan that was drawn, which has to be the one that stands in the review.
+    /// Gives the consent: to the plan that was displayed, which must be the one in the review.
     fn agree(&self, shown: PlanId) -> Option<ApprovedPlanOf<Self::Device>> {
         let review = self.review().filter(|_| self.session().is_ready())?;
         let ReviewState::Ready(prepared) = &review.state else { return None };
@@ -195,7 +195,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         })
     }
 
-    /// Starts the job that carries the plan in the review out; false where it cannot be started.
+    /// Starts the job that carries out the plan in the review; returns false if it cannot be started.
     fn begin_write(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         let Some(review) = self.review_mut() else { return false };
         let ReviewState::Ready(prepared) = &review.state else { return false };
@@ -210,7 +210,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         begins
     }
 
-    /// Closes the review; what is being written goes on, and its review stays.
+    /// Closes the review; a running write continues, and its review stays.
     fn close_review(&mut self) {
         let Some(review) = self.review().filter(|review| !review.is_writing()) else { return };
         let is_planning = review.is_planning();
@@ -220,7 +220,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         *self.review_mut() = None;
     }
 
-    /// A plan was carried out: the device is read again.
+    /// Handles a plan that was carried out: the device is read again.
     fn committed(&mut self, committed: Committed<Self>, services: &mut Services) {
         let (severity, texts) = written_texts::<Self::Device>(&committed);
         let (name, stands) = (self.session().name(), self.review().is_some_and(Review::is_writing));
@@ -241,8 +241,8 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         self.submit(Self::Device::survey(), services);
     }
 
-    /// A plan, or carrying it out, has ended early; true where the review says so. One that was given up while it was made
-    /// is no review any more.
+    /// Handles the early end of planning or writing; returns true if the review reports it. A plan cancelled during
+    /// planning leaves no review.
     fn cut_write(&mut self, how: EarlyEnd<Error<Self>>, texts: &[Text]) -> bool {
         let Some(review) = self.review() else { return false };
         let (begun, done) = match (how, review.is_planning(), review.is_writing()) {
@@ -251,7 +251,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
                 *self.review_mut() = None;
                 return false;
             }
-            // How far it came is not known.
+            // Its progress is not known.
             (EarlyEnd::Lost, ..) => (true, 0),
             (EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error), ..) => {
                 let done = error.done();
@@ -267,7 +267,7 @@ pub trait WithMemory: SessionEvents + Drafted + HasSession<Device: Reviewed> {
         true
     }
 
-    /// A plan that was not begun is none any more.
+    /// Discards a plan that was not started.
     fn forget_plan(&mut self) {
         if self.review().is_some_and(Review::is_plan) {
             *self.review_mut() = None;

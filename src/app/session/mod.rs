@@ -1,5 +1,5 @@
-//! The parts that every session has, whatever its device: source, connection, line, trace, backups and writes. It knows
-//! no device; the additions of a kind are in its own folder.
+//! The parts common to all sessions: source, connection, line, trace, backups and writes. Independent of the kind of
+//! device; the additions of a kind are in its own folder.
 
 mod drafted;
 mod drafts;
@@ -50,11 +50,11 @@ pub enum Source {
     File {
         /// The file.
         path: PathBuf,
-        /// The same for every way that leads to it.
+        /// The same for every path to the file.
         key: String,
         /// The document without the edits.
         document: Box<Document>,
-        /// As it is written there: comments, order and line ends are its person's.
+        /// Text in the file: comments, order and line ends belong to the user.
         text: String,
     },
     /// Made here, and in no file yet.
@@ -65,7 +65,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// Returns the name to begin with of what is in no file yet.
+    /// Returns the suggested name of a profile that is in no file yet.
     pub(in crate::app) fn suggested(&self) -> Option<PathBuf> {
         match self {
             Source::New { suggested } => Some(suggested.clone()),
@@ -81,9 +81,9 @@ pub enum Phase {
     Opening,
     /// Connected, and the device answers.
     Connected,
-    /// The link is open, and the device does not answer: why, and what to do.
+    /// The link is open, and the device does not reply: why, and what to do.
     Silent(Text),
-    /// It was connected, or could not be: why, and what to do.
+    /// The connection was lost, or could not be opened: why, and what to do.
     Lost(Text),
     /// A profile: there is no connection.
     Offline,
@@ -93,11 +93,11 @@ pub enum Phase {
 pub(crate) struct Opening {
     /// The attempt to connect.
     pub(crate) attempt: Option<u32>,
-    /// Ends when it is over.
+    /// Disconnects when it has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
 }
 
-/// Parameters of links that are neither shown nor kept, whatever the kind of device: the access codes of a virtual encoder.
+/// Link parameters that are neither shown nor stored, for any kind of device: the access codes of a virtual encoder.
 const SECRETS: &[&str] = &["codes"];
 
 /// Returns a link as it may be shown and kept.
@@ -108,17 +108,17 @@ pub(in crate::app) fn without_secrets(url: &LinkUrl) -> String {
     format!("{}:{}{question}{}", url.scheme.word(), url.target, query.join("&"))
 }
 
-/// A device on the desk, or a profile of one: its state, its line and its draft.
+/// Open device, or profile of one: its state, its connection and its draft.
 pub struct Session<D: Kind> {
     state: SessionState,
     pub(crate) line: Option<LiveSession<D>>,
     /// The state of the draft of its edits.
     pub(crate) drafting: Drafting<D::Edits>,
-    /// A write on its way.
+    /// Review of a write.
     pub review: Option<D::Review>,
 }
 
-/// The state of a session is read and changed as a part of it.
+/// The state of a session is accessed as a part of it.
 impl<D: Kind> Deref for Session<D> {
     type Target = SessionState;
 
@@ -152,18 +152,18 @@ impl<D: Kind> Session<D> {
         Session { state: SessionState::new(id, source, phase), line: None, drafting: Drafting::new(id), review: None }
     }
 
-    /// The line to the device, while it is connected.
+    /// Returns the line to the device, while it is connected.
     pub fn line(&self) -> Option<&LiveSession<D>> {
         self.line.as_ref()
     }
 
-    /// The device lives in this process.
+    /// Returns whether the device lives in this process.
     pub fn is_virtual(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_virtual)
             || matches!(&self.source, Source::Link(url) if url.scheme == Scheme::Sim)
     }
 
-    /// Returns whether a job runs on its line.
+    /// Returns whether a job is running.
     pub fn is_busy(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.running().is_some())
     }
@@ -183,7 +183,7 @@ impl<D: Kind> Session<D> {
         self.phase == Phase::Opening || self.is_busy() || self.is_polling()
     }
 
-    /// Connected and nothing runs: a job may begin.
+    /// Returns whether it is connected and idle: a job may begin.
     pub fn is_ready(&self) -> bool {
         self.phase == Phase::Connected && self.line.is_some() && !self.is_busy()
     }
@@ -193,7 +193,7 @@ impl<D: Kind> Session<D> {
         self.is_savable() || (matches!(self.phase, Phase::Silent(_)) && self.line.is_some() && !self.is_busy())
     }
 
-    /// A profile of it can be saved now.
+    /// Returns whether a profile of it can be saved now.
     pub fn is_savable(&self) -> bool {
         self.is_ready() || self.phase == Phase::Offline
     }
@@ -208,7 +208,7 @@ impl<D: Kind> Session<D> {
         self.just_connected = true;
     }
 
-    /// Samples are wished at this interval, or none any more. Whether they begin with that; `None` without a line.
+    /// Sets the interval of polling, or ends it. Returns whether polling begins with that; `None` without a line.
     pub(crate) fn poll(&mut self, interval: Option<Duration>) -> Option<bool> {
         let line = self.line.as_mut()?;
         let begins = line.polling().is_none();
@@ -216,7 +216,8 @@ impl<D: Kind> Session<D> {
         Some(begins)
     }
 
-    /// Polling has ended by itself: why, and whether the device says nothing at all. One that was wished since goes on.
+    /// Notes that polling has ended by itself, why, and whether the device does not reply at all. Polling that was
+    /// requested again since continues.
     pub(in crate::app) fn polling_failed(&mut self, why: Vec<Text>, is_silent: bool, services: &mut Services) {
         if self.is_polling() {
             return;
@@ -228,7 +229,7 @@ impl<D: Kind> Session<D> {
         services.notify(Severity::Error, texts, Some(&self.name()));
     }
 
-    /// Starts a job, or says why not and gives false.
+    /// Starts a job; reports why not and returns false if it cannot.
     pub(crate) fn submit(&mut self, job: D::Job, services: &mut Services) -> bool {
         let (name, what, writes) = (self.name(), D::job_text(&job), D::writes(&job));
         let Some(line) = &mut self.line else {
@@ -243,7 +244,7 @@ impl<D: Kind> Session<D> {
             Err(SubmitError::Busy | SubmitError::Unread) => {
                 services.notify(Severity::Warning, vec![Text::new("session.busy")], Some(&name));
             }
-            // How the session ended comes with its last events.
+            // The last events tell how the session ended.
             Err(SubmitError::Ended) => {}
         }
         false
@@ -259,14 +260,14 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Ends what runs, and gives up a link that is being opened.
+    /// Stops the running job, and cancels a link that is being opened.
     pub(crate) fn stop(&mut self, services: &mut Services) {
         if self.phase == Phase::Opening {
             let why = Text::new("session.open_cancelled");
             services.note(Severity::Note, vec![why.clone()], Some(&self.name()));
             self.phase = Phase::Lost(why);
             if let Some(opening) = &mut self.opening {
-                // Its further results are dropped; the next attempt waits until it is over.
+                // Its further results are dropped; the next attempt waits until it has ended.
                 opening.attempt = None;
             }
         }
@@ -275,7 +276,7 @@ impl<D: Kind> Session<D> {
         }
     }
 
-    /// Lets its thread go; what runs ends as `end` says. A write that was cancelled ends by itself, and tells how.
+    /// Releases its thread; the running job is recorded as `end`. A cancelled write ends by itself, and reports how.
     pub(crate) fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.save_to = None;
         let Source::Link(url) = &self.source else { return };
@@ -288,9 +289,9 @@ impl<D: Kind> Session<D> {
         services.leave(line.into_worker(), ClosingSessionInfo { session: self.id, about, url, write }, None);
     }
 
-    /// The connection is gone.
+    /// Notes that the connection is lost.
     pub(in crate::app) fn connection_lost(&mut self, why: Text, services: &mut Services) {
-        // It stands where the session is shown.
+        // It is displayed where the session is shown.
         services.note(Severity::Error, vec![why.clone()], Some(&self.name()));
         self.let_go(JobEnd::Failed(why.clone()), services);
         self.opening = None;

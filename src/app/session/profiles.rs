@@ -1,4 +1,4 @@
-//! Profiles and backups of a device on the desk, as files: each is read and written as a task.
+//! Profiles and backups of an open device, as files: each is read and written as a task.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::profile::{Body, Document};
 use crate::store::{Backup, DeviceKey, Entry, FileError, Logbook, LogbookError, StatusEntry, Store};
 
 impl SessionState {
-    /// A name for a profile of it.
+    /// Returns a name for a profile of it.
     pub(crate) fn suggested_file(&self) -> PathBuf {
         if let Source::File { path, .. } | Source::New { suggested: path } = &self.source {
             return path.clone();
@@ -36,12 +36,12 @@ impl SessionState {
         self.write_document(path, document_of(body), remarks, services);
     }
 
-    /// A profile was read again from its file, or saved into another one.
+    /// Takes a profile that was read again from its file, or saved to another one.
     pub fn take_document(&mut self, file: ProfileFile, document: Document) {
         self.source = file.source(document);
     }
 
-    /// Reads the profile again, as a task. False: it is none.
+    /// Reads the profile again, as a task. Returns false if it is none.
     pub(crate) fn read_file_again(&self, services: &mut Services) -> bool {
         let Source::File { path, .. } = &self.source else { return false };
         services.opening_files.push(path.clone());
@@ -50,7 +50,7 @@ impl SessionState {
         true
     }
 
-    /// Writes a profile on a thread; `remarks` say what is not in it.
+    /// Writes a profile on a thread; `remarks` name what is missing from it.
     pub(crate) fn write_document(
         &mut self,
         path: PathBuf,
@@ -107,11 +107,11 @@ impl SessionState {
 pub struct DeviceHistory {
     /// Backups, the newest first.
     pub backups: Result<Vec<Backup>, FileError>,
-    /// Writes, the newest first, or why the logbook does not tell.
+    /// Writes, newest first, or why the logbook has none.
     pub writes: Result<Vec<Entry>, LogbookError>,
-    /// Write cycles in all; `None` where the logbook does not tell.
+    /// Total write cycles; `None` if the logbook has no record.
     pub cycles: Option<u64>,
-    /// Status codes that were read, the newest first. That the logbook cannot be read, the writes tell.
+    /// Status codes that were read, newest first. An unreadable logbook is reported with the writes.
     pub statuses: Vec<StatusEntry>,
 }
 

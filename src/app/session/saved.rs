@@ -1,4 +1,4 @@
-//! The content of a memory as a profile: saved, restored, and kept as backups.
+//! The content of a memory as a profile: saved, restored, and backed up.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::worker::Device;
 
 type Job<T> = <<T as HasSession>::Device as Device>::Job;
 
-/// A profile of what was read, with remarks; or a text for each missing part.
+/// Profile of earlier readings, with remarks; or a text for each missing part.
 pub type KnownProfile = Result<(Body, Vec<Text>), Vec<Text>>;
 
 /// Returns the remark that a number of edits is not included.
@@ -22,24 +22,24 @@ pub fn without_edits(count: usize) -> Option<Text> {
 
 /// A device that can be saved and restored.
 pub trait Saved: WithMemory {
-    /// The job that reads everything that can be restored.
+    /// Creates the job that reads everything that can be restored.
     fn read_all() -> Job<Self>;
 
-    /// The profile as the user wants it, where this is one.
+    /// Returns the edited profile, if this is one.
     fn wanted_body(&self) -> Option<Body>;
 
     /// Returns the profile of what was read earlier, with remarks; `None` if nothing was.
     ///
     /// # Errors
-    /// What a profile needs beyond what was read, a text each.
+    /// Texts for the parts of a profile that were not read.
     fn known_body(&self) -> Option<KnownProfile>;
 
-    /// Saves what was read earlier: the device no longer answers.
+    /// Returns whether earlier readings are saved: the device no longer replies.
     fn saves_what_was_read(&self) -> bool {
         matches!(self.session().phase, Phase::Lost(_) | Phase::Silent(_)) && self.known_body().is_some()
     }
 
-    /// Makes the plan of restoring a profile, to be looked at.
+    /// Makes the plan of restoring a profile, for review.
     ///
     /// # Errors
     /// It is of another kind of device.
@@ -50,8 +50,8 @@ pub trait Saved: WithMemory {
         Vec::new()
     }
 
-    /// A connected device is read again for it; of one that does not answer any more, what was read is written. A profile is
-    /// written as it is edited.
+    /// Saves a profile. A connected device is read again for it; for one that no longer replies, earlier readings are
+    /// written. A profile is written as edited.
     fn save(&mut self, path: PathBuf, services: &mut Services) {
         if let Some(refusal) = only_looked_at(&self.session().source) {
             self.session().refuse(refusal, services);
@@ -87,7 +87,7 @@ pub trait Saved: WithMemory {
         }
     }
 
-    /// A backup was read, or not.
+    /// Handles the end of reading a backup.
     fn take_backup(&mut self, path: &Path, result: Result<Box<Document>, ReadError>, services: &mut Services) {
         let restored = result.and_then(|own| {
             let known = own.known().map_err(ReadError::Profile)?;
@@ -106,10 +106,10 @@ pub trait Saved: WithMemory {
     }
 }
 
-/// Most remarks of one kind that are said one by one.
+/// Maximum number of remarks of one kind that are listed.
 const SAID: usize = 3;
 
-/// Returns some items in words: the first of many, with the number of the others.
+/// Returns texts of some items: the first of many, with the number of the others.
 pub(crate) fn some<T>(things: &[T], words: impl Fn(&T) -> Text) -> Vec<Text> {
     let more = things.len().saturating_sub(SAID);
     let rest = (more > 0).then(|| Text::new("session.and_more").with("count", more));

@@ -1,5 +1,5 @@
-//! A profile on its way into a file. What others have written there since it was opened is not replaced without a question,
-//! and what a person wrote between the entries stays.
+//! Writing a profile to a file. Changes by others since it was opened are not replaced without a question, and a user's
+//! comments between the entries stay.
 
 use std::path::{Path, PathBuf};
 
@@ -16,9 +16,9 @@ use crate::store::{FileError, FileProblem, read_file, write_text_over};
 pub struct ProfileFile {
     /// The file.
     pub path: PathBuf,
-    /// The same for every way that leads to it.
+    /// The same for every path to the file.
     pub key: String,
-    /// As it is written there.
+    /// Text in the file.
     pub text: String,
 }
 
@@ -29,7 +29,7 @@ impl ProfileFile {
     }
 }
 
-/// The expected state of a file before it is written.
+/// Expected state of a file before it is written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Guard {
     /// Key of the file, whatever path leads to it.
@@ -38,26 +38,26 @@ pub struct Guard {
     pub text: String,
 }
 
-/// A profile on its way into a file.
+/// Profile being written to a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Saving {
-    /// Whose it is.
+    /// Session of the profile.
     pub session: SessionId,
     /// The file.
     pub path: PathBuf,
     pub document: Box<Document>,
     /// What is missing from it.
     pub remarks: Vec<Text>,
-    /// The file that is open; another one is replaced as it is.
+    /// The open file; another one is replaced as it is.
     pub opened: Option<Guard>,
-    /// A person knows that comments go.
+    /// The user knows that comments will be lost.
     pub may_lose: bool,
     /// The edits were merged with those of others and are no longer edits.
     pub is_merged: bool,
 }
 
 impl Saving {
-    /// Writes the file, as a task, or tells why it is not written yet.
+    /// Writes the file, as a task, or returns why it is not written yet.
     pub(in crate::app) fn run(mut self, kinds: Kinds) -> Action {
         let formats = kinds.formats;
         let key = file_key(&self.path);
@@ -87,14 +87,14 @@ impl Saving {
 /// The content of a file that differs from what was opened.
 #[derive(Debug)]
 pub(in crate::app) struct DivergedFile {
-    /// As it is written; empty where it cannot be read.
+    /// Its text; empty if it cannot be read.
     pub(in crate::app) text: String,
-    /// As a profile.
+    /// Its content as a profile.
     pub(in crate::app) document: Result<Box<Document>, ReadError>,
 }
 
-/// The text over which is written; or what stands there where it says something else than was opened, or is to be said. A
-/// file that is gone says nothing else.
+/// Returns the text to be replaced; or the content of the file if it differs from what was opened and from the wanted one.
+/// A missing file does not differ.
 fn changed(path: &Path, opened: &str, wanted: &Document, formats: Formats) -> Result<String, Box<DivergedFile>> {
     let text = match read_file(path) {
         Ok(text) => text,

@@ -1,5 +1,5 @@
-//! Events of a line: samples, results of jobs, early ends, and loss. The kind handles results; the end of a job is
-//! reported the same way for all.
+//! Events of a line: samples, results of jobs, early ends, and loss. The kind handles results; the end of a job is reported
+//! the same way for all.
 
 #![warn(missing_docs)]
 
@@ -20,21 +20,21 @@ type JobStep<T> = <<T as HasSession>::Device as Device>::JobStep;
 
 /// How a request on a line ended early.
 pub enum EarlyEnd<'e, E> {
-    /// As the user wished.
+    /// Cancelled by the user.
     Cancelled(&'e E),
     /// It failed.
     Failed(&'e E),
-    /// The line is gone.
+    /// The connection is lost.
     Lost,
 }
 
 /// A device at the end of a line.
 pub trait SessionEvents: HasSession {
-    /// Samples, and how many were dropped before them.
+    /// Takes samples, and the number of those dropped before them.
     fn sampled(&mut self, samples: Vec<Sample<Self>>, dropped: u64);
 
-    /// Returns what a frame in the trace means; nothing where the bytes speak for themselves. Called once a frame, in
-    /// their order.
+    /// Returns the meaning of a frame in the trace; empty if it has none besides its bytes. Called once per frame, in
+    /// order.
     fn meaning_of(&mut self, _frame: &TraceEntry) -> Explained {
         Explained::default()
     }
@@ -42,22 +42,22 @@ pub trait SessionEvents: HasSession {
     /// Handles a message that the device sent meanwhile.
     fn message_received(&mut self, remark: DeviceMessage<Self>, services: &mut Services);
 
-    /// A job is done.
+    /// Handles the end of a job.
     fn finished(&mut self, output: Output<Self>, services: &mut Services);
 
     /// Returns whether the error means that the link is open but the device is silent.
     fn is_silence(&self, error: &Error<Self>) -> bool;
 
-    /// Forgets pending requests: their replies will not come.
+    /// Forgets pending requests: their replies will not arrive.
     fn forget_requests(&mut self);
 
-    /// The line is about to be let go.
+    /// Handles the release of the line, before it.
     fn line_ends(&mut self) {}
 
-    /// The job that runs tells a step.
+    /// Handles a step of the running job.
     fn progressed(&mut self, _what: JobStep<Self>) {}
 
-    /// The result of a job is an answer of the device.
+    /// Returns whether the result of a job is an answer of the device.
     fn is_answer(_output: &Output<Self>) -> bool {
         true
     }
@@ -67,15 +67,15 @@ pub trait SessionEvents: HasSession {
         false
     }
 
-    /// Polling has ended by itself.
+    /// Handles the end of polling by itself.
     fn polling_ends(&mut self) {}
 
-    /// Starts a job, or says why not and gives false.
+    /// Starts a job; reports why not and returns false if it cannot.
     fn try_submit(&mut self, job: Job<Self>, services: &mut Services) -> bool {
         self.session_mut().submit(job, services)
     }
 
-    /// Starts a job, or says why not.
+    /// Starts a job, or reports why not.
     fn submit(&mut self, job: Job<Self>, services: &mut Services) {
         self.try_submit(job, services);
     }
@@ -85,7 +85,7 @@ pub trait SessionEvents: HasSession {
         self.poll_line(services);
     }
 
-    /// The same, for a kind that does more at such a time.
+    /// Polls the line, for a kind that does more at such a time.
     fn poll_line(&mut self, services: &mut Services) {
         // Samples from before a job come before its result; later ones come the next time.
         self.take_samples_and_frames();
@@ -133,7 +133,7 @@ pub trait SessionEvents: HasSession {
         self.session_mut().drafting.may_have_changed();
     }
 
-    /// A sample failed, and polling is off.
+    /// Handles a failed sample, after which polling is off.
     fn poll_failed(&mut self, error: &Error<Self>, services: &mut Services) {
         self.polling_ends();
         match Self::Device::connection_error(error) {
@@ -145,7 +145,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// A job ended as the user wished; what was written until then is to be looked at.
+    /// Handles a cancelled job; what was written until then is read.
     fn cancelled(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         services.job_ends(self.session().id, id, JobEnd::Cancelled);
         self.session_mut().save_to = None;
@@ -158,7 +158,7 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// A job failed.
+    /// Handles a failed job.
     fn failed(&mut self, id: JobId, error: &Error<Self>, services: &mut Services) {
         let texts = Self::Device::error_texts(error);
         services.job_ends(self.session().id, id, JobEnd::Failed(first(&texts)));
@@ -179,17 +179,17 @@ pub trait SessionEvents: HasSession {
         }
     }
 
-    /// The connection is gone; what is known and edited stays.
+    /// Handles a lost connection; known data and edits stay.
     fn connection_lost(&mut self, why: Text, services: &mut Services) {
         self.line_ends();
-        // The last frames show best why it was the last.
+        // The last frames show the cause best.
         self.take_samples_and_frames();
         self.forget_requests();
         self.ended_early(EarlyEnd::Lost, std::slice::from_ref(&why), services);
         self.session_mut().connection_lost(why, services);
     }
 
-    /// Lets its thread go; what runs ends as `end` says, and a plan is none any more.
+    /// Releases its thread; the running job is recorded as `end`, and a plan is discarded.
     fn let_go(&mut self, end: JobEnd, services: &mut Services) {
         self.line_ends();
         self.forget_requests();
@@ -197,7 +197,7 @@ pub trait SessionEvents: HasSession {
     }
 }
 
-/// The one sentence that stands where there is room for one.
+/// Returns the sentence to show where only one fits.
 pub(crate) fn first(texts: &[Text]) -> Text {
     texts.first().cloned().unwrap_or_else(|| Text::new("session.ended"))
 }

@@ -1,4 +1,4 @@
-//! The state of every session, whatever its device.
+//! The state common to all sessions.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::app::trace::TraceLog;
 use crate::app::{Severity, Text};
 use crate::store::{Backup, Entry, StatusEntry};
 
-/// The state of every session, whatever its device: its identity, the source of its data, the connection.
+/// State common to all sessions: identity, source of data, connection.
 pub struct SessionState {
     /// Its number in the studio.
     pub id: SessionId,
@@ -21,9 +21,9 @@ pub struct SessionState {
     pub trace: TraceLog,
     /// Backups, or why there are none.
     pub backups: Option<Result<Vec<Backup>, Text>>,
-    /// Writes of this device that the logbook knows, or why it does not tell.
+    /// Writes of this device in the logbook, or why it has none.
     pub writes: Option<Result<Vec<Entry>, Text>>,
-    /// Write cycles that the logbook has seen of this device; `None` where it does not tell, or was not asked.
+    /// Write cycles of this device recorded in the logbook; `None` if it has no record, or was not read.
     pub cycles: Option<u64>,
     /// Status codes of this device that the logbook knows, the newest first.
     pub statuses: Vec<StatusEntry>,
@@ -31,7 +31,7 @@ pub struct SessionState {
     pub just_connected: bool,
     /// The file for the profile that is being read.
     pub(crate) save_to: Option<PathBuf>,
-    /// A profile is on its way into a file: what that says next is not known before it is there.
+    /// A profile is being written to a file, whose content is not known before that ends.
     pub(crate) is_saving: bool,
 }
 
@@ -54,7 +54,7 @@ impl SessionState {
         }
     }
 
-    /// This is the attempt to open its link that counts.
+    /// Returns whether this is the attempt to open its link that counts.
     pub(in crate::app) fn is_attempt(&self, attempt: u32) -> bool {
         self.opening.as_ref().is_some_and(|opening| opening.attempt == Some(attempt))
     }
@@ -68,7 +68,7 @@ impl SessionState {
         }
     }
 
-    /// The name by which the log and the jobs call it.
+    /// Returns the name by which the log and the jobs call it.
     pub fn name(&self) -> String {
         match (&self.source, &self.title) {
             (Source::File { path, .. }, _) => {
@@ -87,14 +87,14 @@ impl SessionState {
         services.note(Severity::Note, texts, Some(&self.name()));
     }
 
-    /// The device has answered, if only with a refusal.
+    /// Notes that the device has answered, if only with a refusal.
     pub(crate) fn answers(&mut self) {
         if matches!(self.phase, Phase::Silent(_)) {
             self.phase = Phase::Connected;
         }
     }
 
-    /// The link is open, and the device does not answer: why, and what to do.
+    /// Notes that the link is open, but the device does not reply: why, and what to do.
     pub(crate) fn fall_silent(&mut self, why: Vec<Text>, services: &mut Services) {
         self.phase = Phase::Silent(first(&why));
         services.log.settle("session.not_connected", Some(&self.name()));
@@ -109,7 +109,7 @@ impl SessionState {
         }
     }
 
-    /// Forgets what it knows of a device, because another one answers.
+    /// Forgets all known data of a device, because another one replies.
     pub(super) fn forget_device(&mut self) {
         (self.title, self.backups, self.writes, self.cycles) = (None, None, None, None);
         self.statuses.clear();

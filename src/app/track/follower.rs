@@ -1,5 +1,5 @@
-//! Positions that go on, made of positions that go round, and how fast they change; across a damaged one too, where the shaft
-//! cannot have come round unseen.
+//! Unwrapped positions made of wrapping ones, with their rate of change; across a damaged one too, if the shaft cannot have
+//! completed a turn unnoticed.
 
 use super::Meaning;
 use crate::analysis::{Motion, Rates, Time, Unwrap, Unwrapped};
@@ -7,15 +7,15 @@ use crate::analysis::{Motion, Rates, Time, Unwrap, Unwrapped};
 /// Nanoseconds over which speed is averaged.
 const WINDOW: i64 = 250_000_000;
 
-/// Makes positions that go on from positions that go round.
+/// Unwraps positions.
 #[derive(Debug)]
 pub(super) struct Follower {
     pub(super) meaning: Meaning,
     unwrap: Unwrap,
     motion: Motion,
-    /// The last position, as it goes on.
+    /// The last position, unwrapped.
     last: Option<(Time, i64)>,
-    /// Steps/s between the last two positions, whichever way.
+    /// Steps/s between the last two positions, in either direction.
     pace: Option<f64>,
     /// Samples without a position have come since the last one.
     has_missed: bool,
@@ -27,8 +27,8 @@ impl Follower {
         Follower { meaning, unwrap, motion: Motion::over(WINDOW), last: None, pace: None, has_missed: false }
     }
 
-    /// The next position is joined to the last one: it comes soon enough, and where samples without a position lie between,
-    /// the shaft cannot have gone round unseen at the pace that it had.
+    /// Returns whether the next position is joined to the last one: it arrives soon enough, and if there are samples
+    /// without a position in between, the shaft cannot have completed the range unnoticed at its last speed.
     pub(super) fn joins(&self, time: Time, apart: i64) -> bool {
         let Some((before, _)) = self.last else { return true };
         if time.nanoseconds_since(before) > apart {
@@ -38,12 +38,12 @@ impl Follower {
         self.pace.is_some_and(|pace| pace * time.seconds_since(before) < range as f64 / 4.0)
     }
 
-    /// A sample without a position came.
+    /// Notes a sample without a position.
     pub(super) fn miss(&mut self) {
         self.has_missed = true;
     }
 
-    /// The next position as it goes on, and how fast; `None` where it lies outside the range.
+    /// Returns the next position unwrapped, with its rates; `None` if it is outside the range.
     pub(super) fn next(&mut self, time: Time, word: i64) -> Option<(Unwrapped, Rates)> {
         let next = self.unwrap.next(word)?;
         if next.broken {

@@ -6,7 +6,7 @@ use crate::app::recorder::{GroupId, Scale, Series};
 /// The meaning of the positions of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meaning {
-    /// Positions from one zero to the next, after which they go round; `None` for a linear one.
+    /// Positions from one zero to the next, after which they wrap; `None` for a linear one.
     pub(in crate::app) range: Option<i64>,
     /// The units of position, speed and acceleration, whose samples are in steps.
     pub scales: [Vec<Scale>; 3],
@@ -67,7 +67,7 @@ impl Meaning {
         Meaning { range: None, scales, is_linear: true, step: Some(millimetres) }
     }
 
-    /// Positions of the one are positions of the other, only seen in other units.
+    /// Returns whether positions of the one are positions of the other, only seen in other units.
     pub(super) fn is_same_place(&self, other: &Meaning) -> bool {
         let own = |meaning: &Meaning| (meaning.range, meaning.is_linear, meaning.step);
         own(self) == own(other)

@@ -1,4 +1,4 @@
-//! Positions of a stream: many at once, and nothing of them is joined that does not belong together.
+//! Positions of a stream: many at once, and none are joined that do not belong together.
 
 use super::*;
 use crate::app::recorder::{Scale, Series};
@@ -16,7 +16,7 @@ impl Watchable for Nothing {
     }
 }
 
-/// A revolution of 1000 steps, 50 steps a sample, 20 000 of them a second: 1000 revolutions.
+/// Returns a revolution of 1000 steps, 50 steps per sample, 20 000 of them per second: 1000 revolutions.
 fn stream(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|number| PositionSample {
@@ -39,7 +39,7 @@ fn samples(track: &Track<Nothing>, line: usize) -> Vec<(i64, f64, Flags)> {
 fn a_stream_is_recorded_as_it_comes() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
     let mut track = Track::<Nothing>::default();
-    // In portions that are no multiples of anything.
+    // In portions of odd sizes.
     let all = stream(0, 40_000);
     all.chunks(173).for_each(|portion| track.add(portion, &meaning));
     assert_eq!((track.positions(), track.dropped()), (40_000, 0));
@@ -66,10 +66,10 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
     track.add(&stream(9, 2), &meaning);
     track.gap();
     track.add(&stream(11, 1), &meaning);
-    // One that was read on its own before is not recorded again.
+    // One that was read singly before is not recorded again.
     track.add(&stream(5, 1), &meaning);
     let (none, bad, broken) = (Flags::NONE, Flags::BAD | Flags::BREAK, Flags::BREAK);
-    // A damaged one lies between two that are joined; one that the device calls invalid parts what is before and behind it.
+    // A damaged one is between two that are joined; one that the device marks invalid separates its neighbours.
     let expected = [
         (0, 0.0, none),
         (50_000, 50.0, none),
@@ -85,7 +85,8 @@ fn what_is_missing_wrong_or_warned_is_marked_and_not_bridged() {
     assert_eq!((track.positions(), track.dropped()), (9, 3));
 }
 
-/// Issue 22.21: one frame of ten is damaged, and the speed is there as soon as a window is over and stays: 50 steps in 50 µs.
+/// Issue 22.21: one frame of ten is damaged; the speed is available as soon as a window has passed, and stays: 50 steps in
+/// 50 µs.
 #[test]
 fn damaged_frames_do_not_take_the_speed_away() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
@@ -108,8 +109,8 @@ fn damaged_frames_do_not_take_the_speed_away() {
     }
 }
 
-/// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps has come round after 20 samples: so many damaged ones are not
-/// bridged, a few are.
+/// Issue 22.21: at 50 steps in 50 µs a shaft of 1000 steps completes a turn after 20 samples: this many damaged ones are
+/// not bridged, a few are.
 #[test]
 fn a_shaft_that_may_have_come_round_unseen_is_not_followed() {
     let meaning = Meaning::of_turns(Some(1000), 1000.0);
@@ -123,7 +124,7 @@ fn a_shaft_that_may_have_come_round_unseen_is_not_followed() {
     }
 }
 
-/// Positions once a second: so many, from a second on.
+/// Returns positions once per second: this number, from a second on.
 fn seconds(from: u64, count: u64) -> Vec<PositionSample> {
     (from..from + count)
         .map(|second| PositionSample {
@@ -139,13 +140,13 @@ fn names(track: &Track<Nothing>) -> Vec<(String, bool)> {
     track.recorder.lines().iter().map(|line| (line.heading.clone(), line.ended)).collect()
 }
 
-/// Positions of lines, by their headings.
+/// Returns the positions of lines, by their headings.
 fn steps(track: &Track<Nothing>, heading: &str) -> Vec<f64> {
     let at = track.recorder.lines().iter().position(|line| line.heading == heading).unwrap();
     samples(track, at).into_iter().map(|(_, steps, _)| steps).collect()
 }
 
-/// Issue 21.12: another scale. What was recorded stays under the old one, in the unit that was chosen and to be exported.
+/// Issue 21.12: another scale. Earlier recordings stay under the old one, in the selected unit, and can be exported.
 #[test]
 fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
     let mut track = Track::<Nothing>::default();
@@ -168,7 +169,7 @@ fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
         track.recorder.recorded().map(|(from, to)| (from.nanoseconds(), to.nanoseconds())),
         Some((0, 4_000_000_000))
     );
-    // They are drawn where they are, and no more.
+    // They are drawn where they are, and nowhere else.
     let drawn = |track: &Track<Nothing>| track.recorder.visible_series().filter(|line| line.ended).count();
     assert_eq!(drawn(&track), 2, "not the acceleration, which was hidden");
     track.recorder.act(recorder::RecorderAction::Look(
@@ -180,7 +181,7 @@ fn another_meaning_leaves_what_was_recorded_under_the_old_one() {
     assert_eq!(names(&track).len(), 3, "whoever clears it wants them gone");
 }
 
-/// Issue 21.12: a pitch that is typed is another unit for the same steps.
+/// Issue 21.12: an entered pitch is another unit for the same steps.
 #[test]
 fn another_unit_of_the_same_steps_is_seen_in_the_same_lines() {
     let on_spindle = |millimetres: f64| {
@@ -202,7 +203,7 @@ fn another_unit_of_the_same_steps_is_seen_in_the_same_lines() {
     assert_eq!((line.scales()[0].factor, line.scale().unwrap().unit.id()), (0.0125, "unit.steps"));
 }
 
-/// Issue 21.12: what is not watched any more, and watched again.
+/// Issue 21.12: a value that is no longer watched, and watched again.
 #[test]
 fn what_is_not_watched_any_more_keeps_its_samples() {
     let mut track = Track::<Nothing>::default();
@@ -230,7 +231,7 @@ fn what_is_not_watched_any_more_keeps_its_samples() {
     assert_eq!(steps(&track, "nothing"), [4.0]);
 }
 
-/// Issue 21.12: another device. Two minutes are what is asked for elsewhere before they are lost.
+/// Issue 21.12: another device. Elsewhere the user is asked before two minutes are lost.
 #[test]
 fn minutes_of_another_device_stay() {
     let meaning = Meaning::of_turns(None, 1000.0);
@@ -246,7 +247,7 @@ fn minutes_of_another_device_stay() {
     }
 }
 
-/// Issue 21.12: words of which only the newest are kept are read anew, and the rest is not lost.
+/// Issue 21.12: words of which only the newest are stored are decoded again, and the rest is not lost.
 #[test]
 fn what_cannot_be_read_anew_stays() {
     let (before, after) = (Meaning::of_turns(None, 1000.0), Meaning::of_turns(None, 400.0));

@@ -1,4 +1,4 @@
-//! The values that are recorded beside a position, each a line of its own.
+//! The values that are recorded in addition to a position, each a line of its own.
 
 use std::convert::Infallible;
 
@@ -15,13 +15,13 @@ pub trait Watchable: Clone + PartialEq {
     /// Returns its name and units.
     fn line(&self, group: GroupId) -> Series;
 
-    /// Samples of this go on as samples of the other, which may be seen in other units.
+    /// Returns whether samples of this value continue as samples of the other, which may be displayed in other units.
     fn continues(&self, other: &Self) -> bool {
         self == other
     }
 }
 
-/// For a device of which nothing is watched.
+/// For a device without watched values.
 impl Watchable for Infallible {
     fn is_whole(&self) -> bool {
         match *self {}
@@ -35,7 +35,7 @@ impl Watchable for Infallible {
 /// A watched value, or that there is none at the moment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watching {
-    /// When.
+    /// Time of the value.
     pub at: Moment,
     /// In the unit of its line.
     pub value: Option<Value>,

@@ -1,4 +1,4 @@
-//! `do`: an action of a kind of device, and what it takes.
+//! `do`: an action of a kind of device, and its arguments.
 
 use clap::{Args, ValueEnum};
 
@@ -22,10 +22,10 @@ pub struct Do {
 }
 
 impl Do {
-    /// The action, one of those of a kind of device, which are `known`.
+    /// Returns the action, one of those of a kind of device, which are `known`.
     ///
     /// # Errors
-    /// It is for another kind of device.
+    /// Returns an error if the action belongs to another kind of device.
     pub(crate) fn action_of<A: ValueEnum>(&self, kind: &str, known: &str) -> Result<A> {
         let action = &self.action;
         A::from_str(action, false)

@@ -1,4 +1,4 @@
-//! The command line as clap is to parse it: what all kinds of device have, and what the list of them adds.
+//! The command line for clap: the common part, and the options and commands of all kinds of device.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ pub(in crate::cli) enum Called {
     Own(&'static dyn OwnCommand, ArgMatches),
 }
 
-/// Parses the arguments of a process, the first of which is its name.
+/// Parses the arguments of a process, the first of which is the program's name.
 pub(in crate::cli) fn parse_arguments(
     words: impl IntoIterator<Item = OsString>,
     commands: Commands,
@@ -53,7 +53,7 @@ fn read(matches: &ArgMatches, commands: Commands) -> Result<Arguments, clap::Err
 /// The whole command line.
 pub(crate) fn command(commands: Commands) -> clap::Command {
     let front = commands.common_options().fold(Front::command(), |front, option| {
-        // Several kinds of device may have it.
+        // Several kinds of device may have the same option.
         let is_new = front.get_arguments().all(|other| other.get_id() != option.get_id());
         if is_new { front.arg(option.help_heading(COMMON_HEADING).display_order(AFTER_SHARED)) } else { front }
     });
@@ -64,10 +64,10 @@ pub(crate) fn command(commands: Commands) -> clap::Command {
     extended.subcommands(commands.own().map(|own| own.command()))
 }
 
-/// A shared command with what the kinds of device add to it.
+/// Adds the options of the kinds of device to a shared command.
 fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::Command {
     let mut command = command;
-    // In place: `mut_arg` would put it behind the other arguments.
+    // In place: `mut_arg` would move it after the other arguments.
     command = command.mut_args(|argument| match argument.get_id().as_str() {
         "device" | "protocol" => argument.value_parser(names(id, commands)),
         "action" => argument.value_parser(actions(commands)),
@@ -77,7 +77,7 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
         let own = device.options(id).into_iter();
         let settings = device.setting_options().into_iter().filter(|_| id == CommandId::Simulate);
         for option in own.chain(settings) {
-            // Several kinds of device may have it.
+            // Several kinds of device may have the same option.
             if command.get_arguments().all(|other| other.get_id() != option.get_id()) {
                 command = command.arg(option.display_order(AFTER_SHARED));
             }
@@ -91,7 +91,7 @@ fn extended(command: clap::Command, id: CommandId, commands: Commands) -> clap::
     if help.is_empty() { command } else { command.after_long_help(help.join("\n\n")) }
 }
 
-/// The kinds of device that a command takes, and the protocols where it takes them.
+/// Returns the kinds of device that a command takes, and the protocols if it takes them.
 fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
     let devices = commands.devices().iter().filter(|device| id != CommandId::Find || device.is_searchable());
     let devices = devices.map(|device| PossibleValue::new(device.name()).help(device.about()));
@@ -100,7 +100,7 @@ fn names(id: CommandId, commands: Commands) -> PossibleValuesParser {
     PossibleValuesParser::new(devices.chain(protocols).collect::<Vec<_>>())
 }
 
-/// The actions of all kinds of device, each with what it is for the kinds that have it.
+/// Returns the actions of all kinds of device, each with its meaning for the kinds that have it.
 fn actions(commands: Commands) -> PossibleValuesParser {
     let single = commands.devices().iter().map(|device| (device.name(), device.actions()));
     let combined = commands.devices().iter().map(|device| (device.name(), device.combined_actions()));

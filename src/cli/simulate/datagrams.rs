@@ -1,5 +1,5 @@
-//! A virtual device that is reached over TCP and UDP at the same port. Packets go at their moments: they are slept for, not
-//! waited for with a socket's time-out, which comes only with the next tick of the system.
+//! A virtual device on TCP and UDP at the same port. Packets are sent at exact times by sleeping, because a socket's
+//! time-out has the resolution of the system tick.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, SocketAddrV4, TcpListener, ToSocketAddrs, UdpSocket};
@@ -12,9 +12,9 @@ use super::PATIENCE;
 use crate::link::{Clock, RealClock, wake_before_others};
 use crate::sim::DatagramDevice;
 
-/// The longest sleep of the sender: no packet is due sooner after the request for it.
+/// The longest sleep of the sender: after a request, no packet is due sooner.
 const REST: Duration = Duration::from_millis(4);
-/// Ports that are tried where any will do.
+/// Number of ports to try if any port will do.
 const TRIES: usize = 50;
 /// More than any packet has.
 const ROOM: usize = 2048;
@@ -59,7 +59,7 @@ impl Served {
     /// Receives and sends packets until the program is interrupted.
     ///
     /// # Errors
-    /// No thread could be started.
+    /// Returns an error if no thread could be started.
     pub(super) fn start<'scope>(
         &'scope self,
         scope: &'scope Scope<'scope, '_>,
@@ -82,7 +82,7 @@ impl Served {
                 }
                 Ok(_) => {}
                 Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {}
-                // Some systems tell here that a packet sent earlier had no receiver.
+                // Some systems report here that an earlier packet had no receiver.
                 Err(_) => std::thread::sleep(Duration::from_millis(1)),
             }
         }
@@ -96,7 +96,7 @@ impl Served {
         }
     }
 
-    /// Calls `work` with the device, sends what is due, and returns how long nothing more is.
+    /// Calls `work` with the device, sends what is due, and returns the time until the next packet.
     fn pump(&self, work: impl FnOnce(&mut dyn DatagramDevice, &RealClock)) -> Duration {
         let mut device = self.device.lock().unwrap_or_else(PoisonError::into_inner);
         work(&mut **device, &self.clock);

@@ -1,4 +1,4 @@
-//! The command line as scripts know it: commands, options and values of all kinds together.
+//! Tests of the command line as used by scripts: commands, options and values of all kinds together.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -8,8 +8,8 @@ use clap::Arg;
 use crate::cli::args::build::command;
 use crate::kinds::program;
 
-/// Commands, options and the values they take, without their descriptions: scripts rely on them. With
-/// `ENCODER_STUDIO_RECORD=1` the recording is written anew.
+/// Commands, options and their values without descriptions, on which scripts rely. With `ENCODER_STUDIO_RECORD=1` the
+/// recording is written again.
 #[test]
 fn commands_and_options_are_as_recorded() {
     let mut text = String::new();
@@ -26,7 +26,7 @@ fn commands_and_options_are_as_recorded() {
     }
 }
 
-/// What a command takes: its arguments in their order, and its options, which may be given in any.
+/// The arguments of a command in their order, and its options, which may be given in any order.
 #[derive(Debug, Default, PartialEq)]
 struct Taken<'t> {
     arguments: Vec<&'t str>,

@@ -1,4 +1,4 @@
-//! Profiles over texts of a person, of every kind.
+//! Tests of profiles saved over edited texts, for every kind.
 
 use super::program;
 use crate::profile::{Carried, Document};
@@ -21,7 +21,7 @@ fn commented(kind: &str) -> String {
     std::fs::read_to_string(folder.join(kind).with_extension("ron")).unwrap()
 }
 
-/// Issue 22.26: a save of what was not changed leaves the text as it is, for every kind, whatever its line ends are.
+/// Issue 22.26: saving an unchanged profile leaves the text unchanged, for every kind and with any line ends.
 #[test]
 fn what_is_not_changed_stays_as_it_is_written() {
     for kind in program().studio.formats.kinds() {
@@ -34,7 +34,8 @@ fn what_is_not_changed_stays_as_it_is_written() {
     }
 }
 
-/// Issue 22.26: whatever a profile becomes, it says that and nothing else, and each comment of a person stays or is named.
+/// Issue 22.26: a changed profile saved over a text has exactly its own content, and each comment of the user remains or is
+/// reported.
 #[test]
 fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
     let all = ready_made();
@@ -63,7 +64,7 @@ fn any_profile_over_any_text_says_what_it_is_and_no_comment_goes_unnamed() {
     }
 }
 
-/// A text with other blanks between its words: those of `picks` in turn. Comments are numbered.
+/// Returns a text with other blanks between its words: those of `picks` in turn. Comments are numbered.
 fn spaced(text: &str, picks: &[usize]) -> (String, usize) {
     const WAYS: usize = 9;
     let (mut out, mut comments, mut at, mut pick) = (String::new(), 0, 0, picks.iter().cycle());
@@ -112,7 +113,7 @@ fn spaced(text: &str, picks: &[usize]) -> (String, usize) {
 proptest::proptest! {
     #![proptest_config(proptest::test_runner::Config { cases: 256, ..Default::default() })]
 
-    /// Issue 22.26: wherever a person puts comments and line ends, and whatever is saved over that.
+    /// Issue 22.26: comments and line ends between any words remain or are reported, for any profile saved over the text.
     #[test]
     fn comments_between_any_words_stay_or_are_named(
         from in 0_usize..100,

@@ -1,15 +1,15 @@
-//! The echo of a line on which an adapter gives back what the host sends.
+//! The echo of a line on which an adapter returns the bytes of the host.
 
 use crate::parameter::Words;
 
-/// Whether the adapter echoes the bytes that are sent.
+/// Whether the adapter echoes sent bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Echo {
-    /// Not known yet: learned with the first exchange.
+    /// Not known yet: determined with the first exchange.
     Unknown,
-    /// It does.
+    /// The adapter echoes.
     On,
-    /// It does not.
+    /// The adapter does not echo.
     Off,
 }
 

@@ -1,4 +1,4 @@
-//! The quality of a line: counters, and reply times.
+//! The quality of a line: counters and reply times.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -12,11 +12,11 @@ pub struct LineQuality {
     pub replies: u64,
     /// Requests that were sent again.
     pub retries: u64,
-    /// Replies that were damaged, and requests that the device says were.
+    /// Number of replies that were damaged, and of requests that the device reported as damaged.
     pub damaged: u64,
-    /// Requests to which nothing came back.
+    /// Number of requests without a reply.
     pub silent: u64,
-    /// Replies that came after their time.
+    /// Number of replies that came too late.
     pub late: u64,
     /// The newest reply times, from the first byte of the request to that of the reply.
     answers: VecDeque<Duration>,
@@ -36,7 +36,7 @@ impl LineQuality {
         [self.retries, self.damaged, self.silent, self.late]
     }
 
-    /// The time within which `percent` of the newest replies came; `None` where there were none.
+    /// Returns the time within which `percent` of the newest replies came; `None` if there were none.
     pub fn answered_within(&self, percent: usize) -> Option<Duration> {
         let mut times: Vec<Duration> = self.answers.iter().copied().collect();
         times.sort_unstable();

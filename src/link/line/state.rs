@@ -6,30 +6,30 @@ use super::{Echo, LineQuality};
 use crate::parameter::Milliseconds;
 use crate::units::Moment;
 
-/// No wire is slower than this.
+/// The margin of the slowest connection.
 pub(super) const LONGEST_MARGIN: Duration = Duration::from_secs(2);
 
-/// How much later than the protocol's worst case a reply may arrive.
+/// The allowed delay of a reply beyond the protocol's worst case.
 pub(crate) const MARGIN: Milliseconds = Milliseconds(0..=LONGEST_MARGIN.as_millis() as u64);
 
 /// The state of a line that is kept between jobs.
 #[derive(Clone, Debug)]
 pub struct LineState {
-    /// How much later than the protocol's worst case a reply may arrive: USB adapters and device servers deliver late.
+    /// The allowed delay of a reply beyond the protocol's worst case: USB adapters and device servers deliver late.
     pub margin: Duration,
     /// Whether the adapter echoes.
     pub echo: Echo,
-    /// Exchanges that failed and had to be repeated or given up, since the session began.
+    /// Number of exchanges that failed and had to be repeated or given up, since the session began.
     pub damaged: u64,
     /// The quality of the line.
     pub quality: LineQuality,
-    /// No request before this moment.
+    /// The earliest time of the next request.
     pub(crate) quiet_until: Moment,
-    /// Since when nothing sensible came back.
+    /// Time since which no valid reply came.
     pub(super) troubled_since: Option<Moment>,
-    /// When the first request was sent that has no reply yet.
+    /// Time of the first request that has no reply yet.
     pub(super) outstanding_since: Option<Moment>,
-    /// When the last request was sent.
+    /// Time of the last request.
     pub(super) last_sent: Moment,
 }
 
@@ -48,25 +48,25 @@ impl LineState {
         }
     }
 
-    /// The last exchange failed.
+    /// Returns whether the last exchange failed.
     pub fn is_troubled(&self) -> bool {
         self.troubled_since.is_some()
     }
 
-    /// A job begins: it has its patience before it.
+    /// Starts a job, which has its full patience.
     pub(crate) fn begin_job(&mut self) {
         self.troubled_since = None;
         self.outstanding_since = None;
     }
 
-    /// A request leaves now.
+    /// Notes that a request is sent now.
     pub(crate) fn sent(&mut self, at: Moment) {
         self.outstanding_since.get_or_insert(at);
         self.last_sent = at;
         self.quality.requests += 1;
     }
 
-    /// A reply that can be understood has come.
+    /// Notes that a valid reply has come.
     pub(crate) fn answered(&mut self) {
         self.outstanding_since = None;
         self.quality.replies += 1;

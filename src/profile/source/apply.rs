@@ -1,16 +1,16 @@
-//! A change put into a text, with everything else in it as it stands.
+//! Applies a change to a text, and leaves the rest of it unchanged.
 
 use std::ops::Range;
 
 use super::changes::{Change, Step, means_the_same, steps};
 use super::tree::{Kind, Node, Part, comment_behind, read};
 
-/// All changes put into a text, one after the other; `None` where one of them has no place there.
+/// Returns a text with all changes applied one after the other; `None` if one of them has no place in it.
 pub(in crate::profile) fn applied(text: &str, changes: &[Change]) -> Option<String> {
     changes.iter().try_fold(text.to_owned(), |text, change| apply(&text, change))
 }
 
-/// A change put into a text; `None` where it has no place there.
+/// Returns a text with a change applied; `None` if it has no place in it.
 pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     let root = read(text)?;
     let (last, way) = match change.path.split_last() {
@@ -24,7 +24,7 @@ pub(in crate::profile) fn apply(text: &str, change: &Change) -> Option<String> {
     match (part_at(text, within, last), &change.to) {
         (Some(part), Some(to)) => {
             let own = text.get(part.value.span.clone())?;
-            // By their place alone, elements are the same only where they say the same.
+            // Elements that only have an index are the same only if their content is the same.
             if let (Step::At(_), Some(from)) = (last, &change.from)
                 && !means_the_same(own, from)
             {
@@ -53,7 +53,7 @@ pub(super) fn value_at(text: &str, path: &[Step]) -> Option<(String, Vec<Step>)>
 
 fn part_at<'n>(text: &str, node: &'n Node, step: &Step) -> Option<&'n Part> {
     if let Step::At(at) = step {
-        // An element with a name is no element by its place.
+        // An element with a name is not addressed by its index.
         return if matches!(node.kind, Kind::List(_)) { node.parts().get(*at) } else { None };
     }
     steps(text, node).iter().position(|own| own == step).and_then(|at| node.parts().get(at))
@@ -63,7 +63,7 @@ fn replaced(text: &str, place: &Range<usize>, by: &str) -> Option<String> {
     Some([text.get(..place.start)?, by, text.get(place.end..)?].concat())
 }
 
-/// The comment that this program wrote behind an entry goes with its value; a person's own stays.
+/// Moves the comment that this program wrote after an entry together with its value; a user's own comment stays.
 fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String>)) -> Option<String> {
     let found = comment_behind(text, at);
     match (found, comments) {
@@ -75,7 +75,7 @@ fn with_comment(text: &str, at: usize, comments: &(Option<String>, Option<String
     }
 }
 
-/// The text without an entry: with its line, where it has one of its own.
+/// Returns the text without an entry, and without its line if the entry has its own.
 fn without(text: &str, part: &Part) -> Option<String> {
     let before = text.get(..part.start())?;
     let after = part.end;
@@ -90,13 +90,13 @@ fn without(text: &str, part: &Part) -> Option<String> {
     if part.comma {
         return replaced(text, &(part.start()..after + blanks), "");
     }
-    // The last one on a line, with the comma that stands before it.
+    // The last entry on a line is removed with the comma before it.
     let start = before.trim_end().len();
     let start = if before.get(..start)?.ends_with(',') { start - 1 } else { part.start() };
     replaced(text, &(start..after), "")
 }
 
-/// The text with another entry, behind the one before it.
+/// Returns the text with a new entry after its predecessor.
 fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Option<String> {
     if matches!(within.kind, Kind::Plain) || matches!(last, Step::At(_)) {
         return None;
@@ -133,7 +133,7 @@ fn with(text: &str, within: &Node, change: &Change, last: &Step, to: &str) -> Op
     let follows = text.get(place..)?.lines().next().unwrap_or_default();
     let close = match follows.trim() {
         "" => String::new(),
-        // The comment behind the new line must not swallow it.
+        // The comment after the new line must not include it.
         _ if parts.is_empty() => format!("{end}{}", indent_at(text, within.span.start)),
         _ => format!("{end}{indent}"),
     };
@@ -152,24 +152,24 @@ fn after_comment(text: &str) -> &str {
     }
 }
 
-/// The blanks with which the line of a place begins.
+/// Returns the blanks with which the line of a place begins.
 fn indent_at(text: &str, at: usize) -> &str {
     let line = text.get(..at).unwrap_or_default().rfind('\n').map_or(0, |at| at + 1);
     let line = text.get(line..).unwrap_or_default();
     line.get(..line.len() - line.trim_start_matches([' ', '\t']).len()).unwrap_or_default()
 }
 
-/// A value of several lines, which was written elsewhere, where it is to stand.
+/// Indents a value of several lines, which was written elsewhere, for its new place.
 fn indented(value: &str, indent: &str, end: &str) -> String {
     let mut lines = value.lines();
     let first = lines.next().unwrap_or_default().to_owned();
     let rest: Vec<&str> = lines.collect();
-    // Its last line holds the bracket that closes it, which stands as far in as its first.
+    // The last line holds the closing bracket, which has the same indentation as the first.
     let own = rest.last().map_or(0, |line| line.len() - line.trim_start().len());
     rest.into_iter().fold(first, |all, line| format!("{all}{end}{indent}{}", line.get(own..).unwrap_or(line.trim())))
 }
 
-/// A value of several lines on one; `None` where a comment stands in it.
+/// Joins a value of several lines into one; `None` if it contains a comment.
 fn one_line(value: &str) -> Option<String> {
     if !value.contains('\n') {
         return Some(value.to_owned());

@@ -7,17 +7,17 @@ use serde::{Deserialize, Serialize};
 
 use super::tree::{Kind, Node, Part, comment_behind, read};
 
-/// Entries that tell the elements of a list apart, the first that there is.
+/// Entries that identify the elements of a list; the first existing one counts.
 const NAMES: [&str; 7] = ["number", "program", "cam", "bank", "banks", "item", "name"];
 
-/// One step on the way to an entry.
+/// One step of the path to an entry.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Step {
-    /// An entry of a structure, by its name as it is written.
+    /// An entry of a structure, by its name as written.
     Entry(String),
-    /// An element of a list, by the entry that tells it apart: its name and its value.
+    /// An element of a list, by its identifying entry: name and value.
     Named(String, String),
-    /// An element of a list, by its place.
+    /// An element of a list, by its index.
     At(usize),
 }
 
@@ -32,7 +32,7 @@ pub struct Change {
     pub to: Option<String>,
     /// The predecessors in the same structure or list on the right, the nearest first.
     pub behind: Vec<Step>,
-    /// The comment behind it, on the left and on the right.
+    /// The comment after it, on the left and on the right.
     #[serde(default)]
     pub comments: (Option<String>, Option<String>),
     /// Comments on lines of their own before it, on the right.
@@ -41,7 +41,7 @@ pub struct Change {
 }
 
 impl Change {
-    /// Its place as messages name it: `fields[number: 2].status`.
+    /// Returns the path as messages name it: `fields[number: 2].status`.
     pub fn place(&self) -> String {
         self.path.iter().enumerate().fold(String::new(), |place, (at, step)| match step {
             Step::Entry(name) if at == 0 => name.clone(),
@@ -69,13 +69,14 @@ pub(in crate::profile) fn changes(left: &str, right: &str) -> Option<Vec<Change>
     Some(walk.found)
 }
 
-/// Two texts of plain values mean the same: `0x10` and `16`.
+/// Returns whether two texts of plain values mean the same: `0x10` and `16`.
 pub(super) fn means_the_same(one: &str, other: &str) -> bool {
     let value = |text| ron::from_str::<Value>(text).ok();
     one == other || value(one).is_some_and(|own| Some(own) == value(other))
 }
 
-/// The step to each part of a list or structure. Elements without a name of their own, or with the same, go by their place.
+/// Returns the step to each part of a list or structure. Elements without a name of their own, or with the same name, use
+/// their index.
 pub(super) fn steps(text: &str, node: &Node) -> Vec<Step> {
     let slice = |part: &Part| part.key.as_ref().and_then(|key| text.get(key.clone()));
     let parts = node.parts();
@@ -102,7 +103,7 @@ fn name_of(text: &str, element: &Node) -> Option<Step> {
     matches!(element.kind, Kind::Entries(_)).then(|| NAMES.into_iter().find_map(entry)).flatten()
 }
 
-/// A value in one notation, so that `0x10` and `16` are one name.
+/// Returns a value in one notation, so that `0x10` and `16` are one name.
 fn plain(value: &str) -> String {
     ron::from_str::<Value>(value).ok().and_then(|value| ron::to_string(&value).ok()).unwrap_or_else(|| value.to_owned())
 }
@@ -168,7 +169,8 @@ impl Walk<'_> {
     }
 }
 
-/// Elements with names may come and go as long as the rest keeps its order; those without keep their number.
+/// Returns whether the order is unchanged: named elements may be added and removed as long as the rest keeps its order;
+/// those without a name keep their number.
 fn is_one_order(own: &[Step], other: &[Step]) -> bool {
     let common = |these: &[Step], those: &[Step]| -> Vec<Step> {
         these.iter().filter(|step| those.contains(step)).cloned().collect()

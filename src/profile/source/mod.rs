@@ -1,5 +1,5 @@
-//! The text of a profile as a person keeps it: its entries with their places, what differs between two texts, and changes
-//! put into a text so that everything else in it stays as it is written: comments, order, notation, line ends.
+//! The text of a profile as edited by a user: its entries with their positions, the differences between two texts, and
+//! changes to a text that leave the rest as written: comments, order, notation, line ends.
 
 mod apply;
 mod carry;

@@ -1,12 +1,12 @@
-//! RON with the locations of its parts. It parses text that the `ron` crate has already accepted, and returns nothing
-//! where it cannot follow; the text is then written afresh.
+//! RON with the positions of its parts. It parses text that the `ron` crate has already accepted, and returns `None` if it
+//! cannot; the text is then written completely again.
 
 use std::ops::Range;
 
 /// A value in a text.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Node {
-    /// From its first to behind its last character; what stands in `Some(…)` without that.
+    /// From its first character to the end of its last; for `Some(…)`, only the content.
     pub(super) span: Range<usize>,
     pub(super) kind: Kind,
 }
@@ -28,21 +28,21 @@ pub(super) struct Part {
     /// The text before the colon.
     pub(super) key: Option<Range<usize>>,
     pub(super) value: Node,
-    /// Behind its value, or behind the comma where there is one.
+    /// End of its value, or of the comma if there is one.
     pub(super) end: usize,
-    /// There is a comma.
+    /// Whether a comma follows.
     pub(super) comma: bool,
 }
 
 impl Part {
-    /// Returns where it begins.
+    /// Returns the start of the part.
     pub(super) fn start(&self) -> usize {
         self.key.as_ref().map_or(self.value.span.start, |key| key.start)
     }
 }
 
 impl Node {
-    /// The elements or entries.
+    /// Returns the elements or entries.
     pub(super) fn parts(&self) -> &[Part] {
         match &self.kind {
             Kind::Plain => &[],
@@ -51,7 +51,7 @@ impl Node {
     }
 }
 
-/// Reads a text; `None` where it cannot be followed.
+/// Parses a text; `None` if it cannot be parsed here.
 pub(super) fn read(text: &str) -> Option<Node> {
     let mut reader = Reader { text, at: 0 };
     reader.skip();
@@ -64,7 +64,7 @@ pub(super) fn read(text: &str) -> Option<Node> {
     reader.rest().is_empty().then_some(node)
 }
 
-/// All comments of a text, without the signs that begin them.
+/// Returns all comments of a text, without their delimiters.
 pub(super) fn comments(text: &str) -> Vec<&str> {
     let mut reader = Reader { text, at: 0 };
     let mut found = Vec::new();
@@ -79,7 +79,7 @@ pub(super) fn comments(text: &str) -> Vec<&str> {
     found
 }
 
-/// The comment that stands on the same line behind a place, with its place.
+/// Returns the comment that follows a position on the same line, with its range.
 pub(super) fn comment_behind(text: &str, at: usize) -> Option<(Range<usize>, &str)> {
     let rest = text.get(at..)?;
     let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
@@ -143,7 +143,7 @@ impl<'t> Reader<'t> {
         rest.get(2..at.saturating_sub(2)).map(str::trim)
     }
 
-    /// A text or a character, whose quotes may hold anything.
+    /// Skips a text or a character, whose quotes may contain anything.
     fn quoted(&mut self) -> Option<()> {
         let rest = self.rest();
         let plain = rest.strip_prefix('b').unwrap_or(rest);
@@ -167,7 +167,7 @@ impl<'t> Reader<'t> {
         None
     }
 
-    /// A number or a name.
+    /// Parses a number or a name.
     fn word(&mut self) -> Option<&'t str> {
         let rest = self.rest();
         let ends = |c: char| c.is_whitespace() || "()[]{},:\"'".contains(c) || c == '/';
@@ -200,7 +200,7 @@ impl<'t> Reader<'t> {
         Some(Node { span: start..self.at, kind })
     }
 
-    /// A structure, or a tuple, which counts as a whole.
+    /// Parses a structure, or a tuple, which counts as a whole.
     fn bracket(&mut self) -> Option<Kind> {
         let (parts, named) = self.parts('(', ')')?;
         Some(if named || parts.is_empty() { Kind::Entries(parts) } else { Kind::Plain })

@@ -59,7 +59,7 @@ fn analyse(output: &Output, arguments: &Analyse) -> Result {
         diagnosis.findings.iter().map(|finding| explain::signal::diagnosis(finding).terminal()).collect();
     let analysis = analysis.map_err(|error| {
         let why = explain::signal::analysis(path, &error).terminal();
-        // Levels of the wires say more about what is wrong than that there is no ellipse.
+        // Levels of the wires show more than the missing ellipse.
         let more = findings.iter().filter(|_| references_v.is_some()).take(3).cloned();
         Failure::Failed(std::iter::once(why).chain(more).collect())
     })?;
@@ -88,7 +88,7 @@ fn remarks(output: &Output, layout: &Layout, capture: &Capture) {
     }
 }
 
-/// DNL and INL, where there are a reference and the number of periods; why there are none is a remark.
+/// Prints DNL and INL, if there are a reference and the number of periods; the reason for missing ones is a remark.
 fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: Option<u32>) -> Option<Revolution> {
     let reference = capture.reference_deg.as_ref()?;
     let Some(periods) = periods else {
@@ -101,7 +101,7 @@ fn revolution(output: &Output, capture: &Capture, analysis: &Analysis, periods: 
     revolution.inspect_err(|error| output.remark(&explain::signal::revolution(error).terminal())).ok()
 }
 
-/// All that is told of a capture.
+/// Report of a capture.
 struct CaptureReport<'a> {
     family: Family,
     analysis: &'a Analysis,

@@ -1,4 +1,4 @@
-//! The state of the Signals tab, and what can be done with it.
+//! The state of the Signals tab, and its actions.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,11 +20,11 @@ use crate::link::LinkUrl;
 use crate::signals::state::TEXTS;
 use crate::store::ReadCaptureError;
 
-/// All that the Signals tab knows.
+/// State of the Signals tab.
 pub struct Signals {
     family: Family,
     periods: Option<u32>,
-    /// The periods are those of the virtual encoder: they say nothing about a capture.
+    /// The periods are those of the virtual encoder: they do not apply to a capture.
     periods_of_source: bool,
     /// The virtual encoder, or an adapter.
     pub(crate) source: Source,
@@ -118,7 +118,7 @@ impl Signals {
         Signals { source: Source::at(links.first()), ..Signals::default() }
     }
 
-    /// An adapter gets its wire first, and is remembered.
+    /// Starts an adapter: it gets its connection first, and is stored in the settings.
     fn begin_with_adapter(&mut self, context: &mut ToolContext<'_>) {
         let earlier = match self.source.adapter_url() {
             Some(url) => context.free_wire(&url, TEXTS.text("session.let_go_for_signals")),
@@ -138,22 +138,23 @@ impl Signals {
         self.family
     }
 
-    /// Signal periods in a revolution, at least 1; `None`: not known, so that nothing is told that rests on them.
+    /// Returns the signal periods per revolution, at least 1; `None`: not known, so nothing that depends on them is
+    /// reported.
     pub fn periods(&self) -> Option<u32> {
         self.periods
     }
 
-    /// Absolute and analogue position brought together.
+    /// Returns the absolute and analogue position brought together.
     pub fn synchronise(&self) -> &Synchronise {
         &self.synchronise
     }
 
-    /// The capture that is shown.
+    /// Returns the capture that is shown.
     pub fn measurement(&self) -> Option<&Arc<Measurement>> {
         self.measurement.as_ref()
     }
 
-    /// The virtual encoder, or an adapter.
+    /// Returns the virtual encoder, or an adapter.
     pub fn source(&self) -> &Source {
         &self.source
     }
@@ -163,7 +164,7 @@ impl Signals {
         self.comparison.as_ref()
     }
 
-    /// The table that was read last, whether it could be or not.
+    /// Returns the table that was read last, whether it could be or not.
     pub fn table(&self) -> Option<&Table> {
         self.table.as_ref()
     }
@@ -178,7 +179,7 @@ impl Signals {
         self.reading.as_ref()
     }
 
-    /// The signals over time.
+    /// Returns the signals over time.
     pub fn scope(&self) -> &Scope {
         &self.scope
     }
@@ -195,7 +196,7 @@ impl Signals {
         Some(compare(&before, &own.diagnosis))
     }
 
-    /// Another number of periods a revolution: what is shown is judged again.
+    /// Sets the number of periods per revolution, and judges the capture again.
     pub(super) fn set_periods(&mut self, periods: u32, of_source: bool, services: &mut Services) {
         self.periods = Some(periods.clamp(1, MOST_PERIODS));
         self.periods_of_source = of_source;
@@ -204,7 +205,7 @@ impl Signals {
         }
     }
 
-    /// Forgets the reading in progress: its result will not come.
+    /// Forgets the reading in progress: its result will not arrive.
     pub(super) fn forget_reading(&mut self) {
         if let Some(reading) = self.reading.take() {
             self.table.clone_from(&reading.settled);
@@ -217,7 +218,7 @@ impl Signals {
         }
     }
 
-    /// Does what is asked.
+    /// Carries out an action.
     pub(crate) fn act(&mut self, action: SignalsAction, services: &mut Services) {
         match action {
             SignalsAction::Open(path) => self.open_at(TableSource::File(path), services),
@@ -256,7 +257,7 @@ impl Signals {
         }
     }
 
-    /// A task has come back.
+    /// Handles the result of a task.
     pub(crate) fn done(&mut self, done: Done, services: &mut Services) {
         match done {
             Done::Read { number, read } => {
@@ -276,7 +277,7 @@ impl Signals {
         }
     }
 
-    /// A task has come back with nothing.
+    /// Handles a task without a result.
     fn failed(&mut self, failed: Failed, services: &mut Services) {
         let what = match failed {
             Failed::Read(number) if self.reading.as_ref().is_some_and(|reading| reading.number == number) => {
@@ -290,14 +291,14 @@ impl Signals {
         services.notify(Severity::Error, vec![TEXTS.text(what)], None);
     }
 
-    /// Other samples: a table of those before that is still being written cannot be ended.
+    /// Replaces the samples: a table of the previous ones that is being written cannot be completed.
     pub(super) fn replace_scope(&mut self, scope: Scope, services: &Services) {
         self.scope.recorder.act(recorder::RecorderAction::CancelExport);
         task_guard::let_go(&services.tasks, std::mem::replace(&mut self.scope, scope));
     }
 
     fn show(&mut self, measurement: Measurement, services: &Services) {
-        /// Samples whose memory takes longer to give back than a thread to start.
+        /// Number of samples whose memory takes longer to release than a thread to start.
         const LARGE: usize = 100_000;
         if let Some(before) = self.measurement.replace(Arc::new(measurement))
             && before.capture.sine_v.len() > LARGE
@@ -306,7 +307,7 @@ impl Signals {
         }
     }
 
-    /// The newest samples of the source take the place of what was shown.
+    /// Replaces the displayed capture by the newest samples of the source.
     pub(super) fn show_live(&mut self, measurement: Measurement, services: &Services) {
         self.show(measurement, services);
         self.problem = None;
@@ -341,12 +342,12 @@ impl Signals {
         }
     }
 
-    /// The table as the capture that is shown was read, also while it is being read differently.
+    /// Returns the table as it was read for the displayed capture, also while it is being read differently.
     fn settled(&self) -> Option<Table> {
         self.reading.as_ref().map_or_else(|| self.table.clone(), |reading| reading.settled.clone())
     }
 
-    /// Reads the table again with another wish.
+    /// Reads the table again with another setting.
     fn reread_table(&mut self, services: &mut Services, change: impl FnOnce(&mut TableHints)) {
         let settled = self.settled();
         if let Some(table) = &mut self.table {
@@ -373,7 +374,7 @@ impl Signals {
         Judge { family: self.family, periods: self.periods }
     }
 
-    /// Judges what is shown by what is set now.
+    /// Judges the displayed capture by the present settings.
     pub(super) fn judge_again(&mut self, services: &mut Services) {
         let Some(measurement) = self.measurement.clone() else { return };
         self.judgements = self.judgements.wrapping_add(1);
@@ -384,7 +385,7 @@ impl Signals {
         });
     }
 
-    /// Begins to read; what was being read is given up.
+    /// Begins to read; a reading in progress is cancelled.
     fn read(&mut self, place: TableSource, hints: TableHints, settled: Option<Table>, services: &mut Services) {
         self.attempts = self.attempts.wrapping_add(1);
         let number = self.attempts;

@@ -18,7 +18,7 @@ pub enum SignalsAction {
     SetDelimiter(Delimiter),
     /// Numbers have a decimal comma, or not.
     SetDecimalComma(bool),
-    /// Another column, from 1; `None` is none.
+    /// Select another column, from 1; `None`: no column.
     SetColumn(Column, Option<usize>),
     /// Another unit of the time.
     SetTimeUnit(TimeUnit),
@@ -36,7 +36,7 @@ pub enum SignalsAction {
     Keep,
     /// Compare no longer.
     DropComparison,
-    /// About what runs: the virtual encoder, or an adapter.
+    /// An action about the source: the virtual encoder, or an adapter.
     Source(SourceAction),
     /// Absolute and analogue position brought together.
     Synchronise(synchronise::SynchroniseAction),
@@ -50,7 +50,7 @@ pub enum Done {
         number: u32,
         read: Box<Read>,
     },
-    /// The capture that is shown was judged by something else.
+    /// The displayed capture was judged again.
     Judged {
         /// Number of the attempt: only the latest counts.
         number: u32,
@@ -58,7 +58,7 @@ pub enum Done {
     },
     /// The newest samples of the source were measured.
     Measured {
-        /// Since which start: only the latest counts.
+        /// Number of the start: only the latest counts.
         number: u32,
         measurement: Box<Measurement>,
     },
@@ -81,8 +81,8 @@ pub enum Failed {
 
 /// The result of reading a table.
 pub struct Read {
-    /// Its first lines, and how they are understood.
+    /// Its first lines, and the detected format.
     pub(super) table: Table,
-    /// The capture with all that is known about it.
+    /// The capture with all results.
     pub(super) result: Result<(Measurement, Scope), ReadCaptureError>,
 }

@@ -1,4 +1,4 @@
-//! Samples of sine and cosine as they come, from whatever runs: the virtual encoder, or an adapter.
+//! Samples of sine and cosine as they arrive, from the virtual encoder or an adapter.
 
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -25,7 +25,7 @@ use crate::worker::stream::{Analogue, Batch, End, Producer, Stream};
 pub(super) struct Channels {
     pub(super) sine_v: Vec<f64>,
     pub(super) cosine_v: Vec<f64>,
-    /// The wires one by one, where they are known.
+    /// The single wires, if they are known.
     pub(super) wires: Option<Wires>,
 }
 
@@ -34,7 +34,7 @@ impl Channels {
         self.sine_v.len()
     }
 
-    /// A wire; nothing where it is not known.
+    /// Returns a wire; empty if it is not known.
     pub(super) fn wire(&self, of: fn(&Wires) -> &Vec<f64>) -> &[f64] {
         self.wires.as_ref().map_or(&[], |wires| of(wires))
     }
@@ -64,7 +64,7 @@ pub(super) enum Feed {
     },
 }
 
-/// A link that leads to an adapter; nothing has been opened.
+/// Link to an adapter; nothing has been opened.
 pub(super) struct AdapterLink {
     url: LinkUrl,
     clock: Arc<dyn Clock>,
@@ -76,7 +76,7 @@ impl AdapterLink {
     /// Reads a link.
     ///
     /// # Errors
-    /// It leads to no adapter: why.
+    /// Why it does not lead to an adapter.
     pub(super) fn read(text: &str) -> Result<Self, Text> {
         let url: LinkUrl =
             text.parse().map_err(|why| TEXTS.text("adapter.link").with_text("why", explain::url(&why)))?;
@@ -85,7 +85,8 @@ impl AdapterLink {
         Ok(AdapterLink { url, clock, margin, open })
     }
 
-    /// Lets it sample so many times a second, with the encoder's supply switched on where one is given. Whether it is there is told by its stream.
+    /// Starts sampling at this rate, with the encoder's supply switched on if one is given. The stream reports whether the
+    /// adapter is present.
     ///
     /// # Errors
     /// No thread is left.
@@ -100,10 +101,10 @@ impl AdapterLink {
         let (before, patience) = (services.endings_on(&url), services.world.patience.job);
         let open: Open = Box::new(move || {
             if let Some(earlier) = earlier {
-                // Nothing is ever sent: it ends, or hangs for ever.
+                // Nothing is sent on it: it disconnects, or never does.
                 let _ = earlier.recv_timeout(patience);
             }
-            // The previous owner of the wire returns it first; if not, the wire cannot be opened.
+            // The previous user releases the connection first; otherwise it cannot be opened.
             for (ending, patience) in before {
                 ending.wait(patience);
             }
@@ -115,11 +116,11 @@ impl AdapterLink {
     }
 }
 
-/// Samples that wait for the window, at most: two seconds at 100 kHz.
+/// Maximum number of samples waiting for the window: two seconds at 100 kHz.
 const WAITING: usize = 200_000;
 
 impl Feed {
-    /// The virtual encoder.
+    /// Creates the virtual encoder.
     ///
     /// # Errors
     /// No thread is left.
@@ -137,7 +138,7 @@ impl Feed {
         }
     }
 
-    /// Samples lost since the beginning.
+    /// Returns the number of samples lost since the beginning.
     pub(super) fn lost(&self) -> u64 {
         match self {
             Feed::Virtual(stream) => stream.lost(),
@@ -171,7 +172,7 @@ impl Feed {
         }
     }
 
-    /// The adapter lives in this process.
+    /// Returns whether the adapter lives in this process.
     pub(super) fn is_virtual(&self) -> bool {
         match self {
             Feed::Virtual(_) => true,
@@ -179,14 +180,14 @@ impl Feed {
         }
     }
 
-    /// Other settings of the virtual encoder.
+    /// Changes the settings of the virtual encoder.
     pub(super) fn change(&self, checked: Checked) {
         if let Feed::Virtual(stream) = self {
             stream.change(checked);
         }
     }
 
-    /// Ends it where it runs, as if by itself.
+    /// Stops it if it is running, as if it had ended by itself.
     #[cfg(test)]
     pub(super) fn stop(&self) {
         match self {
@@ -195,7 +196,7 @@ impl Feed {
         }
     }
 
-    /// Ends it: an adapter is stopped without waiting for it.
+    /// Stops it: an adapter is stopped without waiting for it.
     pub(super) fn let_go(self, services: &mut Services) {
         if let Feed::Adapter { stream, url, .. } = self {
             let end: End = stream.end();
@@ -224,7 +225,7 @@ fn failed(error: &BridgeError) -> Text {
     }
 }
 
-/// A link that cannot be used is changed where it stands.
+/// Returns the text for an invalid link, which is edited in its own entry.
 fn refused(error: &OpenError) -> Text {
     match error {
         OpenError::Url(why) => TEXTS.text("adapter.link").with_text("why", explain::url(why)),

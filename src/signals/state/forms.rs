@@ -1,29 +1,29 @@
-//! Parses the entries of the Signals tab. An entry that cannot be used is answered with the possible values.
+//! Parses the entries of the Signals tab. For an invalid entry the valid ones are returned.
 
 use crate::app::Text;
 use crate::app::number::{MOST_PERIODS, whole};
 use crate::signals::state::TEXTS;
 
-/// Signal periods in a revolution.
+/// Returns the signal periods in a revolution.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub fn periods(text: &str) -> Result<u32, Text> {
     whole(TEXTS.text("quality.periods_per_turn"), text, 1, MOST_PERIODS)
 }
 
-/// A number with a point or a comma; finite.
+/// Parses a number with a decimal point or comma; finite.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub fn number(text: &str) -> Result<f64, Text> {
     crate::app::number(text).ok_or_else(|| TEXTS.text("signals.bad_number").with("entry", text))
 }
 
-/// Volts in one unit of a table.
+/// Returns the volts in one unit of a table.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub fn volts_per_unit(text: &str) -> Result<f64, Text> {
     let refused = || TEXTS.text("signals.bad_volts").with("entry", text);
     number(text).ok().filter(|volts| *volts != 0.0).ok_or_else(refused)

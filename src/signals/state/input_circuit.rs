@@ -1,5 +1,5 @@
-//! The calculator of a drive's input circuit: how fast the signals are at a speed, and what the filter does to them there
-//! and on the way to the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
+//! The calculator of a drive's input circuit: the signal frequency at a speed, and the effect of the filter there and up to
+//! the limit. SICK 8010701, process data channel; section 1 of the project's sine/cosine reference.
 
 use crate::analysis::input_circuit::{BANDWIDTH_HZ, InputFilter, Response, signal_frequency_hz, speed_rpm_at};
 use crate::app::Text;
@@ -9,9 +9,9 @@ use crate::signals::state::TEXTS;
 /// The entries, as typed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Form {
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: String,
-    /// Speed in revolutions a minute.
+    /// Speed in revolutions per minute.
     pub speed: String,
     /// The resistor across the capacitor: `10k`.
     pub resistance: String,
@@ -22,7 +22,7 @@ pub struct Form {
 /// The signals and the filter at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Revolutions a minute.
+    /// Revolutions per minute.
     pub speed_rpm: f64,
     /// Frequency of the signals in hertz.
     pub frequency_hz: f64,
@@ -35,9 +35,9 @@ pub struct Point {
 /// The circuit of the entries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circuit {
-    /// At the speed that was typed.
+    /// At the entered speed.
     pub here: Point,
-    /// The speed in revolutions a minute at which the signals reach the encoder's bandwidth.
+    /// The speed in revolutions per minute at which the signals reach the encoder's bandwidth.
     pub most_rpm: f64,
     /// The frequency in hertz at which the filter leaves 71 % of the amplitude.
     pub corner_hz: f64,
@@ -45,7 +45,7 @@ pub struct Circuit {
     filter: InputFilter,
 }
 
-/// Fastest speed that can be typed, in revolutions a minute.
+/// Fastest speed that can be typed, in revolutions per minute.
 const MOST_RPM: f64 = 1_000_000.0;
 
 impl Default for Form {
@@ -59,7 +59,7 @@ impl Form {
     /// Calculates the circuit.
     ///
     /// # Errors
-    /// The first entry that cannot be used, in words.
+    /// Why the first invalid entry is invalid.
     pub fn circuit(&self) -> Result<Circuit, Text> {
         let periods = whole(TEXTS.text("input.periods"), &self.periods, 1, MOST_PERIODS)?;
         let speed_rpm = within(TEXTS.text("input.speed"), &self.speed, 0.0, MOST_RPM)?;
@@ -74,7 +74,7 @@ impl Form {
 }
 
 impl Circuit {
-    /// The signals are within the encoder's bandwidth at the speed that was typed.
+    /// Returns whether the signals are within the encoder's bandwidth at the speed that was typed.
     pub fn is_within(&self) -> bool {
         self.here.frequency_hz <= BANDWIDTH_HZ
     }
@@ -85,7 +85,7 @@ impl Circuit {
         (1..=count).map(|at| point(self.periods, self.filter, speed(at))).collect()
     }
 
-    /// The error in electrical degrees that reading both channels one microsecond apart makes at the typed speed.
+    /// Returns the error in electrical degrees that reading both channels one microsecond apart makes at the typed speed.
     pub fn degrees_per_microsecond(&self) -> f64 {
         360.0 * self.here.frequency_hz * 1e-6
     }
@@ -111,7 +111,7 @@ mod tests {
         }
     }
 
-    /// Section 1: 102.4 kHz behind 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
+    /// Section 1: 102.4 kHz after 10 kΩ and 47 pF; 100 kHz are 1024 periods at 5859.375 rpm. Lag of the shaft: 1/1024.
     #[test]
     fn the_rows_of_section_1() {
         let rows = [

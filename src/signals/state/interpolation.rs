@@ -1,5 +1,5 @@
-//! The angle inside a period by the octant table of a drive and exactly, and how far they are apart. SICK 8010701,
-//! interpolation; section 3 of the project's sine/cosine reference.
+//! The angle inside a period by the octant table of a drive and exactly, and their difference. SICK 8010701, interpolation;
+//! section 3 of the project's sine/cosine reference.
 
 use std::sync::LazyLock;
 
@@ -8,7 +8,7 @@ use crate::analysis::arctan::{self, DEGREES, OctantTable, Phase};
 use crate::app::Text;
 use crate::signals::state::TEXTS;
 
-/// Sizes of tables that are told about.
+/// Sizes of the displayed tables.
 pub const INTERVALS: [usize; 4] = [16, 32, 64, 128];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,7 @@ pub struct TableError {
     pub intervals: usize,
     /// Largest error in electrical degrees.
     pub largest_deg: f64,
-    /// The error is at most one part of so many of a period.
+    /// The error is at most one part of this number of a period.
     pub parts: f64,
     /// As bits of a period.
     pub bits: f64,
@@ -39,7 +39,7 @@ pub fn table_errors() -> &'static [TableError] {
     &ERRORS
 }
 
-/// Looks between all nodes of a table, at places of which one is as good as where the error is largest.
+/// Evaluates all intervals of a table, at points that include the largest error.
 fn table_error(intervals: usize) -> TableError {
     const PLACES: usize = 64;
     let table = OctantTable::new(intervals);
@@ -53,10 +53,10 @@ fn table_error(intervals: usize) -> TableError {
     TableError { intervals, largest_deg, parts, bits: parts.log2() }
 }
 
-/// A pair of voltages as typed, free of offset, by a table of so many intervals.
+/// Interpolates an entered pair of voltages, free of offset, by a table of this number of intervals.
 ///
 /// # Errors
-/// In words: an entry is no number, or both are zero.
+/// Why the entries are invalid: not a number, or both are zero.
 pub fn interpolate(sine: &str, cosine: &str, intervals: usize) -> Result<Interpolated, Text> {
     let (sine, cosine) = (forms::number(sine)?, forms::number(cosine)?);
     let both = arctan::exact(sine, cosine).zip(OctantTable::new(intervals).phase(sine, cosine));

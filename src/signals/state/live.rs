@@ -1,5 +1,5 @@
 //! A live source: the virtual encoder or an adapter; its settings, its newest samples, and their measurement, which is
-//! repeated a few times a second. Samples come from `worker::stream`; drawing never waits for them.
+//! repeated a few times per second. Samples come from `worker::stream`; drawing never waits for them.
 
 use std::sync::Arc;
 
@@ -26,27 +26,27 @@ pub enum SourceAction {
     Start,
     /// Let the adapter sample.
     StartAdapter,
-    /// Another link to an adapter, as it is typed; the one that runs keeps its own.
+    /// Set another link to an adapter, as entered; a running one keeps its own.
     SetLink(String),
     /// Sets the requested sample rate of an adapter; a running one keeps its own.
     SetSampleRate(u32),
-    /// The adapter is to supply an encoder of this family, or none; one that runs keeps its own.
+    /// Supply an encoder of this family from the adapter, or none; a running one keeps its own.
     SetSupply(Option<Family>),
-    /// Stand still; what was measured last stays.
+    /// Stop; the last measurement stays.
     Stop,
-    /// Keep what is shown while it goes on, or go on.
+    /// Hold the display while it continues, or release it.
     Hold(bool),
-    /// Another value of a setting of the virtual encoder; one outside of its range is refused in words.
+    /// Set another value of the virtual encoder; one out of range is refused with a message.
     Set(Quantity, f64),
     /// Breaks or repairs a wire.
     SetOpenWire(Option<Wire>),
-    /// With a resistor between the wires of a pair, or without.
+    /// Set or remove the resistor between the wires of a pair.
     SetTerminated(bool),
     /// Sets the level of the references.
     SetReferences(References),
-    /// Measure the newest samples of so many milliseconds, 10 to 10 000.
+    /// Measure the newest samples of this many milliseconds, 10 to 10 000.
     SetWindow(u32),
-    /// All settings of the virtual encoder as they were to begin with.
+    /// Restore all initial settings of the virtual encoder.
     Reset,
 }
 
@@ -66,7 +66,7 @@ pub struct Source {
     /// The link to the adapter, as typed.
     link: String,
     sample_hz: u32,
-    /// Never remembered from one start to the next: another encoder may be at its end then.
+    /// Never stored in the settings: another encoder may be connected at the next start.
     supply: Option<Family>,
     adapter_problem: Option<Text>,
     /// The kind that was started last.
@@ -91,7 +91,7 @@ struct Live {
 
 /// Windows that can be measured, in milliseconds.
 const WINDOWS: std::ops::RangeInclusive<u32> = 10..=10_000;
-/// The virtual adapter, whose shaft turns slowly enough for a period to be seen.
+/// The virtual adapter, whose shaft turns slowly enough to see a period.
 pub const VIRTUAL_ADAPTER: &str = "sim:?bridge=on&rpm=6";
 
 impl Default for Source {
@@ -129,12 +129,12 @@ impl Source {
         self.problem.as_ref()
     }
 
-    /// The link to the adapter, as typed.
+    /// Returns the link to the adapter, as typed.
     pub fn link(&self) -> &str {
         &self.link
     }
 
-    /// Samples a second that are wished of an adapter.
+    /// Returns the samples per second that are requested from an adapter.
     pub fn sample_hz(&self) -> u32 {
         self.sample_hz
     }
@@ -154,12 +154,12 @@ impl Source {
         self.kind
     }
 
-    /// The adapter that runs and how it samples; `None` while it is being asked.
+    /// Returns the running adapter and its sampling; `None` until it is identified.
     pub fn streaming(&self) -> Option<&Streaming> {
         self.live.as_ref().and_then(|live| live.feed.streaming())
     }
 
-    /// The source that runs lives in this process.
+    /// Returns whether the source that runs lives in this process.
     pub fn is_virtual(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.feed.is_virtual())
     }
@@ -179,7 +179,7 @@ impl Source {
         self.live.as_ref().is_some_and(|live| live.held)
     }
 
-    /// The milliseconds that are measured where the samples that can be measured at once last shorter than what is set.
+    /// Returns the measured milliseconds if the maximum number of samples is shorter than the setting.
     pub fn shortened_ms(&self) -> Option<f64> {
         let period_ns = match self.kind {
             SourceKind::Encoder => self.settings.period_ns(),
@@ -245,12 +245,12 @@ impl Source {
         self.link.parse().ok()
     }
 
-    /// The adapter cannot be asked now.
+    /// Reports that no request to the adapter is possible now.
     pub(crate) fn refuse(&mut self, why: Text) {
         self.adapter_problem = Some(why);
     }
 
-    /// Lets the adapter go where an encoder is looked for on its wire.
+    /// Releases the adapter if an encoder is searched on its connection.
     pub(crate) fn free_wire(&mut self, url: &LinkUrl, services: &mut Services) {
         let holds = |live: &Live| matches!(&live.feed, Feed::Adapter { url: own, .. } if same_wire(own, url));
         if self.live.as_ref().is_some_and(holds) {
@@ -268,7 +268,7 @@ impl Source {
                 return false;
             }
         };
-        // A running source returns its wire first.
+        // A running source releases its connection first.
         self.stop(services);
         match link.start(self.sample_hz, self.supply.map(Family::supply), earlier, services) {
             Ok(feed) => {
@@ -316,7 +316,7 @@ impl Signals {
                     self.set_periods(settings.periods as u32, true, services);
                 }
             }
-            // The studio knows who else is on its wire.
+            // The studio knows the other users of its connection.
             SourceAction::StartAdapter => {}
             SourceAction::SetLink(link) => {
                 self.source.link = link;
@@ -354,7 +354,7 @@ impl Signals {
         }
     }
 
-    /// Lets the adapter of the link sample, after what is still on its wire has ended.
+    /// Starts sampling with the adapter of the link, after the previous user of its connection has ended.
     pub(crate) fn start_adapter(&mut self, earlier: Option<Receiver<()>>, services: &mut Services) {
         if self.source.start_adapter(earlier, services) {
             self.forget_reading();
@@ -362,7 +362,7 @@ impl Signals {
         }
     }
 
-    /// Other settings of the virtual encoder; where its periods a revolution were set, they count for what is shown too.
+    /// Sets other settings of the virtual encoder; its periods per revolution, if set, also apply to the displayed capture.
     fn set_source(&mut self, settings: Settings, with_periods: bool, services: &mut Services) {
         let own = self.source.kind == SourceKind::Encoder;
         if self.source.change(settings) && with_periods && own {
@@ -370,12 +370,12 @@ impl Signals {
         }
     }
 
-    /// Takes what has come, and has it measured when it is time.
+    /// Takes the received samples, and starts a measurement if it is due.
     pub(crate) fn pump(&mut self, services: &mut Services) {
         let (number, window_ms) = (self.source.runs, self.source.window_ms);
         let judge = self.judge();
         let Some(live) = &mut self.source.live else { return };
-        // Asked first: what came before the end is taken.
+        // Checked first: samples from before the end are taken.
         let ended = live.feed.is_ended();
         for batch in live.feed.take() {
             if !live.held {
@@ -399,7 +399,7 @@ impl Signals {
         });
     }
 
-    /// The source has ended by itself.
+    /// Handles a source that has ended by itself.
     fn ended(&mut self, services: &mut Services) {
         let Some(why) = self.source.live.as_ref().map(|live| live.feed.why_ended()) else { return };
         self.source.stop(services);
@@ -409,7 +409,7 @@ impl Signals {
         services.notify(Severity::Error, vec![why], None);
     }
 
-    /// The newest samples were measured.
+    /// Takes the measurement of the newest samples.
     pub(super) fn measured(&mut self, number: u32, measurement: Measurement, services: &mut Services) {
         let current = self.source.runs == number;
         let Some(live) = self.source.live.as_mut().filter(|_| current) else { return };
@@ -419,13 +419,13 @@ impl Signals {
         }
         let judge = measurement.judge;
         self.show_live(measurement, services);
-        // It was set differently meanwhile.
+        // The settings were changed meanwhile.
         if judge != self.judge() {
             self.judge_again(services);
         }
     }
 
-    /// The newest samples could not be measured: what cannot be done once is not tried four times a second.
+    /// Handles a failed measurement of the newest samples: it is not retried four times per second.
     pub(super) fn not_measured(&mut self, number: u32, services: &mut Services) -> bool {
         let current = self.source.runs == number && self.source.is_running();
         if current {

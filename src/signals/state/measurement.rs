@@ -1,4 +1,4 @@
-//! A capture with all that is computed from it once, on a task: the analysis, the diagnosis, the spectra and the picture of
+//! A capture with all results computed from it once, in a task: the analysis, the diagnosis, the spectra and the picture of
 //! its Lissajous figure.
 
 use std::ops::Deref;
@@ -26,7 +26,7 @@ pub enum Origin {
     Virtual,
     Adapter {
         name: String,
-        /// It lives in this process.
+        /// Virtual device in this process.
         is_virtual: bool,
     },
 }
@@ -39,7 +39,7 @@ pub enum TableSource {
 }
 
 impl Origin {
-    /// Its name, short: without folders.
+    /// Returns its short name: without folders.
     pub fn name(&self) -> Text {
         match self {
             Origin::Virtual => TEXTS.text("signals.virtual"),
@@ -51,7 +51,7 @@ impl Origin {
 }
 
 impl TableSource {
-    /// The name of the file, without folders.
+    /// Returns the name of the file, without folders.
     pub fn name(&self) -> Text {
         let path = self.path();
         let name = path.file_name().unwrap_or(path.as_os_str());
@@ -66,7 +66,7 @@ impl TableSource {
     }
 }
 
-/// A capture and what is known about it.
+/// Capture with its results.
 #[derive(Clone, Debug)]
 pub struct Measurement {
     /// The samples.
@@ -78,42 +78,43 @@ pub struct Measurement {
 #[derive(Clone, Debug)]
 pub struct Results {
     pub origin: Origin,
-    /// Rows of its table that were left out, because they have no value.
+    /// Rows of its table that were left out because they have no value.
     pub rows_left_out: u64,
     /// The analysis, or why there is none.
     pub analysis: Result<Analysis, AnalysisError>,
     pub diagnosis: Diagnosis,
-    /// By what the diagnosis was made.
+    /// Criteria of the diagnosis.
     pub judge: Judge,
-    /// Mean level of REFSIN and of REFCOS in volts, where they were recorded.
+    /// Mean level of REFSIN and of REFCOS in volts, if they were recorded.
     pub levels_v: Option<(f64, f64)>,
     /// Amplitudes over frequency, or why there are none.
     pub spectra: Result<Spectra, SpectrumError>,
-    /// DNL and INL, or why they cannot be told; `None` without a reference angle, an ellipse or the number of periods.
+    /// DNL and INL, or why they cannot be determined; `None` without a reference angle, an ellipse or the number of
+    /// periods.
     pub nonlinearities: Option<Result<Nonlinearities, RevolutionError>>,
-    /// By how much the absolute position is ahead of the analogue one, or why that cannot be told; `None` without one.
+    /// Lead of the absolute position over the analogue one, or why it cannot be determined; `None` without one.
     pub absolute_offset: Option<Result<AbsoluteOffset, NoOffset>>,
-    /// All samples as a picture, sine over cosine; `None` where they are too large for one.
+    /// All samples as a picture, sine over cosine; `None` if they are too large for one.
     pub raw: Option<Density>,
-    /// All of them after the correction of the ellipse; `None` without one.
+    /// All samples after the correction of the ellipse; `None` without one.
     pub corrected: Option<Density>,
 }
 
-/// By what a signal is judged.
+/// Criteria for judging a signal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Judge {
-    /// Whose limits.
+    /// Family with its limits.
     pub family: Family,
-    /// Signal periods in a revolution; `None` if not known.
+    /// Signal periods per revolution; `None` if not known.
     pub periods: Option<u32>,
 }
 
-/// Cells of a side of a picture: of few samples each is to be seen.
+/// Cells per side of a picture: with few samples each must be visible.
 const CELLS: usize = 240;
 const CELLS_OF_FEW: usize = 120;
 /// Samples that are few.
 const FEW: usize = 2_000;
-/// Volts from the middle to the edge at least: all rings have room.
+/// Minimum volts from the middle to the edge, so that all rings fit.
 const LEAST_HALF_V: f64 = 0.75;
 
 impl Measurement {
@@ -143,7 +144,7 @@ impl Measurement {
         &self.results
     }
 
-    /// The same, judged by something else.
+    /// Returns the same, judged by other criteria.
     #[must_use]
     pub fn judged(&self, judge: Judge) -> Self {
         let results = Results {
@@ -165,7 +166,7 @@ impl Deref for Measurement {
 }
 
 impl Results {
-    /// Returns why there is no analysis, in words.
+    /// Returns why there is no analysis, as text.
     pub fn refusal(&self, language: Language) -> Option<Text> {
         let error = self.analysis.as_ref().err()?;
         Some(explain::signal::analysis(Path::new(&self.origin.name().words(language)), error))
@@ -190,13 +191,13 @@ fn beside_reference(
     reference_comparison::nonlinearities(capture, analysis.as_ref().ok()?, judge.periods?)
 }
 
-/// A picture of all samples, around zero, corrected or as they are.
+/// Returns a picture of all samples, around zero, corrected or as they are.
 fn density(samples: Samples<'_>, correction: Option<Correction>) -> Option<Density> {
     /// Samples that are corrected at once.
     const PORTION: usize = 1 << 14;
     let Samples { sine_v, cosine_v, .. } = samples;
     let most = sine_v.iter().chain(cosine_v).fold(0.0, |most: f64, volts| most.max(volts.abs()));
-    // In steps, so that a live picture does not breathe.
+    // In steps, so that a live picture does not change its scale continuously.
     let half_v = ((most * 1.05 * 20.0).ceil() / 20.0).max(LEAST_HALF_V);
     let side = if sine_v.len() > FEW { CELLS } else { CELLS_OF_FEW };
     let mut density = Density::new(Square::centred(half_v), side)?;

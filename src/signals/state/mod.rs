@@ -1,6 +1,5 @@
-//! The Signals tab: a capture of sine and cosine on the desk, from a file, a virtual encoder or an adapter, and what is to
-//! be known about it. Complete without a window and without an encoder; what takes long runs as a task, and what comes late
-//! is dropped.
+//! The Signals tab: a capture of sine and cosine from a file, a virtual encoder or an adapter, and its results. Complete
+//! without a window and without an encoder; long operations run as tasks, and late results are dropped.
 
 mod act;
 mod action;

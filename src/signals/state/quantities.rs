@@ -16,7 +16,7 @@ pub struct Quantity {
     /// Decimals that mean something.
     pub decimals: usize,
     pub unit: Unit,
-    /// The same in another unit, to be read beside it.
+    /// The same in another unit, shown beside it.
     pub also: Option<(f64, usize, Unit)>,
     /// Its limit.
     pub bound: Option<Bound>,
@@ -39,7 +39,7 @@ pub enum Unit {
     /// Mechanical seconds of arc.
     ArcSeconds,
     Kilohertz,
-    /// Revolutions a minute.
+    /// Revolutions per minute.
     Rpm,
     Milliseconds,
 }
@@ -58,7 +58,7 @@ pub enum Bound {
 }
 
 impl Unit {
-    /// Its sign; nothing where there is none.
+    /// Returns its sign; empty if there is none.
     pub fn sign(self) -> &'static str {
         match self {
             Unit::One => "",
@@ -99,7 +99,7 @@ impl Quantity {
         self
     }
 
-    /// Judged by a limit beyond which the position is still right.
+    /// Returns the quantity judged by a limit beyond which the position is still right.
     fn bounded(mut self, bound: Bound) -> Self {
         self.bound = Some(bound);
         self.verdict = Some(if bound.holds(self.value) { Verdict::Ok } else { Verdict::Warn });
@@ -174,8 +174,8 @@ fn of_ellipse(analysis: &Analysis, family: Family) -> Vec<Quantity> {
     ]
 }
 
-/// The position error inside a period, before and after the correction; `periods` a revolution turn electrical degrees
-/// into mechanical seconds of arc, of which nothing is told without them.
+/// Returns the position error inside a period, before and after the correction; `periods` per revolution convert electrical
+/// degrees to mechanical seconds of arc, which are left out without them.
 pub fn error_quantities(analysis: &Analysis, periods: Option<u32>) -> Vec<Quantity> {
     /// Seconds of arc in an electrical degree of one period a revolution.
     const ARC_SECONDS: f64 = 3600.0;
@@ -220,8 +220,8 @@ mod tests {
     fn numbers_of_section_7_with_their_limits() {
         let list = quantities(&section_7(), Family::Hiperface, Some(50));
         let find = |word: &str| list.iter().find(|own| own.word == word).unwrap_or_else(|| panic!("{word}"));
-        // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 a
-        // revolution 2 revolutions a second.
+        // Amplitudes 2·0.5 and 2·0.5/1.05; offsets as shares of 0.5 V; 2 periods in 20 ms are 100 Hz, with 50 per
+        // revolution 2 revolutions per second.
         for (word, value, verdict) in [
             ("quality.amplitude_cosine", 1.0, Some(Verdict::Ok)),
             ("quality.amplitude_sine", 0.952_381, Some(Verdict::Ok)),
@@ -264,7 +264,7 @@ mod tests {
             ..Capture::default()
         };
         let analysis = Measurement::of(Origin::Virtual, Arc::new(capture), Judge::default()).analysis.clone().unwrap();
-        // Issue 22.13: without the periods of a turn there are no mechanical angles and no speed.
+        // Issue 22.13: without the periods per turn there are no mechanical angles and no speed.
         let bare = error_quantities(&analysis, None);
         assert!(bare.len() == 2 && bare.iter().all(|own| own.unit == Unit::Degrees && own.also.is_none()), "{bare:?}");
         let list = error_quantities(&analysis, Some(1024));

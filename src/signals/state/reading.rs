@@ -1,4 +1,4 @@
-//! Reading a capture, as a task: how far it is, the wish to give up, and the captures that ship with the program.
+//! Reading a capture, as a task: its progress, its cancellation, and the built-in captures.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -18,10 +18,10 @@ pub enum Example {
 }
 
 impl Example {
-    /// All of them.
+    /// All examples.
     pub const ALL: [Example; 2] = [Example::Healthy, Example::WithErrors];
 
-    /// Its text in the table of texts.
+    /// Returns the id of its text.
     pub fn word(self) -> &'static str {
         match self {
             Example::Healthy => "signals.example_healthy",
@@ -49,7 +49,7 @@ impl Example {
 pub struct Reading {
     pub(super) number: u32,
     pub place: TableSource,
-    /// The table before, for when this one is given up.
+    /// The previous table, restored if this reading is cancelled.
     pub(super) settled: Option<Table>,
     progress: Arc<Progress>,
 }
@@ -74,7 +74,7 @@ impl Reading {
         (total > 0).then(|| (done as f64 / total as f64).min(1.0))
     }
 
-    /// The wish to give up was heard.
+    /// Returns whether it was cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.progress.cancel.load(Ordering::Relaxed)
     }
@@ -91,7 +91,7 @@ impl Drop for Reading {
     }
 }
 
-/// Reads and measures; takes as long as the file is large.
+/// Reads and measures; the time depends on the size of the file.
 pub(super) fn read(place: TableSource, hints: TableHints, judge: Judge, progress: &Progress) -> Read {
     let (head, result) = match &place {
         TableSource::Example(example) => {

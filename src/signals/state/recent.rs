@@ -1,4 +1,4 @@
-//! The newest samples of a running source, without gaps and without copying: the batches as they came, shared with the
+//! The newest samples of a running source, without gaps and without copying: the batches as received, shared with the
 //! measurement.
 
 use std::collections::VecDeque;
@@ -16,7 +16,7 @@ pub(super) struct Recent {
     chunks: VecDeque<Arc<Channels>>,
     /// Samples in them.
     count: usize,
-    /// When the last of them was taken.
+    /// Time of the last of them.
     newest: Option<Time>,
     period_ns: i64,
 }
@@ -31,7 +31,7 @@ pub(super) struct Window {
 
 /// Most samples that are measured at once.
 pub(super) const MOST: usize = 500_000;
-/// From one measurement to the next, in nanoseconds.
+/// Interval of measurements, in nanoseconds.
 const EVERY_NS: i64 = 250_000_000;
 
 impl Recent {
@@ -57,7 +57,7 @@ impl Recent {
         self.newest
     }
 
-    /// Enough is new since the last measurement.
+    /// Returns whether enough is new since the last measurement.
     pub(super) fn is_due(&self, measured: Option<Time>) -> bool {
         match (self.newest, measured) {
             (Some(newest), Some(measured)) => newest.nanoseconds_since(measured) >= EVERY_NS,
@@ -66,7 +66,7 @@ impl Recent {
         }
     }
 
-    /// The newest samples of so many milliseconds, [`MOST`] at most; `None` while there are fewer.
+    /// Returns the newest samples of this many milliseconds, at most [`MOST`]; `None` while there are fewer.
     pub(super) fn window(&self, milliseconds: u32) -> Option<Window> {
         let wanted = i64::from(milliseconds) * 1_000_000 / self.period_ns.max(1);
         let count = usize::try_from(wanted).unwrap_or(MOST).clamp(1, MOST);
@@ -88,7 +88,7 @@ impl Window {
             self.chunks.iter().flat_map(|chunk| of(chunk).iter().copied()).skip(self.skip).collect()
         };
         let (sine_v, cosine_v) = (column(|own| &own.sine_v), column(|own| &own.cosine_v));
-        // Nothing but the virtual encoder has its wires one by one, and that always.
+        // Only the virtual encoder has single wires, and always.
         let wires = Wires {
             sin_v: column(|own| own.wire(|wires| &wires.sin_v)),
             refsin_v: column(|own| own.wire(|wires| &wires.refsin_v)),
@@ -150,7 +150,7 @@ mod tests {
         assert_eq!((window.sine_v.len(), window.sine_v[0], window.cosine_v[9]), (10, 1.0, 30.0));
         assert!((window.time_s[9] - 0.009).abs() < 1e-12);
         assert_eq!((window.wires.unwrap().cos_v[9], window.reference_deg.unwrap()[9]), (40.0, 5.0));
-        // Five milliseconds lie in the second batch alone.
+        // Five milliseconds are in the second batch only.
         let window = recent.window(5).unwrap();
         assert_eq!((window.chunks.len(), window.capture().sine_v), (1, vec![6.0, 7.0, 8.0, 9.0, 10.0]));
         recent.add(batch(20, 4, 1_000_000, 9));
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!((recent.count, recent.chunks.len()), (MOST, 50));
         let window = recent.window(10_000).unwrap();
         assert!(Arc::ptr_eq(&window.chunks[0], &recent.chunks[0]));
-        // Half a second at 1 MHz is the most: samples 200 000 to 699 999.
+        // Half a second at 1 MHz is the maximum: samples 200 000 to 699 999.
         let capture = window.capture();
         assert_eq!((capture.sine_v.len(), capture.sine_v[0]), (MOST, 200_000.0));
     }

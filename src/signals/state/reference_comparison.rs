@@ -18,9 +18,9 @@ use crate::signals::state::TEXTS;
 pub struct Nonlinearities {
     /// As measured.
     pub raw: Part,
-    /// With offsets, gain ratio and phase error taken out.
+    /// With offsets, gain ratio and phase error corrected.
     pub corrected: Part,
-    /// Revolutions of the reference that the samples cover; INL speaks for a whole one only from 1 on.
+    /// Revolutions of the reference that the samples cover; INL is valid for a whole one only from 1 on.
     pub revolutions: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct Part {
     pub differential_deg: f64,
     /// INL: ± mechanical degrees.
     pub integral_deg: f64,
-    /// Reference angle and the whole deviation in mechanical degrees: least and greatest of each stretch.
+    /// Reference angle and the whole deviation in mechanical degrees: minimum and maximum of each section.
     pub deviation: Vec<(f64, f64)>,
     /// Reference angle and the mean over a period, likewise.
     pub mean: Vec<(f64, f64)>,
@@ -44,7 +44,7 @@ pub struct AbsoluteOffset {
     pub offset_steps: f64,
     /// Largest distance of a sample from it, in 1/32 period.
     pub farthest_steps: f64,
-    /// Samples that it is told from.
+    /// Number of samples used.
     pub samples: usize,
 }
 
@@ -58,7 +58,7 @@ pub enum NoOffset {
 }
 
 impl NoOffset {
-    /// The reason in words.
+    /// Returns the reason as text.
     pub fn text(self) -> Text {
         TEXTS.text(match self {
             NoOffset::NoSignal => "synchronise.no_signal",
@@ -70,7 +70,7 @@ impl NoOffset {
 /// Stretches that a curve is drawn of.
 const STRETCHES: usize = 512;
 
-/// DNL and INL of a capture; `None` without a reference angle.
+/// Returns DNL and INL of a capture; `None` without a reference angle.
 pub(super) fn nonlinearities(
     capture: &Capture,
     analysis: &Analysis,
@@ -102,7 +102,7 @@ impl Part {
     }
 }
 
-/// DNL and INL as ± values.
+/// Returns DNL and INL as ± values.
 pub fn nonlinearity_quantities(nonlinearities: &Nonlinearities) -> Vec<Quantity> {
     /// Seconds of arc in a degree.
     const ARC_SECONDS: f64 = 3600.0;
@@ -150,8 +150,8 @@ mod tests {
 
     use super::*;
 
-    /// 1.25 revolutions of 64 periods, 1 % offset of the sine, an eccentricity of 0.01°, an absolute position that is
-    /// 3 steps ahead.
+    /// Returns 1.25 revolutions of 64 periods, 1 % offset of the sine, an eccentricity of 0.01°, an absolute position that
+    /// is 3 steps ahead.
     fn capture() -> Capture {
         let count = 20_000;
         let turn = |at: i32| 1.25 * f64::from(at) / f64::from(count);

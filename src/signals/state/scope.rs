@@ -1,4 +1,4 @@
-//! The signals over time, as lines of a recorder: differences, the length of the amplitude vector, and the four wires where
+//! The signals over time, as lines of a recorder: differences, the length of the amplitude vector, and the four wires if
 //! they were recorded. SICK 8010701: SIN, REFSIN, COS, REFCOS.
 
 use super::feed::Channels;
@@ -24,16 +24,16 @@ pub struct Scope {
 pub enum TimeAxisError {
     /// They go back.
     GoBack,
-    /// They are further from zero than nanoseconds can be counted: 292 years. Milliseconds read as seconds are.
+    /// They are beyond the range of nanoseconds, 292 years from zero, such as milliseconds read as seconds.
     TooFar,
 }
 
 /// Seconds beyond which nanoseconds cannot be counted.
 const FARTHEST_S: f64 = 9.2e9;
 
-/// Samples of a running source that are kept: five seconds at 100 kHz.
+/// Maximum number of samples of a running source: five seconds at 100 kHz.
 const KEPT: usize = 500_000;
-/// Nanoseconds of them that are shown to begin with.
+/// Nanoseconds of them that are shown initially.
 const SPAN: i64 = 10_000_000;
 /// Samples that are handed over at once.
 const PORTION: usize = 1 << 16;
@@ -109,7 +109,7 @@ impl Scope {
         self.recorder.break_before_next(self.group);
     }
 
-    /// Samples that have come; how many of them could not be taken.
+    /// Adds received samples; returns how many of them could not be taken.
     pub(super) fn add(&mut self, batch: &Batch<Channels>) -> u64 {
         if batch.lost > 0 {
             self.interrupt();
@@ -158,7 +158,7 @@ mod tests {
             sine_v: vec![0.3, 0.0, -0.3],
             cosine_v: vec![0.4, 0.5, 0.4],
             wires: Some(Wires {
-                // As they were measured, whatever the differences are.
+                // As measured, whatever the differences are.
                 sin_v: vec![2.9, 2.5, 2.2],
                 refsin_v: vec![2.5; 3],
                 cos_v: vec![2.8, 2.9, 2.8],

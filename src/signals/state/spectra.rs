@@ -1,5 +1,5 @@
-//! The spectra of both channels, thinned out for a picture: in each stretch of frequencies the highest line, so that no
-//! peak is lost.
+//! The spectra of both channels, thinned out for a picture: in each range of frequencies the highest line, so that no peak
+//! is lost.
 
 use crate::analysis::position_error::Samples;
 use crate::analysis::spectrum::{SpectralLine, Spectrum, SpectrumError, sample_rate_hz};
@@ -11,7 +11,7 @@ pub struct Spectra {
     pub cosine: ChannelSpectrum,
     /// Distance of two lines in hertz.
     pub spacing_hz: f64,
-    /// Samples that they are of: the last ones, where there are more than a transform takes at once.
+    /// Number of samples used: the last ones, if there are more than a transform takes at once.
     pub samples: usize,
 }
 
@@ -31,11 +31,11 @@ const LINES: usize = 1_000;
 const PEAKS: usize = 6;
 /// A peak below this share of the highest is not worth a name.
 const LEAST_PEAK: f64 = 1e-4;
-/// A peak below so many times the median of all lines is noise: of a million lines of noise the highest has 4.5.
+/// Factor of the median of all lines below which a peak is noise: of a million lines of noise the highest has 4.5.
 const NOISE: f64 = 6.0;
 
 impl Spectra {
-    /// The spectra of a capture.
+    /// Creates the spectra of a capture.
     ///
     /// # Errors
     /// [`SpectrumError`]: there are no times, they are uneven, or there are too few samples.
@@ -77,7 +77,7 @@ fn median(values: &[f64]) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
-/// An amplitude as a level: decibels of its rms value above one volt.
+/// Returns an amplitude as a level: decibels of its rms value above one volt.
 pub fn dbv(peak_v: f64) -> f64 {
     /// Smallest level in dB that a double can distinguish from zero beside one volt.
     const LEAST: f64 = -160.0;

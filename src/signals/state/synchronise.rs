@@ -1,6 +1,5 @@
-//! Absolute and analogue position brought together by hand or as an encoder at rest gives them, and by how much one is
-//! ahead of the other over many readings. SICK 8010701, forming the absolute position; section 4 of the project's
-//! sine/cosine reference.
+//! Absolute and analogue position combined, from entries or from an encoder at rest, and the mean lead of one over the
+//! other in many readings. SICK 8010701, forming the absolute position; section 4 of the project's sine/cosine reference.
 
 use crate::analysis::arctan::{Phase, exact};
 use crate::analysis::quality::{Limits, Verdict};
@@ -34,7 +33,7 @@ pub struct Form {
     pub sine_v: String,
     /// Cosine in volts.
     pub cosine_v: String,
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: String,
     /// Revolutions.
     pub turns: String,
@@ -68,7 +67,7 @@ pub struct Synchronise {
     pub problem: Option<Text>,
     /// Readings of one encoder: absolute positions and phases.
     readings: Vec<(u64, Phase)>,
-    /// Whose they are.
+    /// Encoder of the readings.
     origin: Option<SineCosineOrigin>,
 }
 
@@ -83,21 +82,20 @@ pub struct Synchronisation {
     pub period: u64,
     /// Its place in the period, 0 to 31.
     pub step: u64,
-    /// Lead over the analogue position within the period, in 1/32 period; offset and half step count in the result
-    /// only.
+    /// Lead over the analogue position within the period, in 1/32 period; offset and half step apply to the result only.
     pub difference_steps: f64,
     /// The fine position, or that there is none.
     pub result: Result<Synchronised, Unsynchronisable>,
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: u32,
 }
 
-/// The least readings that an offset is told from.
+/// Minimum number of readings for an offset.
 const LEAST_READINGS: usize = 2;
 const MOST_TURNS: u32 = 65_536;
 
 impl Default for Form {
-    /// The second row of the reference's table.
+    /// Creates the second row of the reference's table.
     fn default() -> Self {
         let typed = |text: &str| text.to_owned();
         Form {
@@ -120,7 +118,7 @@ impl Form {
     /// Brings both together.
     ///
     /// # Errors
-    /// The first entry that cannot be used, in words.
+    /// Why the first invalid entry is invalid.
     pub fn synchronisation(&self) -> Result<Synchronisation, Text> {
         let (periods, synchroniser) = self.synchroniser()?;
         let last = synchroniser.periods * STEPS - 1;
@@ -138,10 +136,10 @@ impl Form {
         })
     }
 
-    /// The fine position from the quadrature counter; `None` without one.
+    /// Returns the fine position from the quadrature counter; `None` without one.
     ///
     /// # Errors
-    /// The first entry that cannot be used, in words.
+    /// Why the first invalid entry is invalid.
     pub fn quadrature(&self) -> Result<Option<f64>, Text> {
         if self.quarters.trim().is_empty() {
             return Ok(None);
@@ -153,11 +151,11 @@ impl Form {
         Ok(Some(period as f64 + phase.periods()))
     }
 
-    /// The speed in revolutions a minute below which a check without latch is sure: the shaft moves by less than half a
-    /// period while the moment is uncertain.
+    /// Returns the speed in revolutions per minute below which a check without latch is certain: the shaft moves by less
+    /// than half a period while the moment is uncertain.
     ///
     /// # Errors
-    /// The first entry that cannot be used, in words.
+    /// Why the first invalid entry is invalid.
     pub fn unlatched_rpm(&self) -> Result<f64, Text> {
         let (periods, _) = self.synchroniser()?;
         let jitter_ms = within(TEXTS.text("synchronise.jitter"), &self.jitter_ms, 0.001, 10_000.0)?;
@@ -192,7 +190,7 @@ impl Form {
 }
 
 impl Synchronisation {
-    /// The fine position in degrees of the shaft within a revolution, where there is one.
+    /// Returns the fine position in degrees of the shaft within a revolution, if there is one.
     pub fn degrees(&self) -> Option<f64> {
         let fine = self.result.ok()?;
         Some(fine.periods().rem_euclid(f64::from(self.periods)) / f64::from(self.periods) * 360.0)
@@ -223,7 +221,7 @@ impl Synchronise {
             }
             SynchroniseAction::UseOffset => {
                 if let Some(offset) = self.measured() {
-                    // The entry takes a point in both languages.
+                    // The entry accepts a decimal point in both languages.
                     self.form.offset = format!("{offset:.2}");
                 }
             }
@@ -232,7 +230,7 @@ impl Synchronise {
         }
     }
 
-    /// Takes what an encoder has read at rest since the last time.
+    /// Takes the readings of an encoder at rest since the last time.
     pub(crate) fn follow(&mut self, source: &mut dyn SineCosineSource) {
         match source.take_reading() {
             Some(Ok(reading)) => self.take(reading, source.origin()),
@@ -276,8 +274,8 @@ impl Synchronise {
         self.readings.len()
     }
 
-    /// Returns the lead of the absolute position in the readings, in 1/32 period, as it has to be entered; a selected
-    /// half step is added.
+    /// Returns the lead of the absolute position in the readings, in 1/32 period, as it must be entered; a selected half
+    /// step is added.
     pub fn measured(&self) -> Option<f64> {
         if self.readings.len() < LEAST_READINGS {
             return None;
@@ -285,7 +283,7 @@ impl Synchronise {
         measure_offset(self.readings.iter().copied()).map(|offset| self.with_half_step(offset))
     }
 
-    /// An offset as it has to be entered.
+    /// Returns an offset as it must be entered.
     pub fn with_half_step(&self, offset: f64) -> f64 {
         offset + if self.form.half_step { 0.5 } else { 0.0 }
     }
@@ -322,7 +320,7 @@ mod tests {
             assert!((result.residual_periods - residual).abs() < 6e-5, "{told:?}");
             assert_eq!(told.words().1.id().strip_prefix("synchronise."), Some(verdict));
         }
-        // 339.02 of 1024 periods, and no more of many turns.
+        // 339.02 of 1024 periods, and nothing else for many turns.
         for turns in ["1", "4096"] {
             let degrees = form("0x2A5F", "0.02", "1024", turns).synchronisation().unwrap().degrees().unwrap();
             assert!((degrees - 119.186_718_75).abs() < 1e-9, "{degrees}");
@@ -344,7 +342,7 @@ mod tests {
         assert_eq!(nothing.synchronisation().unwrap_err().id(), "synchronise.no_signal");
     }
 
-    /// Section 4: counters of quarters beside a phase; and 29 rpm for a millisecond with 1024 periods.
+    /// Section 4: counters of quarters with a phase; and 29 rpm for a millisecond with 1024 periods.
     #[test]
     fn counters_and_the_speed_of_a_check() {
         for (quarters, phase, fine) in [("43", "0.76", 10.76), ("44", "0.98", 10.98), ("43", "0.02", 11.02)] {
@@ -377,7 +375,7 @@ mod tests {
         }
     }
 
-    /// Two readings half a step apart in opposite directions: both 2.5 steps ahead in the mean.
+    /// Two readings half a step apart in opposite directions: both 2.5 steps ahead on average.
     #[test]
     fn readings_measure_the_offset() {
         let mut page = Synchronise::default();

@@ -1,23 +1,23 @@
-//! The table that a capture comes from: its first lines, what was found out about it, and what a person says instead.
+//! The table of a capture: its first lines, its detected format, and the user's corrections.
 
 use super::TableSource;
 use crate::analysis::capture::{Columns, Delimiter, Layout, TableHints, decode_head};
 
-/// The beginning of a table, and how it is read.
+/// Beginning of a table, with its format.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     pub place: TableSource,
-    /// Its first lines as text; long ones are cut.
+    /// Its first lines as text; long ones are truncated.
     pub head: Vec<String>,
     /// The settings made by the user.
     pub hints: TableHints,
     /// Format of the table; `None` if it cannot be detected.
     pub layout: Option<Layout>,
-    /// REFSIN and REFCOS while only one of them is chosen.
+    /// REFSIN and REFCOS while only one of them is selected.
     pub half_chosen: (Option<usize>, Option<usize>),
 }
 
-/// A column that is looked for.
+/// Column of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
     Time,
@@ -43,7 +43,7 @@ const WIDTH: usize = 160;
 const MOST_COLUMNS: usize = 64;
 
 impl Table {
-    /// The beginning of a table, from its first bytes.
+    /// Creates it from the first bytes of a table.
     pub(super) fn of(place: TableSource, head: &[u8], hints: TableHints) -> Self {
         let text = decode_head(head);
         let shown = |line: &[u8]| {
@@ -61,12 +61,12 @@ impl Table {
         self.hints.delimiter.or(self.layout.as_ref().map(|layout| layout.delimiter))
     }
 
-    /// Columns that are taken.
+    /// Returns the columns that are taken.
     pub fn columns(&self) -> Option<Columns> {
         self.hints.columns.or(self.layout.as_ref().map(|layout| layout.columns))
     }
 
-    /// The column that is taken for something, from 1.
+    /// Returns the column that is taken for something, from 1.
     pub fn column(&self, column: Column) -> Option<usize> {
         let columns = self.columns()?;
         match column {
@@ -91,13 +91,13 @@ impl Table {
         self.head.iter().map(fields).max().unwrap_or(0).max(named).min(MOST_COLUMNS)
     }
 
-    /// The name of a column in the table's header.
+    /// Returns the name of a column in the table's header.
     pub fn name(&self, column: usize) -> Option<&str> {
         let name = self.layout.as_ref()?.names.get(column.checked_sub(1)?)?;
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
-    /// Takes another column for something. False: nothing can be read differently yet, because the other reference is
+    /// Selects another column. Returns false if the table cannot be read differently yet, because the other reference is
     /// missing.
     pub(super) fn choose(&mut self, column: Column, number: Option<usize>) -> bool {
         let mut columns = self.columns().unwrap_or(Columns::PLAIN);

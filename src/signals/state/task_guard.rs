@@ -1,4 +1,5 @@
-//! Tasks of the Signals tab. Each comes back, also one that could not be started or broke off: nothing waits for ever.
+//! Tasks of the Signals tab. Each returns a result, also one that could not be started or was aborted: nothing waits
+//! forever.
 
 use super::{Done, TAB};
 use crate::app::action::{Action, Done as StudioDone};
@@ -29,7 +30,7 @@ fn action(done: Done) -> Action {
     Action::Done(StudioDone::tool(TAB, done))
 }
 
-/// Runs something on a thread; `failed` comes back instead of what it gives where it gives nothing.
+/// Runs a task on a thread; `failed` is returned if it gives no result.
 pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -> Done + Send + 'static) {
     let promise = Promise { mailbox: tasks.mailbox(), failed: Some(failed) };
     tasks.run(name, move || {
@@ -39,7 +40,7 @@ pub(super) fn run(tasks: &Tasks, name: &str, failed: Done, task: impl FnOnce() -
     });
 }
 
-/// Lets something large go on a thread: giving its memory back takes a while.
+/// Drops a large value on a thread: releasing its memory takes a while.
 pub(super) fn let_go(tasks: &Tasks, large: impl Send + 'static) {
     tasks.run("let go", move || {
         drop(large);

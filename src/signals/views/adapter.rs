@@ -1,4 +1,4 @@
-//! The adapter as a source: where it is, how fast it shall sample, and why it does not.
+//! The adapter as a source: its link, its sample rate, and its errors.
 
 use egui::Ui;
 
@@ -9,12 +9,12 @@ use crate::signals::views::say;
 use crate::ui::controls::{button, card_with, choice, entry, icon_button, paragraph, primary, problem, text_entry};
 use crate::ui::{Theme, icons};
 
-/// Samples a second to choose from; the adapter takes what it can.
+/// Selectable sample rates per second; the adapter uses the nearest it supports.
 const RATES: [u32; 10] = [1_000, 2_000, 5_000, 10_000, 20_000, 50_000, 100_000, 200_000, 500_000, 1_000_000];
 /// Width of the link's entry.
 const LINK: f32 = 280.0;
 
-/// Draws the card. True: it is not needed any more.
+/// Draws the card. Returns true when it is no longer needed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut Vec<Action>) -> bool {
     let mut ask = |action: SourceAction| actions.push(Action::tool(Signals::Source(action)));
     let (mut started, mut closed) = (false, false);
@@ -64,7 +64,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
     if started {
         ask(SourceAction::StartAdapter);
     } else if closed {
-        // The problem has been read.
+        // The user has read the problem.
         ask(SourceAction::SetLink(source.link().to_owned()));
     }
     started || closed

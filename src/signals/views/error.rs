@@ -62,7 +62,7 @@ fn basis(basis: Basis) -> Text {
     }
 }
 
-/// The error of the capture that is compared, where it has one.
+/// Returns the error of the compared capture, if it has one.
 fn other(compared: Option<&Results>) -> Option<&PositionError> {
     compared.and_then(|own| own.analysis.as_ref().ok()).map(|own| &own.error)
 }
@@ -120,7 +120,7 @@ fn bars(ui: &mut Ui, theme: &Theme, error: &PositionError, compared: Option<&Res
     });
 }
 
-/// Raw and corrected, of one capture or of both.
+/// Returns the raw and corrected traces, of one capture or of both.
 fn series(
     error: &PositionError,
     compared: Option<&PositionError>,

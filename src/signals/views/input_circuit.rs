@@ -100,7 +100,7 @@ fn here(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
 
 fn table(ui: &mut Ui, theme: &Theme, circuit: &Circuit) {
     card(ui, theme, TEXTS.text("input.table"), |ui| {
-        // Read, not touched.
+        // Values are only read.
         ui.spacing_mut().interact_size.y = theme.space.groups;
         egui::ScrollArea::horizontal().id_salt("input.table").show(ui, |ui| {
             let grid = egui::Grid::new("input.table").spacing([theme.space.groups, theme.space.inside]);

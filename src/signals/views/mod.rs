@@ -1,5 +1,4 @@
-//! The Signals tab: its pages, each about one thing that a person wants to know of a sine and a cosine. It needs no
-//! encoder and no session.
+//! The Signals tab: its pages, one per aspect of a sine and a cosine. It needs no encoder and no session.
 
 mod adapter;
 mod error;
@@ -51,7 +50,7 @@ impl TabPage for Page {
 /// Entered text that does not take effect yet, with the reason if it cannot.
 type Draft = Option<(String, Option<Text>)>;
 
-/// The state of the tab between frames: text buffers and selections.
+/// State of the tab between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SignalsUiState {
     /// The open page.
@@ -138,7 +137,7 @@ fn page_ui(
     });
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -1,4 +1,4 @@
-//! DNL and INL over the revolution, beside a reference encoder: the curve and the ± values.
+//! DNL and INL over the revolution, compared with a reference encoder: the curve and the ± values.
 
 use egui::Ui;
 
@@ -10,7 +10,7 @@ use crate::ui::Theme;
 use crate::ui::controls::{card, paragraph, problem};
 use crate::ui::widgets::{Chart, Trace, chart};
 
-/// Draws the card; with a capture that it is compared with also its values.
+/// Draws the card; with the values of a compared capture if there is one.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, measurement: &Results, compared: Option<&Results>) {
     card(ui, theme, TEXTS.text("nonlinearity.title"), |ui| match &measurement.nonlinearities {
         Some(Ok(nonlinearities)) => {

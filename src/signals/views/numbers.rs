@@ -1,5 +1,4 @@
-//! Numbers in rows: what each is, its value, that of the capture it is compared with, its limit, and a mark whether it is
-//! inside.
+//! Numbers in rows: name, value, value of the compared capture, limit, and a mark for the verdict.
 
 use egui::{RichText, Ui, WidgetInfo};
 
@@ -8,14 +7,14 @@ use crate::signals::state::{Bound, Quantity, Unit};
 use crate::signals::views::say;
 use crate::ui::{Theme, controls};
 
-/// Width from which a value also stands in its second unit; else that is its tooltip.
+/// Width from which a value is also shown in its second unit; below, that is its tooltip.
 const WIDE: f32 = 390.0;
-/// Width from which limits have a column; else they are the tooltips of the marks.
+/// Width from which limits have a column; below, they are the tooltips of the marks.
 const LEAST: f32 = 350.0;
 /// Width that the column of limits takes.
 const LIMITS: f32 = 110.0;
 
-/// Draws the rows; with a second list also its values, and how far the first is from them.
+/// Draws the rows; with a second list also its values, and the differences.
 pub(super) fn rows_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -85,7 +84,7 @@ fn comparison(ui: &mut Ui, theme: &Theme, quantity: &Quantity, other: Option<&Qu
     ui.label(theme.mono(format!("{sign}{}", theme.number(difference, quantity.decimals))));
 }
 
-/// A number with its unit.
+/// Returns a number with its unit.
 pub(super) fn with_unit(theme: &Theme, value: f64, decimals: usize, unit: Unit) -> String {
     unit_behind(theme.number(rounded(value, decimals), decimals), unit)
 }
@@ -116,7 +115,7 @@ fn unit_behind(words: String, unit: Unit) -> String {
     }
 }
 
-/// An icon in its colour, which says its word to a screen reader, and with the limit under the pointer.
+/// Draws an icon in its colour, with its text for screen readers, and the limit as tooltip.
 fn mark(ui: &mut Ui, theme: &Theme, verdict: Verdict, limit: &str) {
     let (icon, colour) = controls::verdict(theme, verdict);
     let id = match verdict {

@@ -1,4 +1,5 @@
-//! The angle by a drive's table and exactly: how good tables of several sizes are, and one pair of voltages both ways.
+//! The angle by a drive's table and exactly: the errors of tables of several sizes, and one pair of voltages by both
+//! methods.
 
 use egui::Ui;
 

@@ -1,4 +1,4 @@
-//! Is the signal good: the Lissajous figure, what is wrong in words, and every number beside its limit.
+//! The quality of the signal: the Lissajous figure, the findings as text, and every number with its limit.
 
 use std::sync::Arc;
 
@@ -167,7 +167,7 @@ fn finding_ui(ui: &mut Ui, theme: &Theme, finding: &DiagnosisFinding) {
     line(ui, icon, colour, theme.words(&explain::signal::diagnosis(finding)));
 }
 
-/// Draws the verdict in words.
+/// Draws the verdict as text.
 fn verdict(ui: &mut Ui, theme: &Theme, signals: &Signals, measurement: &Measurement) {
     card(ui, theme, TEXTS.text("quality.findings"), |ui| {
         let findings = signals.findings();
@@ -236,7 +236,7 @@ fn values(
     });
 }
 
-/// Signal periods in a revolution, typed or chosen.
+/// Draws the signal periods in a revolution, typed or chosen.
 pub(super) fn periods_ui(
     ui: &mut Ui,
     theme: &Theme,

@@ -135,7 +135,7 @@ fn lines(ui: &mut Ui, theme: &Theme, spectra: &Spectra, kept: Option<&Spectra>, 
     paragraph(ui, theme.caption(theme.words(&text)));
 }
 
-/// The highest peaks of both channels, and what they are to the signal.
+/// Draws the highest peaks of both channels, and their relation to the signal.
 fn peaks(ui: &mut Ui, theme: &Theme, spectra: &Spectra, measurement: &Measurement) {
     let signal_hz = measurement.analysis.as_ref().ok().and_then(|own| own.frequency_hz()).map(f64::abs);
     ui.add_space(theme.space.inside);

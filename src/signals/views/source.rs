@@ -1,4 +1,4 @@
-//! The source of the samples, above every page about them: reading, its progress, and why it failed.
+//! The source of the samples, above every page about them: reading, its progress, and its errors.
 
 use egui::{RichText, Ui};
 
@@ -23,7 +23,7 @@ pub(super) struct SourceUiState {
     adapter: bool,
 }
 
-/// Draws it. True: there is a capture to be shown below.
+/// Draws it. Returns true if there is a capture to show below.
 pub(super) fn source_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -56,7 +56,7 @@ pub(super) fn source_ui(
     shown
 }
 
-/// The virtual encoder's settings, where they are wanted. A page draws them where what they change can be seen.
+/// Draws the virtual encoder's settings, if they are open. A page draws them where their effect is visible.
 pub(super) fn settings_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -70,7 +70,7 @@ pub(super) fn settings_ui(
     }
 }
 
-/// The source that is shown, or will be; `None`: a table is.
+/// Returns the displayed source, or the one to be displayed; `None`: a table is.
 fn live(signals: &Signals) -> Option<SourceKind> {
     if signals.source().is_running() {
         return Some(signals.source().kind());
@@ -115,7 +115,7 @@ pub(super) fn problem(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     ui.add_space(theme.space.between);
 }
 
-/// The capture that is shown, in one line, and what can be done with it.
+/// Draws the displayed capture in one line, with its actions.
 fn present(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     theme.card().inner_margin(egui::Margin::symmetric(12, 8)).show(ui, |ui| {
         fill(ui);
@@ -196,7 +196,7 @@ fn live_title(ui: &mut Ui, theme: &Theme, signals: &Signals) {
     }
 }
 
-/// Starting, holding and stopping what runs, and its settings.
+/// Draws the buttons to start, hold and stop the source, and for its settings.
 fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut SourceUiState, actions: &mut Vec<Action>) {
     let source = signals.source();
     let mut ask = |action| actions.push(Action::tool(Signals_::Source(action)));
@@ -223,7 +223,7 @@ fn source_buttons(ui: &mut Ui, theme: &Theme, signals: &Signals, view: &mut Sour
     toggle(ui, icons::SLIDERS, &say(theme, "virtual.settings"), open);
 }
 
-/// A button that shows something, or hides it.
+/// Draws a button that shows something, or hides it.
 fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     let button = egui::Button::selectable(*open, format!("{icon}  {word}")).frame_when_inactive(true);
     if name(ui.add(button), true, word).clicked() {
@@ -231,7 +231,7 @@ fn toggle(ui: &mut Ui, icon: &str, word: &str, open: &mut bool) {
     }
 }
 
-/// Putting the capture aside, and what is put aside.
+/// Draws the button that stores the capture for comparison, and the stored one.
 fn keep_ui(ui: &mut Ui, theme: &Theme, signals: &Signals, actions: &mut Vec<Action>) {
     let word = say(theme, "compare.keep");
     let same =

@@ -1,4 +1,4 @@
-//! Absolute and analogue position brought together: typed, or as the encoder gives them.
+//! Absolute and analogue position combined: from entries, or from the encoder.
 
 use egui::Ui;
 
@@ -31,7 +31,7 @@ pub(super) fn page_ui(
     let mut form = state.form.clone();
     // The drawing beside the entries shows their present result.
     let synchronisation = form.synchronisation();
-    // Two rows, so that also in one column the result stands next to what it comes from.
+    // Two rows, so that also in one column the result is next to its inputs.
     split(
         ui,
         theme,
@@ -135,7 +135,7 @@ fn measured(ui: &mut Ui, theme: &Theme, state: &Synchronise, actions: &mut Vec<A
     }
 }
 
-/// The offset over a capture with an absolute position.
+/// Draws the offset over a capture with an absolute position.
 fn captured(ui: &mut Ui, theme: &Theme, signals: &State, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("synchronise.captured"), |ui| {
         let measurement = signals.measurement();
@@ -195,7 +195,7 @@ fn result(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
 fn numbers(ui: &mut Ui, theme: &Theme, synchronisation: &Synchronisation) {
     let number = |value, decimals, unit: &str| theme.mono(format!("{}{unit}", theme.number(value, decimals)));
     row(ui, theme, &say(theme, "synchronise.period"), theme.mono(synchronisation.period.to_string()));
-    // In the colours that they have in the ring.
+    // In their colours in the ring.
     row(
         ui,
         theme,

@@ -13,7 +13,7 @@ use crate::ui::{Theme, icons};
 /// The state of the card between frames.
 #[derive(Default)]
 pub(super) struct TableUiState {
-    /// It is shown.
+    /// Whether it is shown.
     pub(super) is_open: bool,
     volts: Draft,
 }
@@ -72,7 +72,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, table: &Table, view: &mut Tabl
     }
 }
 
-/// The first lines as they stand in the file.
+/// Draws the first lines as in the file.
 fn lines(ui: &mut Ui, theme: &Theme, table: &Table) {
     let first = table.layout.as_ref().map_or(0, |layout| layout.first_row);
     theme.sunken().show(ui, |ui| {

@@ -1,4 +1,4 @@
-//! The virtual encoder's settings: what it does, and what is wrong with it.
+//! The virtual encoder's settings: its motion, and its faults.
 
 use egui::{Slider, SliderClamping, Ui, WidgetInfo};
 
@@ -10,7 +10,7 @@ use crate::sim::sine_cosine::{Quantity, References, Settings};
 use crate::ui::controls::{LABELS, button, card_with, choice, entry, paragraph, problem, two_columns};
 use crate::ui::{Theme, icons};
 
-/// A setting that is slid: where its slider ends (more can be typed), and its decimals.
+/// Setting with a slider: the end of its slider (more can be entered), and its decimals.
 struct SliderSpec {
     quantity: Quantity,
     ends: (f64, f64),
@@ -58,7 +58,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, source: &Source, actions: &mut
         reset = button(ui, icons::ARROW_COUNTER_CLOCKWISE, &say(theme, "virtual.reset")).clicked();
     };
     card_with(ui, theme, TEXTS.text("virtual.settings"), aside, |ui| {
-        // There are many, and what they do is to be seen beside them.
+        // There are many, and their effect must be visible beside them.
         ui.spacing_mut().interact_size.y = 20.0;
         ui.spacing_mut().item_spacing.y = theme.space.inside;
         ui.visuals_mut().widgets.inactive.bg_fill = theme.palette.line.into();

@@ -1,17 +1,17 @@
 //! A virtual analogue source: the four wires of a sine/cosine encoder that turns at a speed, with errors that can be set.
-//! Deterministic: the same settings, changes and sample numbers give the same voltages, in whatever stretches they are
-//! asked for. Never in here: a clock, a thread, a device.
+//! Deterministic: the same settings, changes and sample numbers give the same voltages, regardless of the block sizes
+//! requested. This module uses no clock, thread or device.
 //!
 //! The model is that of Heydemann (Applied Optics 20, 3382), section 7 of the project's sine/cosine reference, with θ the
 //! true angle: cosine channel R·cos θ + p, sine channel R·sin(θ − α)/r + q. Both tracks have the same shape a quarter of a
-//! period apart, so that a third harmonic h makes cos θ − h·cos 3θ and sin θ + h·sin 3θ of them.
+//! period apart, so that a third harmonic h results in cos θ − h·cos 3θ and sin θ + h·sin 3θ.
 //!
-//! Angles are kept as whole parts of a turn and times as whole nanoseconds: nothing drifts, however long it runs.
+//! Angles are whole parts of a turn and times are whole nanoseconds, so that no error accumulates with time.
 //!
-//! What is assumed, and stands in no manual: at a receiver with a resistor between the wires of a pair an open wire goes
-//! where its partner is, so that their difference is zero; without the resistor it stays at the mean level, where the
-//! receiver's bias holds it. Interference and hum reach SIN and COS and not their references, which is what a receiver
-//! does not reject of them; the interference is half as strong in the cosine channel and has the opposite sign there.
+//! Assumptions without a manual: at a receiver with a resistor between the wires of a pair an open wire takes the voltage
+//! of its partner, so that their difference is zero; without the resistor it stays at the mean level, at which the
+//! receiver's bias holds it. Interference and hum reach SIN and COS and not their references, which is the part that a
+//! receiver does not reject; the interference is half as strong in the cosine channel and has the opposite sign there.
 
 mod settings;
 
@@ -23,7 +23,7 @@ pub use settings::{Checked, Quantity, References, SettingError, Settings};
 use crate::analysis::Time;
 use crate::analysis::wiring::{Wire, Wires};
 
-/// Parts of a turn: so many that 0.001 rev/min for a nanosecond is one of them.
+/// Parts of a turn, chosen so that 0.001 rev/min for a nanosecond is one part.
 const TURN: u64 = 60_000 * 1_000_000_000;
 /// Parts of a period of an interference: 0.001 Hz for a nanosecond is one.
 const CYCLE: u64 = 1_000 * 1_000_000_000;
@@ -41,7 +41,7 @@ pub struct Source {
 /// Samples between two changes.
 #[derive(Clone, Debug)]
 struct Segment {
-    /// Its first sample.
+    /// The first sample of the segment.
     from: u64,
     /// Nanoseconds from the start to that.
     elapsed: u64,
@@ -51,7 +51,7 @@ struct Segment {
 }
 
 impl Source {
-    /// A source whose first sample is taken at `start`, at the angle 0.
+    /// Creates a source whose first sample is taken at `start`, at the angle 0.
     pub fn new(checked: Checked, start: Time) -> Self {
         Source { start, segments: VecDeque::from([Segment { from: 0, elapsed: 0, turn: 0, checked }]) }
     }
@@ -70,19 +70,19 @@ impl Source {
         self.segments.push_back(segment);
     }
 
-    /// The settings in force after the latest change.
+    /// Returns the settings in force after the latest change.
     pub fn settings(&self) -> Option<&Settings> {
         self.segments.back().map(|segment| segment.checked.settings())
     }
 
-    /// Returns the time of a sample; `None` if the changes before it are forgotten.
+    /// Returns the time of a sample; `None` if the changes before it are no longer stored.
     pub fn time(&self, index: u64) -> Option<Time> {
         let segment = self.segment(index)?;
         Some(self.start.plus(i64::try_from(segment.elapsed_at(index)).unwrap_or(i64::MAX)))
     }
 
-    /// The samples from `first` on, `count` of them; `None` where the changes before them are forgotten, of which the
-    /// latest 64 are known.
+    /// Returns `count` samples from `first` on; `None` if the changes before them are no longer stored. The latest 64
+    /// changes are.
     pub fn samples(&self, first: u64, count: usize) -> Option<Wires> {
         let column = || Vec::with_capacity(count.min(1 << 20));
         let mut wires =
@@ -99,7 +99,7 @@ impl Source {
         Some(wires)
     }
 
-    /// The segment of a sample.
+    /// Returns the segment of a sample.
     fn segment(&self, index: u64) -> Option<&Segment> {
         self.segments.iter().rev().find(|segment| segment.from <= index)
     }
@@ -185,7 +185,7 @@ struct Model<'a> {
     eccentricity: f64,
     phase_error: f64,
     third: f64,
-    /// Of each wire, so that a difference has what is set.
+    /// Noise of each wire, so that a difference has the set noise.
     noise: f64,
 }
 
@@ -201,11 +201,11 @@ impl<'a> Model<'a> {
         }
     }
 
-    /// Sine and cosine channel in volts, where nothing disturbs them.
+    /// Returns the sine and cosine channel in volts, without disturbances.
     fn channels(&self, shaft: Wheel) -> (f64, f64) {
         let settings = self.settings;
         let (once_sine, once_cosine) = shaft.angle().sin_cos();
-        // The periods are taken off while the angle is still whole parts: 65 536 turns fit into 64 bits.
+        // The periods are multiplied while the angle is still whole parts: 65 536 turns fit into 64 bits.
         let signal = Wheel { at: shaft.at * self.periods % TURN, ..shaft };
         let angle = signal.angle() + self.eccentricity * once_sine;
         let amplitude = settings.amplitude_v * (1.0 + settings.modulation_percent / 100.0 * once_cosine);
@@ -215,7 +215,7 @@ impl<'a> Model<'a> {
         (amplitude * sine / settings.gain_ratio + settings.offset_sine_v, amplitude * cosine + settings.offset_cosine_v)
     }
 
-    /// SIN, REFSIN, COS, REFCOS at the receiver, of which the differences are given.
+    /// Returns SIN, REFSIN, COS and REFCOS at the receiver for the given differences.
     fn wires(&self, index: u64, [sine, cosine]: [f64; 2]) -> [f64; 4] {
         let level = self.settings.level_v;
         let pair = |difference: f64| match self.settings.references {
@@ -244,11 +244,11 @@ impl<'a> Model<'a> {
 }
 
 fn remainder(number: i128, whole: u64) -> u64 {
-    // The remainder of a division by 64 bits fits into them.
+    // The remainder of a division by a number of 64 bits fits into 64 bits.
     u64::try_from(number.rem_euclid(i128::from(whole))).unwrap_or(0)
 }
 
-/// Two independent numbers of the normal distribution, the same for the same place (Box and Muller 1958).
+/// Returns two independent numbers of the normal distribution, the same for the same place (Box and Muller 1958).
 fn gaussian(seed: u64, place: u64) -> [f64; 2] {
     let first = scramble(seed ^ scramble(place));
     let second = scramble(first ^ seed);
@@ -259,7 +259,7 @@ fn gaussian(seed: u64, place: u64) -> [f64; 2] {
     [length * sine, length * cosine]
 }
 
-/// SplitMix64 (Steele, Lea, Flood 2014): neighbouring numbers become unrelated ones.
+/// Returns a hash by SplitMix64 (Steele, Lea, Flood 2014): neighbouring numbers become unrelated ones.
 fn scramble(number: u64) -> u64 {
     let mixed = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);

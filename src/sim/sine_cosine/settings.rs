@@ -2,14 +2,14 @@
 
 use crate::analysis::wiring::Wire;
 
-/// Everything that can be set. Voltages are peak unless they say rms.
+/// All settings. Voltages are peak values unless named rms.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Signal periods in a revolution; a whole number.
+    /// Signal periods per revolution; a whole number.
     pub periods: f64,
-    /// Speed in revolutions a minute, in steps of 0.001; negative: the angle falls.
+    /// Speed in revolutions per minute, in steps of 0.001; negative: the angle falls.
     pub speed_rpm: f64,
-    /// Samples a second. A sample takes whole nanoseconds: see [`Settings::period_ns`].
+    /// Samples per second. A sample takes whole nanoseconds: see [`Settings::period_ns`].
     pub rate_hz: f64,
     /// R: differential amplitude of the cosine channel in volts.
     pub amplitude_v: f64,
@@ -17,27 +17,28 @@ pub struct Settings {
     pub offset_sine_v: f64,
     /// p: offset of the cosine channel in volts.
     pub offset_cosine_v: f64,
-    /// r: amplitude of the cosine over that of the sine channel.
+    /// r: amplitude of the cosine channel divided by that of the sine channel.
     pub gain_ratio: f64,
-    /// α: how far the sine lags behind a quarter of a period after the cosine, in degrees.
+    /// α: delay of the sine beyond a quarter of a period after the cosine, in degrees.
     pub phase_error_deg: f64,
     /// Mean level of the references in volts.
     pub level_v: f64,
     /// Third harmonic in percent of the amplitude.
     pub third_harmonic_percent: f64,
-    /// Rise and fall of the amplitude once a revolution, in percent.
+    /// Rise and fall of the amplitude once per revolution, in percent.
     pub modulation_percent: f64,
     /// White noise of each differential channel in volts rms.
     pub noise_v: f64,
     /// Frequency of an interference in hertz, in steps of 0.001.
     pub interference_hz: f64,
-    /// Its amplitude on the sine channel in volts; the cosine channel has half of it with the opposite sign.
+    /// Amplitude of the interference on the sine channel in volts; the cosine channel has half of it with the opposite
+    /// sign.
     pub interference_v: f64,
     /// Frequency of the mains in hertz, in steps of 0.001.
     pub hum_hz: f64,
-    /// Amplitude of its hum in volts, the same in both channels and in phase.
+    /// Amplitude of the hum in volts, the same in both channels and in phase.
     pub hum_v: f64,
-    /// Eccentricity of the scale: the angle runs ahead and behind once a revolution by so many mechanical seconds of arc.
+    /// Eccentricity of the scale: amplitude of the once-per-revolution angle error in mechanical seconds of arc.
     pub eccentricity_arcsec: f64,
     /// A broken wire.
     pub open_wire: Option<Wire>,
@@ -52,9 +53,9 @@ pub struct Settings {
 /// The level of REFSIN and REFCOS.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum References {
-    /// Their mean level, as HIPERFACE encoders do: the signal is on SIN and COS alone.
+    /// The mean level, as for HIPERFACE encoders: the signal is on SIN and COS only.
     Level,
-    /// The signal upside down, as encoders with complementary outputs do: each wire has half of it.
+    /// The inverted signal, as for encoders with complementary outputs: each wire has half of it.
     Complement,
 }
 
@@ -97,7 +98,7 @@ pub enum Quantity {
     Eccentricity,
 }
 
-/// A setting outside of its range.
+/// A setting outside its range.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{quantity:?} must be from {least} to {most}, not {value}")]
 pub struct SettingError {
@@ -137,7 +138,7 @@ impl Quantity {
         Quantity::Eccentricity,
     ];
 
-    /// The sign of its unit, the same in every language; empty for a number.
+    /// Returns the symbol of the unit, the same in every language; empty for a number.
     pub const fn unit(self) -> &'static str {
         match self {
             Quantity::Periods | Quantity::GainRatio => "",
@@ -156,7 +157,7 @@ impl Quantity {
         }
     }
 
-    /// Least and greatest value.
+    /// Returns the least and greatest value.
     pub const fn range(self) -> (f64, f64) {
         match self {
             Quantity::Periods => (1.0, 65_536.0),
@@ -178,12 +179,12 @@ impl Quantity {
 }
 
 impl Settings {
-    /// The value of a quantity.
+    /// Returns the value of a quantity.
     pub fn get(&self, quantity: Quantity) -> f64 {
         *self.clone().place(quantity)
     }
 
-    /// The same settings with another value of a quantity.
+    /// Returns the same settings with another value of a quantity.
     #[must_use]
     pub fn with(mut self, quantity: Quantity, value: f64) -> Self {
         *self.place(quantity) = value;
@@ -195,11 +196,11 @@ impl Settings {
         (1e9 / self.rate_hz).round() as i64
     }
 
-    /// The settings, if all of them are in their ranges.
+    /// Returns the settings if all of them are in their ranges.
     ///
     /// # Errors
-    /// [`SettingError`] with the first that is not, and with its range. The number of periods is also refused where it is
-    /// not whole.
+    /// [`SettingError`] with the first setting that is not, and with its range. The number of periods is also refused if it
+    /// is not whole.
     pub fn checked(self) -> Result<Checked, SettingError> {
         for quantity in Quantity::ALL {
             let (value, (least, most)) = (self.get(quantity), quantity.range());
@@ -242,8 +243,8 @@ impl Checked {
 }
 
 impl Default for Settings {
-    /// A good HIPERFACE encoder of 1024 periods at 60 rev/min, sampled with 100 kHz: 0.5 V, 0.5 mV of noise. What can
-    /// interfere stands at the frequencies that are usual: a drive's 8 kHz, mains of 50 Hz.
+    /// Returns a good HIPERFACE encoder of 1024 periods at 60 rev/min, sampled with 100 kHz: 0.5 V, 0.5 mV of noise.
+    /// Interference has its usual frequencies: a drive's 8 kHz, mains of 50 Hz.
     fn default() -> Self {
         Settings {
             periods: 1024.0,

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Without noise.
+/// Returns settings without noise.
 fn quiet() -> Settings {
     Settings { noise_v: 0.0, ..Settings::default() }
 }
@@ -39,7 +39,7 @@ fn the_table_of_section_7() {
         (360, 0.520000, -0.054922),
     ];
     for (degree, cosine, sine) in cases {
-        // 16 666 667 ns a sample: 20 parts in 10⁹ more than a degree.
+        // 16 666 667 ns per sample: 20 parts in 10⁹ more than a degree.
         near(wires.cosine_v()[degree], cosine, 1e-6);
         near(wires.sine_v()[degree], sine, 1e-6);
         assert_eq!((wires.refsin_v[degree], wires.refcos_v[degree]), (2.5, 2.5));
@@ -61,7 +61,7 @@ fn any_stretch_is_the_same_after_days() {
     let turn = 1_234_567_i128 * 10_000 * i128::from(days) % 60_000_000_000_000;
     let late = source.samples(days, 1).unwrap();
     near(late.reference_deg[0], 360.0 * turn as f64 / 6e13, 1e-9);
-    // Ten days are whole periods of 8 kHz and 50 Hz: what is added is zero, and noise is 0.5 mV.
+    // Ten days are whole periods of 8 kHz and 50 Hz: the added signals are zero, and noise is 0.5 mV.
     let angle = TAU * (turn * 1024 % 60_000_000_000_000) as f64 / 6e13;
     near(late.sine_v()[0], 0.5 * angle.sin(), 0.003);
     source.change(days, settings.checked().unwrap());
@@ -70,7 +70,7 @@ fn any_stretch_is_the_same_after_days() {
 
 #[test]
 fn speed_and_errors_change_at_a_sample_and_the_angle_goes_on() {
-    // 60 rev/min of 1000 samples a second: 0.36° a sample.
+    // 60 rev/min at 1000 samples per second: 0.36° per sample.
     let slow = Settings { rate_hz: 1_000.0, ..quiet() };
     let mut source = source(slow.clone());
     let fast = Settings { speed_rpm: -600.0, rate_hz: 10_000.0, offset_cosine_v: 0.1, ..slow };
@@ -82,10 +82,10 @@ fn speed_and_errors_change_at_a_sample_and_the_angle_goes_on() {
     }
     assert_eq!(source.time(500).unwrap(), Time::from_nanoseconds(500_000_000));
     assert_eq!(source.time(501).unwrap(), Time::from_nanoseconds(500_100_000));
-    // The sample 500 is half a turn on: 512 whole periods, cosine 1.
+    // Sample 500 is half a turn later: 512 whole periods, cosine 1.
     near(wires.cosine_v()[1], 0.6, 1e-9);
     assert_eq!(source.samples(0, 10_000).unwrap().len(), 10_000);
-    // Of two changes at one place the later counts, and one before the latest moves there.
+    // Of two changes at one sample the later counts, and a change before the latest replaces it there.
     source.change(500, Settings { speed_rpm: 0.0, ..fast.clone() }.checked().unwrap());
     source.change(3, Settings { speed_rpm: 0.0, ..fast }.checked().unwrap());
     near(source.samples(9_000, 1).unwrap().reference_deg[0], 180.0, 1e-9);
@@ -111,13 +111,14 @@ fn noise_has_its_deviation_and_is_not_the_same_on_any_two_wires() {
         a.iter().zip(b).map(|(a, b)| (a - 2.5) * (b - 2.5)).sum::<f64>() / 40_000.0 / (0.01 * 0.01 / 2.0)
     };
     for (at, column) in columns.iter().enumerate() {
-        // The variance of 40 000 numbers scatters by √(2/40 000) = 0.7 %, a correlation by 0.5 %; five of them.
+        // The variance of 40 000 numbers scatters by √(2/40 000) = 0.7 %, a correlation by 0.5 %; the limit is five of
+        // them.
         near(product(column, column), 1.0, 0.035);
         near(column.iter().sum::<f64>() / 40_000.0, 2.5, 5.0 * 0.01 / 40_000.0_f64.sqrt());
         for other in columns.iter().skip(at + 1) {
             near(product(column, other), 0.0, 0.025);
         }
-        // And none with itself one sample later.
+        // No correlation with itself one sample later.
         near(product(&column[1..], &column[..39_999]), 0.0, 0.025);
     }
     let other = source(Settings { seed: 2, ..settings }).samples(0, 40_000).unwrap();
@@ -126,7 +127,7 @@ fn noise_has_its_deviation_and_is_not_the_same_on_any_two_wires() {
 
 #[test]
 fn an_open_wire_is_what_the_receiver_makes_of_it() {
-    // A quarter of a period on: sine 0.5 V, cosine 0.
+    // A quarter of a period later: sine 0.5 V, cosine 0.
     let at = |open: Wire, terminated, references| {
         let settings = Settings {
             periods: 1.0,
@@ -157,8 +158,8 @@ fn an_open_wire_is_what_the_receiver_makes_of_it() {
     }
 }
 
-/// Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3)) and 0.3 turns, with the
-/// amplitude 1 + 0.1·cos(2π·0.3).
+/// Expected values from Python: 0.5·(cos θ − 0.04·cos 3θ) and so on, at θ = 2π·(16·0.3 + 16·100/1296000·sin(2π·0.3)) and
+/// 0.3 turns, with the amplitude 1 + 0.1·cos(2π·0.3).
 #[test]
 fn harmonic_modulation_and_eccentricity() {
     let settings = Settings {

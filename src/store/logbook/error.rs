@@ -1,4 +1,4 @@
-//! Why the logbook cannot be used: SQLite's result codes, sorted by what a user can do about them.
+//! The reasons why the logbook cannot be used: SQLite's result codes, sorted by what a user can do about them.
 
 use std::path::{Path, PathBuf};
 
@@ -16,30 +16,30 @@ pub struct LogbookError {
     pub problem: LogbookProblem,
 }
 
-/// What prevents using the logbook.
+/// The obstacle to using the logbook.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LogbookProblem {
-    /// Its folder cannot be made.
+    /// The folder cannot be created.
     #[error(transparent)]
     Folder(FileError),
-    /// The file cannot be opened: a folder of its name, or no permission.
+    /// The file cannot be opened: a folder with its name, or no permission.
     #[error("cannot be opened")]
     NoAccess,
-    /// It can be read but not written.
+    /// The file can be read but not written.
     #[error("is write-protected")]
     WriteProtected,
-    /// Another program held it longer than it is waited for.
+    /// Another program kept it locked for longer than the time limit.
     #[error("is in use by another program")]
     Locked,
     #[error("the disk is full")]
     DiskFull,
-    /// It is no database, or a damaged one.
+    /// The file is not a database, or a damaged one.
     #[error("is damaged: {what}")]
     Damaged {
         /// The message of the database.
         what: String,
     },
-    /// A newer version of the program made it. It was left alone.
+    /// A newer version of the program created it. It is unchanged.
     #[error("has schema {found}, written by a newer version; this version supports schemas up to {known}")]
     Newer {
         /// The schema's number in the file.
@@ -50,10 +50,10 @@ pub enum LogbookProblem {
     /// The entry to conclude does not exist, or is concluded.
     #[error("entry {entry} is not open")]
     NotOpen { entry: EntryId },
-    /// Anything else, as the database calls it.
+    /// Any other error, as named by the database.
     #[error("{what}")]
     Database {
-        /// SQLite's extended result code; `None` where the value was refused before it came to SQLite.
+        /// SQLite's extended result code; `None` if the value was refused before it reached SQLite.
         code: Option<i32>,
         /// The database's words.
         what: String,
@@ -79,7 +79,7 @@ impl From<rusqlite::Error> for LogbookProblem {
                 ErrorCode::NotADatabase | ErrorCode::DatabaseCorrupt => LogbookProblem::Damaged { what },
                 _ => LogbookProblem::Database { code: Some(failure.extended_code), what },
             },
-            // A value that the schema does not allow was found in its table.
+            // The table contains a value that the schema does not allow.
             Cause::FromSqlConversionFailure(..)
             | Cause::IntegralValueOutOfRange(..)
             | Cause::InvalidColumnType(..)

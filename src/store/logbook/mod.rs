@@ -1,9 +1,9 @@
-//! The logbook: what this program wrote into which device, and how many of its write cycles that took. An intent is
-//! recorded before the first byte goes out and concluded afterwards, so that a program that dies in between leaves a
-//! trace. It is SQLite, so that two windows can share it and any tool can read it.
+//! The logbook: the writes of this program into each device, and the write cycles that they took. An intent is recorded
+//! before the first byte is sent and concluded afterwards, so that a program that dies in between leaves a trace. It is
+//! SQLite, so that two windows can share it and any tool can read it.
 //!
-//! It never learns an access code: `what` and a failure's text are words for people, made from what was planned, not from
-//! frames. It never decides whether a device may be written: where it fails, the caller refuses what is not forced.
+//! It never receives an access code: `what` and the text of a failure are made from the plan, not from frames. It never
+//! decides whether a device may be written: if it fails, the caller refuses writes that are not forced.
 
 mod error;
 mod schema;
@@ -17,10 +17,10 @@ use rusqlite::{Connection, Row, named_params};
 
 pub use error::{LogbookError, LogbookProblem};
 
-/// How long to wait for another window that is writing.
+/// Time to wait for another window that is writing.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// An open logbook. Opening and asking may wait for another window: not a thing to do on a thread that draws.
+/// An open logbook. Opening and reading may wait for another window, so they must not run on the thread of the window.
 #[derive(Debug)]
 pub struct Logbook {
     path: PathBuf,
@@ -32,10 +32,10 @@ pub struct Logbook {
 pub struct DeviceKey {
     /// Kind of device: `hiperface`.
     pub kind: String,
-    /// Its type within the kind, as its manual writes it: `37h`. Serial numbers are unique within a type only.
+    /// Type within the kind, as its manual writes it: `37h`. Serial numbers are unique within a type only.
     pub device_type: String,
     pub serial_number: String,
-    /// A simulated device; it never shares a count with a real one.
+    /// Whether the device is simulated; it never shares a count with a real one.
     pub is_virtual: bool,
 }
 
@@ -57,12 +57,12 @@ impl fmt::Display for EntryId {
     }
 }
 
-/// How a write ended.
+/// The end of a write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// Written and read back.
     Done,
-    /// It failed, with the reason in words.
+    /// Failure, with the reason as a text.
     Failed(String),
     /// The user stopped it.
     Cancelled,
@@ -71,45 +71,45 @@ pub enum Outcome {
 /// One write, as it was intended and as it ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Its number; a later entry has a greater one.
+    /// Number of the entry; a later entry has a greater one.
     pub id: EntryId,
-    /// When it was about to begin.
+    /// Time just before the write.
     pub at: Timestamp,
-    /// The planned write, in words.
+    /// The planned write, as text.
     pub description: String,
     /// Write cycles that were to be spent.
     pub planned_cycles: u64,
-    /// The backup taken before; in its path, what is not Unicode is replaced.
+    /// The backup taken before; characters of its path that are not Unicode are replaced.
     pub backup: Option<PathBuf>,
-    /// The end of the write; `None` while it runs, and for ever if the program died meanwhile.
+    /// The end of the write; `None` while it runs, and permanently if the program died meanwhile.
     pub conclusion: Option<Conclusion>,
 }
 
-/// How and when a write ended.
+/// The end of a write and its time.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Conclusion {
-    /// When.
+    /// Time of the end.
     pub at: Timestamp,
     pub outcome: Outcome,
-    /// Write cycles that were spent; not zero for what failed half-way.
+    /// Write cycles that were spent; not zero for a write that failed half-way.
     pub cycles_spent: u64,
 }
 
-/// Status codes that a device has given away: reading them took them out of it.
+/// Status codes that reading removed from a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StatusEntry {
-    /// When they were read.
+    /// Time at which they were read.
     pub at: Timestamp,
-    /// The codes, in words, in the device's order.
+    /// The codes, as text, in the device's order.
     pub codes: String,
 }
 
 impl Logbook {
-    /// Opens the logbook, making it and its folder where there is none.
+    /// Opens the logbook, creating it and its folder if they are missing.
     ///
     /// # Errors
-    /// Where the file is no database, a damaged one, in use for longer than two seconds, not to be written to, or made
-    /// by a newer version of the program; the file is then as it was.
+    /// Returns an error if the file is not a database, a damaged one, in use for longer than two seconds, not writable, or
+    /// created by a newer version of the program; the file is then unchanged.
     pub fn open(path: &Path) -> Result<Self, LogbookError> {
         Self::open_patiently(path, PATIENCE)
     }
@@ -119,10 +119,10 @@ impl Logbook {
         Ok(Logbook { path: path.to_owned(), database })
     }
 
-    /// Records that a device is about to be written. It is on disk when this returns.
+    /// Records that a device is about to be written. The record is on disk when this returns.
     ///
     /// # Errors
-    /// Where the logbook cannot be written.
+    /// Returns an error if the logbook cannot be written.
     pub fn intend(
         &mut self,
         at: Timestamp,
@@ -150,7 +150,7 @@ impl Logbook {
     /// Records how an intended write ended.
     ///
     /// # Errors
-    /// [`LogbookProblem::NotOpen`] where there is no such intent or it is concluded; else where the logbook cannot be
+    /// [`LogbookProblem::NotOpen`] if there is no such intent or it is concluded; otherwise if the logbook cannot be
     /// written.
     pub fn conclude(
         &mut self,
@@ -180,12 +180,12 @@ impl Logbook {
         }
     }
 
-    /// Returns the write cycles that this program has spent on a device. An intent without a conclusion counts as
-    /// planned, as it is not known whether the program died before or after the last byte. Writes by other programs are
-    /// not included: "at least".
+    /// Returns the write cycles that this program has spent on a device. An intent without a conclusion counts as planned,
+    /// as it is not known whether the program died before or after the last byte. Writes by other programs are not
+    /// included: "at least".
     ///
     /// # Errors
-    /// Where the logbook cannot be read.
+    /// Returns an error if the logbook cannot be read.
     pub fn write_cycles(&self, device: &DeviceKey) -> Result<u64, LogbookError> {
         let sql = "SELECT coalesce(sum(coalesce(cycles_spent, planned_cycles)), 0) FROM entry
                    WHERE kind = ?1 AND device_type = ?2 AND serial_number = ?3 AND is_virtual = ?4";
@@ -195,10 +195,10 @@ impl Logbook {
             .map_err(|error| self.failed(error))
     }
 
-    /// The last `limit` entries about a device, newest first.
+    /// Returns the last `limit` entries about a device, newest first.
     ///
     /// # Errors
-    /// Where the logbook cannot be read.
+    /// Returns an error if the logbook cannot be read.
     pub fn history(&self, device: &DeviceKey, limit: u32) -> Result<Vec<Entry>, LogbookError> {
         self.read_history(device, limit).map_err(|error| self.failed(error))
     }
@@ -214,7 +214,7 @@ impl Logbook {
     /// Records status codes that were read from a device. They are on disk when this returns.
     ///
     /// # Errors
-    /// Where the logbook cannot be written.
+    /// Returns an error if the logbook cannot be written.
     pub fn note_status(&mut self, at: Timestamp, device: &DeviceKey, codes: &str) -> Result<(), LogbookError> {
         let sql = "INSERT INTO status (at, kind, device_type, serial_number, is_virtual, codes)
                    VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
@@ -223,10 +223,10 @@ impl Logbook {
         self.database.execute(sql, row).map(drop).map_err(|error| self.failed(error))
     }
 
-    /// The last `limit` readings of status codes from a device, newest first.
+    /// Returns the last `limit` readings of status codes from a device, newest first.
     ///
     /// # Errors
-    /// Where the logbook cannot be read.
+    /// Returns an error if the logbook cannot be read.
     pub fn statuses(&self, device: &DeviceKey, limit: u32) -> Result<Vec<StatusEntry>, LogbookError> {
         self.read_statuses(device, limit).map_err(|error| self.failed(error))
     }
@@ -248,7 +248,7 @@ impl Logbook {
     }
 }
 
-/// The cycles one entry counts: with 32 bits no sum of entries overflows, and no EEPROM lives to see a thousandth of them.
+/// Limits the cycles of one entry: with 32 bits no sum of entries overflows, and no EEPROM survives a thousandth of them.
 fn countable(cycles: u64) -> u32 {
     u32::try_from(cycles).unwrap_or(u32::MAX)
 }

@@ -1,4 +1,4 @@
-//! The logbook's tables, and how an older logbook comes up to date. `user_version` holds the schema's number.
+//! The logbook's tables, and the migration of an older logbook. `user_version` holds the schema's number.
 
 use std::path::Path;
 use std::time::Duration;
@@ -51,7 +51,7 @@ const STEPS: [&str; 2] = [
 /// The schema this version knows.
 pub(super) const KNOWN: i64 = STEPS.len() as i64;
 
-/// Opens a database and brings its schema up to date.
+/// Opens a database and updates its schema.
 pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, LogbookProblem> {
     if let Some(folder) = path.parent() {
         create_folder(folder).map_err(LogbookProblem::Folder)?;
@@ -62,7 +62,7 @@ pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, Logboo
     database.busy_timeout(patience)?;
     // Before anything is changed, the journal's mode included.
     if let Err(problem) = check_version(&database) {
-        // Closing would tidy up after a newer version that crashed; that is its own affair.
+        // Closing would clean up after a newer version that crashed, which must be left to that version.
         let _ = database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true);
         return Err(problem);
     }
@@ -71,22 +71,23 @@ pub(super) fn open(path: &Path, patience: Duration) -> Result<Connection, Logboo
     Ok(database)
 }
 
-/// A time as the tables hold it.
+/// Returns a time as the tables hold it.
 pub(super) fn parse_time(text: &str) -> rusqlite::Result<Timestamp> {
     text.parse().map_err(|error: jiff::Error| rusqlite::Error::FromSqlConversionFailure(0, Type::Text, Box::new(error)))
 }
 
-/// Cycles as the tables hold them: SQLite knows no unsigned numbers.
+/// Converts cycles from the tables: SQLite has no unsigned numbers.
 pub(super) fn parse_cycles(count: i64) -> rusqlite::Result<u64> {
     u64::try_from(count).map_err(|_| rusqlite::Error::IntegralValueOutOfRange(0, count))
 }
 
-/// Readers do not wait for a writer, and every commit is flushed: an intent has to outlast a power failure.
+/// Selects a mode in which readers do not wait for a writer, and flushes every commit: an intent has to survive a power
+/// failure.
 fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
-    // The mode it has now comes back; a network disk that cannot have a WAL keeps its old one and works too.
+    // The query returns the resulting mode; a network disk without support for WAL keeps its old one and works too.
     match database.query_row("PRAGMA journal_mode = WAL", [], |row| row.get::<_, String>(0)) {
-        // Another window is switching or writing at this moment, and SQLite does not wait here: it would wait for a
-        // window that waits for this one. Either mode is safe; the next to open switches.
+        // Another window is switching or writing at this moment, and SQLite does not wait here: it would wait for a window
+        // that waits for this one. Either mode is safe; the next window to open switches.
         Err(error) if error.sqlite_error_code() == Some(ErrorCode::DatabaseBusy) => {}
         result => drop(result?),
     }
@@ -94,7 +95,7 @@ fn use_write_ahead_log(database: &Connection) -> rusqlite::Result<()> {
 }
 
 fn migrate(database: &mut Connection) -> Result<(), LogbookProblem> {
-    // Nearly every time there is nothing to do, and nothing to wait for.
+    // In almost all cases the schema is current, and no lock is needed.
     if check_version(database)? == STEPS.len() {
         return Ok(());
     }

@@ -1,4 +1,4 @@
-//! The logbook on a disk: counts, two windows, and every way in which its file can be unusable.
+//! Tests of the logbook on a disk: counts, two windows, and every way in which its file can be unusable.
 
 use std::fs;
 
@@ -18,7 +18,7 @@ fn device(serial_number: &str) -> DeviceKey {
     }
 }
 
-/// A folder, and where a logbook in it would be.
+/// Returns a folder, and the path of a logbook in it.
 fn place() -> (tempfile::TempDir, PathBuf) {
     let root = tempfile::tempdir().unwrap();
     let path = Store::at(root.path()).logbook_path();
@@ -159,7 +159,7 @@ fn a_locked_logbook_says_so() {
     let other = Connection::open(&path).unwrap();
     other.execute_batch("BEGIN IMMEDIATE").unwrap();
     assert_eq!(problem(logbook.intend(at(0), &device("1"), "x", 1, None)), LogbookProblem::Locked);
-    // Reading, and opening to read, wait for nobody.
+    // Reading, and opening to read, do not wait.
     assert_eq!(Logbook::open_patiently(&path, patience).unwrap().write_cycles(&device("1")), Ok(0));
     other.execute_batch("ROLLBACK").unwrap();
     logbook.intend(at(0), &device("1"), "x", 1, None).unwrap();

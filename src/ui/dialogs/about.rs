@@ -5,11 +5,11 @@ use egui::{ScrollArea, Ui};
 use crate::ui::controls::{at_the_right, button, modal, paragraph, row};
 use crate::ui::{Theme, icons};
 
-/// Licences of what ships inside the program.
+/// Licences of the built-in components.
 const FONT_LICENCES: &str = include_str!("../../../assets/fonts/LICENCES.txt");
 const CRATES: &str = include_str!("../../../assets/crates.txt");
 
-/// Draws the dialog. True: it is done with.
+/// Draws the dialog. Returns true when it is closed.
 pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
     let mut done = false;
     modal(ctx, theme, "about", 560.0, |ui| {
@@ -38,7 +38,7 @@ pub(in crate::ui) fn about_ui(ctx: &egui::Context, theme: &Theme) -> bool {
     done
 }
 
-/// Draws what the open page is about: its name and its help in the table of texts. True: it is done with.
+/// Draws the name and the help of the open page. Returns true when it is closed.
 pub(in crate::ui) fn help_ui(ctx: &egui::Context, theme: &Theme, (page, help): (&'static str, &'static str)) -> bool {
     let mut open = true;
     let title = format!("{}  {}", icons::BOOK_OPEN_TEXT, theme.say(page));

@@ -1,4 +1,4 @@
-//! The connection dialog: a link as a form, recent links, the ports of this machine, and the search for an encoder with
+//! The connection dialog: a link as a form, recent links, the ports of this computer, and the search for an encoder with
 //! unknown settings.
 
 pub(crate) mod entries;
@@ -30,10 +30,10 @@ pub(in crate::ui) struct ConnectView {
 /// Links offered that were used before.
 const LINKS: usize = 5;
 const WIDTH: f32 = 600.0;
-/// Height of two lines that say why it cannot go on.
+/// Height of two lines for the reason why it cannot continue.
 const WHY: f32 = 40.0;
 
-/// Draws the dialog, when it is open.
+/// Draws the dialog, if it is open.
 pub(in crate::ui) fn connect_ui(
     ctx: &egui::Context,
     theme: &Theme,
@@ -50,7 +50,7 @@ pub(in crate::ui) fn connect_ui(
             devices(ui, theme, tabs, dialog.device, actions);
         });
         ui.add_space(theme.space.inside);
-        // Always as high: nothing jumps away under the pointer.
+        // Constant height: nothing moves under the pointer.
         ScrollArea::vertical().max_height(height).auto_shrink(false).show(ui, |ui| {
             used_before(ui, theme, studio.settings.links(dialog.device), actions);
             if let Some(own) = tabs.device(dialog.device) {
@@ -76,7 +76,7 @@ pub(in crate::ui) fn connect_ui(
     });
 }
 
-/// The kinds of devices.
+/// Draws the kinds of devices.
 fn devices(ui: &mut Ui, theme: &Theme, tabs: TabViews, device: Tab, actions: &mut Vec<Action>) {
     for own in tabs.of_devices() {
         let word = tabs.title(theme, own);
@@ -105,7 +105,7 @@ fn used_before(ui: &mut Ui, theme: &Theme, links: &[String], actions: &mut Vec<A
     ui.add_space(theme.space.between);
 }
 
-/// The link as the command line takes it: it follows the form, and the form follows it.
+/// Draws the link as the command line takes it: it follows the form, and the form follows it.
 fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, actions: &mut Vec<Action>) {
     let hint = Text::new("connect.link_hint").with("link", dialog.example());
     let (word, hint) = (theme.say("connect.link"), theme.words(&hint));
@@ -123,7 +123,7 @@ fn link_ui(ui: &mut Ui, theme: &Theme, dialog: &Dialog, url: Option<&LinkUrl>, a
     });
 }
 
-/// Draws why the dialog cannot go on. Two lines are reserved for it, so that the buttons do not move under the pointer.
+/// Draws why the dialog cannot continue. Two lines are reserved for it, so that the buttons do not move under the pointer.
 fn why_ui(ui: &mut Ui, theme: &Theme, why: Option<&Text>) {
     let top = ui.cursor().top();
     match why {

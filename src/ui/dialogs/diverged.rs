@@ -1,4 +1,4 @@
-//! A profile that others have changed in its file: both versions side by side, and which one is taken.
+//! A profile that others have changed in its file: both versions side by side, and the choice between them.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -8,14 +8,14 @@ use crate::profile::Changed;
 use crate::ui::controls::{at_the_right, button, enabled_button, modal, options, paragraph, primary, problem};
 use crate::ui::{Theme, icons};
 
-/// Height of the list, so that a long one leaves the buttons in sight.
+/// Height of the list, so that a long one leaves the buttons visible.
 const LIST: f32 = 320.0;
-/// Most characters of a value that are shown: a memory has thousands.
+/// Maximum number of characters of a value displayed: a memory has thousands.
 const SHOWN: usize = 60;
 
-/// Draws the dialog, where there is something to decide.
+/// Draws the dialog, if there is something to decide.
 pub(in crate::ui) fn diverged_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
-    // A question that came of it stands before it.
+    // A resulting question is shown before it.
     let Some(diverged) = studio.diverged.as_ref().filter(|_| studio.question.is_none()) else { return };
     modal(ctx, theme, "diverged", 640.0, |ui| {
         ui.label(theme.heading(theme.say("diverged.title")));
@@ -63,7 +63,7 @@ fn row_ui(ui: &mut Ui, theme: &Theme, at: usize, row: &Row, actions: &mut Vec<Ac
     ui.add_space(theme.space.between);
 }
 
-/// A value on one line, with its beginning.
+/// Returns the beginning of a value on one line.
 fn shortened(value: &str) -> String {
     let words: Vec<&str> = value.split_whitespace().collect();
     let line = words.join(" ");

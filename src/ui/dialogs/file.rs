@@ -1,4 +1,4 @@
-//! Asking for a file: with the dialog of the system, on a thread of its own; where there is none, with a path to type.
+//! Asking for a file: with the dialog of the system, on its own thread; if there is none, with an entry for the path.
 
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -13,15 +13,15 @@ use crate::ui::{Theme, icons};
 pub(in crate::ui) struct FileView {
     question: FileQuestion,
     path: String,
-    /// From where a path counts that begins nowhere.
+    /// Base of a relative path.
     working: Option<PathBuf>,
     fresh: bool,
 }
 
-/// No person closes a dialog that fast: there was none.
+/// A user does not close a dialog this fast: there was none.
 const TOO_FAST: Duration = Duration::from_millis(250);
 
-/// Asks the question. The answer comes as an action; where the system has no dialogs, [`file_ui`] asks.
+/// Asks the question. The answer arrives as an action; if the system has no dialogs, [`file_ui`] asks.
 pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox) {
     let filter = theme.words(&kind(&question));
     if !has_dialogs() {
@@ -32,7 +32,7 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox
     let spawned = thread::Builder::new().name("dialog".to_owned()).spawn(move || {
         let began = Instant::now();
         let dialog = rfd::FileDialog::new().add_filter(filter, question.endings());
-        // Loggers end the names of their tables in many ways, and a trace is named as its user likes.
+        // Loggers use many extensions for their tables, and users name traces freely.
         let any = matches!(question, FileQuestion::OpenCapture | FileQuestion::Recording);
         let dialog = if any { dialog.add_filter("*", &["*"]) } else { dialog };
         let chosen = match question.suggested() {
@@ -61,12 +61,12 @@ pub(in crate::ui) fn ask(question: FileQuestion, theme: &Theme, mailbox: Mailbox
     }
 }
 
-/// On Linux the dialogs come from a portal on the session's bus.
+/// Returns whether there are dialogs: on Linux they come from a portal on the session's bus.
 fn has_dialogs() -> bool {
     !cfg!(target_os = "linux") || std::env::var_os("DBUS_SESSION_BUS_ADDRESS").is_some()
 }
 
-/// Returns what the system's dialog calls such files.
+/// Returns the name of such files for the system's dialog.
 fn kind(question: &FileQuestion) -> Text {
     match question {
         FileQuestion::Open | FileQuestion::Restore(_) | FileQuestion::Compare(_) | FileQuestion::Save { .. } => {
@@ -80,7 +80,7 @@ fn kind(question: &FileQuestion) -> Text {
     }
 }
 
-/// Returns what the dialog is for.
+/// Returns the title of the dialog.
 fn title(question: &FileQuestion) -> Text {
     match question {
         FileQuestion::Open => Text::new("file.open_title"),
@@ -96,7 +96,7 @@ fn title(question: &FileQuestion) -> Text {
 }
 
 impl FileView {
-    /// Asks for a path to be typed, beginning at the user's home where the question names no place.
+    /// Asks for a path to be typed, starting at the user's home unless the question gives a folder.
     pub(in crate::ui) fn new(question: FileQuestion, folders: &Folders) -> Self {
         let home = folders.home().unwrap_or(Path::new(""));
         let path = home.join(question.suggested().unwrap_or(Path::new("")));
@@ -105,7 +105,7 @@ impl FileView {
     }
 }
 
-/// Draws the dialog in which a path is typed. True: it is done with.
+/// Draws the dialog in which a path is typed. Returns true when it is closed.
 pub(in crate::ui) fn file_ui(
     ctx: &egui::Context,
     theme: &Theme,

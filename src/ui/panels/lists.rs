@@ -1,4 +1,4 @@
-//! Jobs and the log: what was done, and what happened.
+//! Jobs and the log: completed work, and notices.
 
 use egui::{RichText, ScrollArea, Ui};
 use egui_extras::{Column, TableBuilder};
@@ -8,7 +8,7 @@ use crate::ui::controls::{empty, severity};
 use crate::ui::{Theme, icons};
 
 const ROW: f32 = 22.0;
-/// Notices that are drawn; the log file has them all.
+/// Maximum number of notices drawn; the log file has them all.
 const SHOWN: usize = 200;
 const TIME: &str = "%H:%M:%S";
 

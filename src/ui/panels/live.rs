@@ -1,4 +1,4 @@
-//! The position, large, and the plot of what was recorded.
+//! The position, large, and the plot of its recording.
 
 use std::time::Duration;
 
@@ -10,15 +10,15 @@ use crate::ui::controls::{choice, empty, enabled_button, icon_button};
 use crate::ui::page::apart;
 use crate::ui::{Theme, Views, icons, plot};
 
-/// Microseconds from one reading of the position to the next; back to back first.
+/// Intervals of reading the position in microseconds; back to back first.
 const RATES: [(u64, &str); 4] =
     [(0, "live.fastest"), (50_000, "live.every_50"), (200_000, "live.every_200"), (1_000_000, "live.every_1000")];
-/// Likewise where an adapter streams them.
+/// Intervals if an adapter streams.
 const STREAMS: [(u64, &str); 3] = [(50, "live.stream_20k"), (200, "live.stream_5k"), (1_000, "live.stream_1k")];
 /// Polling rate if no readable one is chosen.
 const USUAL: u64 = 50_000;
 
-/// Height in points below which the numbers beside the position stand in one line.
+/// Height in points below which the numbers beside the position are on one line.
 pub(crate) const LOW: f32 = 460.0;
 
 /// Seconds after which an unchanged position is marked.
@@ -52,7 +52,7 @@ pub(in crate::ui) fn live_ui(
     }
 }
 
-/// A job keeps the position from being read. One that is over at once does not count: the number would only flicker.
+/// Returns whether a job prevents reading the position. A very short one does not count: the number would only flicker.
 fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     let waits = device.is_polling() && device.is_busy();
     let id = egui::Id::unique(device.id()).with("job_pause");
@@ -61,7 +61,7 @@ fn is_paused(ui: &Ui, device: &AnyDevice) -> bool {
     waits && share >= 1.0
 }
 
-/// The plot of what was recorded of a device.
+/// Draws the plot of a device's recording.
 pub(in crate::ui) fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -79,7 +79,8 @@ pub(in crate::ui) fn plot_ui(
     }
 }
 
-/// A word on the position beside it, cut where the panel ends: it must not make the panel wider than the window.
+/// Draws a word about the position beside it, truncated at the edge of the panel: it must not make the panel wider than the
+/// window.
 pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }

@@ -1,5 +1,5 @@
-//! The trace panel of the session that is shown: time, direction, bytes, meaning. The newest entry is at the bottom and
-//! stays visible until the user scrolls away.
+//! The trace panel of the selected session: time, direction, bytes, meaning. The newest entry is at the bottom and stays
+//! visible until the user scrolls away.
 
 use egui::{RichText, Ui};
 use egui_extras::{Column, TableBuilder};

@@ -1,10 +1,10 @@
-//! Ticks and their labels: round steps of values, and of time in the unit that its steps have. Pure.
+//! Ticks and their labels: round steps of values, and of time in a suitable unit. Pure.
 
 use crate::analysis::Time;
 use crate::app::recorder::SAMPLE;
 use crate::app::{Language, decimal};
 
-/// A step that is 1, 2 or 5 times a power of ten, so that `span` has at most so many of it.
+/// Returns a step that is 1, 2 or 5 times a power of ten, so that `span` has at most this many of it.
 pub(super) fn step(span: f64, most: f64) -> f64 {
     let least = span / most.max(1.0);
     if !least.is_finite() || least <= 0.0 {
@@ -17,28 +17,28 @@ pub(super) fn step(span: f64, most: f64) -> f64 {
 
 /// Decimals that a label needs at such steps.
 pub(super) fn decimals(step: f64) -> usize {
-    // 1e-300 and the like are no steps of anything that is measured.
+    // Steps such as 1e-300 do not occur in measurements.
     (-step.log10() - 1e-9).ceil().clamp(0.0, 12.0) as usize
 }
 
-/// The multiples of `step` from `low` to `high`.
+/// Returns the multiples of `step` from `low` to `high`.
 pub(super) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = f64> {
-    /// More than any picture has room for; a step of nothing would have no end.
+    /// More than fit into any picture; a step of zero would loop forever.
     const MOST: i64 = 200;
     let (first, last) = ((low / step).ceil(), (high / step).floor());
     let count = if (last - first).is_finite() { ((last - first) as i64 + 1).clamp(0, MOST) } else { 0 };
-    // Counted from the first, so that errors do not add up; −0 is 0.
+    // Counted from the first, so that errors do not accumulate; −0 is 0.
     (0..count).map(move |at| (first + at as f64) * step + 0.0)
 }
 
-/// A value as a label of an axis with such steps.
+/// Returns a value as a label of an axis with such steps.
 pub(super) fn value_label(value: f64, step: f64, language: Language) -> String {
     let decimals = decimals(step);
     if value.abs() >= 1e9 { format!("{value:.2e}") } else { decimal(value, decimals, language) }
 }
 
-/// A stretch of values that holds `low` to `high`, and ends at round steps so that it does not change with every sample;
-/// at least `least` of it is shown.
+/// Returns a range that contains `low` to `high`, and ends at round steps so that it does not change with every sample; it
+/// is at least `least` long.
 pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     let (low, high) = if high - low < least {
         let middle = f64::midpoint(low, high);
@@ -48,7 +48,7 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
     };
     let span = high - low;
     if !span.is_finite() || span <= 0.0 {
-        // So large that a double holds no difference: nothing that was measured.
+        // So large that a double cannot hold the difference: not a measured value.
         return (f64::MIN / 4.0, f64::MAX / 4.0);
     }
     let (low, high) = (low - span * 0.04, high + span * 0.04);
@@ -59,15 +59,15 @@ pub(super) fn round_range(low: f64, high: f64, least: f64) -> (f64, f64) {
 /// Ticks of a time axis.
 #[derive(Debug, PartialEq)]
 pub(super) struct TimeTicks {
-    /// When, and what stands there.
+    /// Time and label.
     pub(super) ticks: Vec<(Time, String)>,
-    /// The point that the labels count from, where they do not count from the beginning.
+    /// The reference point of the labels, if they do not count from the beginning.
     pub(super) base: Option<String>,
 }
 
 const SECOND: i64 = 1_000_000_000;
 
-/// Ticks from `from` to `to`, at most so many.
+/// Returns ticks from `from` to `to`, at most this many.
 pub(super) fn time_ticks(from: Time, to: Time, most: usize, language: Language) -> TimeTicks {
     let span = to.nanoseconds_since(from).max(1);
     let step = time_step(span, most.max(1));
@@ -99,7 +99,7 @@ pub(super) fn sample_ticks(from: Time, to: Time, most: usize, language: Language
     TimeTicks { ticks: ticks(number(from), number(to), step).map(tick).collect(), base: None }
 }
 
-/// A second, minute or hour before `from`.
+/// Returns a second, minute or hour before `from`.
 fn coarse_base(from: Time, step: i64) -> i64 {
     let grain = if step < SECOND / 1000 { SECOND / 10 } else { SECOND * 10 };
     from.nanoseconds().div_euclid(grain).saturating_mul(grain)
@@ -126,7 +126,7 @@ fn time_step(span: i64, most: usize) -> i64 {
     found.unwrap_or(2400 * HOUR * SECOND)
 }
 
-/// A time as a label of an axis with such steps: in its unit below a second, else as a clock.
+/// Returns a time as a label of an axis with such steps: in its unit below a second, else as a clock.
 fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     if nanoseconds == 0 {
         return "0".to_owned();
@@ -138,7 +138,7 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
         1_000_000..SECOND => ("ms", 1e6, 0),
         _ => return clock(nanoseconds, step, language),
     };
-    // Milliseconds of whole seconds are read as seconds.
+    // Milliseconds of whole seconds are shown as seconds.
     if step >= 1_000_000 && nanoseconds.abs() >= SECOND {
         let decimals = if step >= 100_000_000 {
             1
@@ -162,7 +162,7 @@ fn time_label(nanoseconds: i64, step: i64, language: Language) -> String {
     format!("{} {unit}", decimal(nanoseconds as f64 / per, decimals, language))
 }
 
-/// Whole seconds as a person reads them; tenths where a point is meant that lies between.
+/// Returns whole seconds as a clock; with tenths if the step is finer.
 fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
     let tenths = nanoseconds.unsigned_abs() / 100_000_000;
@@ -177,7 +177,7 @@ fn clock(nanoseconds: i64, step: i64, language: Language) -> String {
     }
 }
 
-/// A point in time as exactly as a picture of that many nanoseconds shows it.
+/// Returns a point in time as exactly as a picture of that many nanoseconds shows it.
 pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     let nanoseconds = time.nanoseconds();
     let digits = [(SECOND, 3), (SECOND / 1_000, 6), (0, 9)].into_iter().find(|(least, _)| span >= *least);
@@ -192,12 +192,12 @@ pub(super) fn instant(time: Time, span: i64, language: Language) -> String {
     }
 }
 
-/// The number of the sample at that place.
+/// Returns the number of the sample at that place.
 pub(super) fn sample_number(time: Time) -> String {
     time.nanoseconds().div_euclid(SAMPLE).to_string()
 }
 
-/// A length of time as a person reads it, with four digits or so.
+/// Returns a duration as text, with about four digits.
 pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     let sign = if nanoseconds < 0 { "-" } else { "" };
     let length = nanoseconds.unsigned_abs() as f64;
@@ -211,7 +211,7 @@ pub(super) fn duration(nanoseconds: i64, language: Language) -> String {
     format!("{sign}{} {unit}", decimal(length / per, 3, language))
 }
 
-/// A length of time with three digits, where there is little room.
+/// Returns a duration with three digits, for little space.
 pub(super) fn about(nanoseconds: i64, language: Language) -> String {
     let length = nanoseconds.unsigned_abs() as f64;
     if length >= 60e9 {

@@ -1,4 +1,4 @@
-//! Paints the chart: grid, axes, lines, cursors, the trigger and what is under the pointer.
+//! Paints the chart: grid, axes, lines, cursors, the trigger and the readout under the pointer.
 
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
@@ -82,7 +82,7 @@ fn value_axis(painter: &Painter, theme: &Theme, lane: &Lane, font: &FontId) {
     for value in axes::ticks(lane.range.0, lane.range.1, lane.step) {
         let y = axis.y(value).round();
         painter.hline(rect.x_range(), y, Stroke::new(1.0, theme.palette.line));
-        // Beside its line, or not at all: between two lanes there is room for half of one.
+        // Beside its line, or not at all: between two lanes there is space for half of one.
         if lane.empty || y < rect.top() + 2.0 || y > rect.bottom() - 2.0 {
             continue;
         }
@@ -108,11 +108,11 @@ fn lines(painter: &Painter, context: &Context<'_>, layout: &Layout, lane: &Lane,
     clipped.extend(shapes);
 }
 
-/// The name and unit of each line of a lane, in its colour.
+/// Paints the name and unit of each line of a lane, in its colour.
 fn names(painter: &Painter, context: &Context<'_>, lane: &Lane) {
     let theme = context.theme;
     if lane.rect.height() < LOW {
-        // They would cover the line; the numbers below have them too.
+        // They would cover the line; the numbers below show them too.
         return;
     }
     let mut place = lane.rect.min + vec2(8.0, 4.0);
@@ -142,7 +142,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
         let handle = Rect::from_center_size(pos2(x, layout.chart.top() + 8.0), vec2(16.0, 16.0));
         painter.rect_filled(handle, 3.0, palette.text);
         painter.text(handle.center(), Align2::CENTER_CENTER, cursor.word(), font.clone(), palette.sunken.into());
-        // Intersections with the lines: the raw samples that it reads.
+        // Intersections with the lines: the raw samples being read.
         for (lane, line) in layout.lanes.iter().flat_map(|lane| lane.lines.iter().map(move |line| (lane, line))) {
             if let Some(line) = context.recorder.line(*line) {
                 dot(painter, context, layout, lane, line, time);
@@ -151,7 +151,7 @@ fn cursors(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &Fon
     }
 }
 
-/// The raw sample nearest to a time, as a dot.
+/// Draws the raw sample nearest to a time, as a dot.
 fn dot(
     painter: &Painter,
     context: &Context<'_>,
@@ -195,7 +195,7 @@ fn under_pointer(painter: &Painter, context: &Context<'_>, layout: &Layout, plac
     }
 }
 
-/// The level that is waited for, and where it happened.
+/// Paints the level of the trigger, and the place of the event.
 fn trigger(painter: &Painter, context: &Context<'_>, layout: &Layout, font: &FontId) {
     let Some((trigger, state)) = context.recorder.trigger() else { return };
     let palette = context.theme.palette;

@@ -1,5 +1,5 @@
-//! The layout of a plot: lanes one below the other, or one for all; the values of each; and the reduced samples, which
-//! are recalculated only when samples or view have changed.
+//! The layout of a plot: lanes one below the other, or one for all; the values of each; and the reduced samples, which are
+//! recalculated only when samples or view have changed.
 
 use std::ops::Range;
 
@@ -12,12 +12,12 @@ use crate::app::recorder::{LineId, Recorder, Series, Stamp};
 
 /// Between two lanes, in points.
 const BETWEEN: f32 = 6.0;
-/// Room for the labels of the values at the left, in points: at least, and at most.
+/// Minimum and maximum width of the value labels at the left, in points.
 const LEAST: f32 = 44.0;
 const MOST: f32 = 110.0;
 /// Room for the labels of the time at the foot, in points.
 const FOOT: f32 = 18.0;
-/// A character of an axis label, in points: the labels' font has one width.
+/// Width of a character of an axis label in points: the font is monospaced.
 const LETTER: f32 = 6.7;
 
 /// A part of the plot with an axis of values.
@@ -27,7 +27,7 @@ pub(super) struct Lane {
     pub(super) range: (f64, f64),
     /// Between two ticks.
     pub(super) step: f64,
-    /// There is nothing to be seen in it.
+    /// No samples are visible in it.
     pub(super) empty: bool,
 }
 
@@ -51,11 +51,11 @@ pub(super) struct Reduced {
     pictures: Vec<(LineId, Picture)>,
     /// The inputs of each picture.
     made: Vec<(LineId, PictureInputs)>,
-    /// How much room the labels of the values took.
+    /// Width of the value labels.
     gutter: f32,
 }
 
-/// The inputs of a picture: if they are unchanged, so is the picture.
+/// Inputs of a picture: if they are unchanged, so is the picture.
 #[derive(Clone, PartialEq)]
 struct PictureInputs {
     samples: Option<Stamp>,
@@ -68,7 +68,7 @@ impl Reduced {
         self.pictures.iter().find(|(own, _)| *own == line).map(|(_, picture)| picture)
     }
 
-    /// Makes the pictures of what is shown, as far as something has changed.
+    /// Updates the pictures of the displayed lines if anything has changed.
     fn update(&mut self, recorder: &Recorder, grid: &Grid) {
         let shown = |id: &LineId| recorder.visible_series().any(|line| line.id == *id);
         self.pictures.retain(|(id, _)| shown(id));
@@ -80,7 +80,7 @@ impl Reduced {
             if self.made.iter().any(|(id, made)| *id == line.id && *made == wanted) {
                 continue;
             }
-            // Lines whose samples were taken together are cut together.
+            // Lines whose samples were taken together share one cut.
             if !cuts.iter().any(|(made, _)| *made == wanted) {
                 cuts.push((wanted.clone(), history.cut(grid)));
             }
@@ -97,10 +97,10 @@ impl Reduced {
         }
     }
 
-    /// The least and the greatest value of what is visible, in the line's unit.
+    /// Returns the minimum and maximum of the visible values, in the line's unit.
     fn extent(&self, line: &Series, time: &TimeAxis, chart: Rect) -> Option<(f64, f64)> {
         let picture = self.picture(line.id)?;
-        // The neighbours beyond the edges are there for the line to lead to them, not to be fitted.
+        // The neighbours beyond the edges are included for the line to lead to them, and do not count for the range.
         let visible = |pixel: &&crate::analysis::history::Pixel| {
             time.x(pixel.to) >= chart.left() && time.x(pixel.from) <= chart.right()
         };
@@ -113,10 +113,10 @@ impl Reduced {
     }
 }
 
-/// Lays out what is shown in `rect`.
+/// Lays out the displayed lines in `rect`.
 pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, reduced: &mut Reduced) -> Layout {
-    // How wide the labels are shows only when the values are known, which depends on the width: what the picture before
-    // needed is tried first, so that a picture that changes little is made once.
+    // The width of the labels is known only with the values, which depend on the width: the width of the previous frame is
+    // tried first, so that a picture that changes little is made once.
     let (from, to) = recorder.window();
     let groups = groups(recorder);
     let mut gutter = reduced.gutter.clamp(LEAST, MOST);
@@ -131,7 +131,7 @@ pub(super) fn layout(recorder: &Recorder, rect: Rect, pixels_per_point: f32, red
         let lanes = lanes(chart, &groups, &time, reduced);
         let needed = (letters(&lanes) as f32 * LETTER + 10.0).clamp(LEAST, MOST);
         if needed <= gutter || rect.width() < gutter * 3.0 {
-            // Given back in the next picture, when it is more than a letter or two: it is not to jump with every sample.
+            // Released in the next frame, if it is more than a character or two: it must not jump with every sample.
             reduced.gutter = if gutter - needed > 2.0 * LETTER { needed } else { gutter };
             return Layout { lanes, time, chart };
         }
@@ -148,7 +148,7 @@ fn letters(lanes: &[Lane]) -> usize {
     lanes.iter().filter(|lane| !lane.empty).map(longest).max().unwrap_or(0)
 }
 
-/// The lines of each lane.
+/// Returns the lines of each lane.
 fn groups(recorder: &Recorder) -> Vec<Vec<&Series>> {
     let shown: Vec<&Series> = recorder.visible_series().collect();
     if recorder.has_one_axis() { vec![shown] } else { shown.into_iter().map(|line| vec![line]).collect() }
@@ -168,7 +168,7 @@ fn lanes(chart: Rect, groups: &[Vec<&Series>], time: &TimeAxis, reduced: &Reduce
     groups.iter().enumerate().map(lane).collect()
 }
 
-/// The values that a lane shows: what the user chose, or what fits; `None` where there are none.
+/// Returns the range of values of a lane: as chosen by the user, or fitted; `None` if there are none.
 fn range(lines: &[&Series], time: &TimeAxis, chart: Rect, reduced: &Reduced) -> Option<(f64, f64)> {
     if let Some(range) = lines.iter().find_map(|line| line.range) {
         return Some(range);
@@ -187,7 +187,7 @@ mod tests {
     use crate::app::Text;
     use crate::app::recorder::{RecorderAction, Scale};
 
-    /// 1000 samples, a microsecond apart, of one value.
+    /// Returns 1000 samples, a microsecond apart, of one value.
     fn recorder(value: f64) -> Recorder {
         let mut recorder = Recorder::new(1_000_000);
         let group = recorder.add_group(&[Kind::Real], 10_000, None);
@@ -229,7 +229,7 @@ mod tests {
         let chart = layout(&recorder, RECT, 1.0, &mut reduced).chart;
         assert!(reduced.made == made, "nothing has changed");
         assert_eq!(chart.left(), RECT.left() + gutter);
-        // Wide labels of an earlier picture do not take the room for ever.
+        // Wide labels of an earlier picture do not keep the space forever.
         let short = self::recorder(1.0);
         layout(&short, RECT, 1.0, &mut reduced);
         assert!(layout(&short, RECT, 1.0, &mut reduced).chart.left() < chart.left());

@@ -1,7 +1,8 @@
-//! The plot: draws a recorder, and turns what the pointer and the keyboard do on it into actions.
+//! The plot: draws a recorder, and turns input of the pointer and the keyboard into actions.
 //!
-//! Drag: a box to look into; on a cursor: moves it. Right button or Shift: moves the picture. Wheel: longer or shorter about
-//! the pointer. Double click: everything. Keys: ← → move, + − zoom, Home everything, End the newest, A and B the cursors.
+//! Drag: a box to zoom into; on a cursor: moves it. Right button or Shift: moves the picture. Wheel: longer or shorter
+//! about the pointer. Double click: everything. Keys: ← → move, + − zoom, Home everything, End the newest, A and B the
+//! cursors.
 
 mod axes;
 mod chart;
@@ -23,14 +24,14 @@ use crate::app::{Action, RecorderOwner};
 /// The state of a plot between frames.
 #[derive(Default)]
 pub struct PlotUiState {
-    /// Whose plot it was.
+    /// Recorder of the plot.
     owner: Option<RecorderOwner>,
     reduced: lanes::Reduced,
     drag: Option<pointer::Drag>,
     trigger: trigger::Form,
-    /// A picture of it that is wanted.
+    /// The requested picture of it.
     shot: snapshot::Screenshot,
-    /// It takes the place of the page; `None`: it cannot.
+    /// It fills the page; `None`: it cannot.
     large: Option<bool>,
 }
 
@@ -45,7 +46,7 @@ impl PlotUiState {
         self.large == Some(true)
     }
 
-    /// Moves the plot back into its panel; false if it was there.
+    /// Moves the plot back into its panel; returns false if it was there.
     pub(in crate::ui) fn make_small(&mut self) -> bool {
         let was = self.is_large();
         self.large = self.large.map(|_| false);
@@ -53,7 +54,7 @@ impl PlotUiState {
     }
 }
 
-/// Whose plot it is, and where its actions go.
+/// Recorder of the plot, and the list for its actions.
 pub(super) struct Context<'a> {
     theme: &'a Theme,
     recorder: &'a Recorder,
@@ -67,7 +68,7 @@ impl Context<'_> {
     }
 }
 
-/// Draws a recorder with its toolbar in what room there is. `invitation` says what fills it.
+/// Draws a recorder with its toolbar in the available space. `invitation` tells how to fill it.
 pub fn plot_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -85,10 +86,10 @@ pub fn plot_ui(
     toolbar::toolbar_ui(ui, context, view);
     let top = ui.cursor().top();
     let below = ui.available_height();
-    // The readout stands below the chart and takes what it took in the picture before.
+    // The readout is below the chart and takes its height from the previous frame.
     let readout_id = ui.scope_id().with("readout");
     let readout = ui.data(|data| data.get_temp::<f32>(readout_id)).unwrap_or(0.0);
-    // In a low panel the numbers scroll: the chart keeps half of the room.
+    // In a low panel the numbers scroll: the chart keeps half of the space.
     let height = (below - readout.min(below * 0.5) - ui.spacing().item_spacing.y).max(60.0);
     let hovered = chart_ui(ui, context, view, height, invitation);
     let numbers = egui::ScrollArea::vertical().id_salt("readout").auto_shrink([false, true]);
@@ -97,14 +98,14 @@ pub fn plot_ui(
         ui.data_mut(|data| data.insert_temp(readout_id, used));
         ui.ctx().request_repaint();
     }
-    // The tools are no part of the picture; the numbers are where all of them can be seen.
+    // The tools are not part of the picture; the numbers are if all of them are visible.
     let shown = ui.min_rect();
     let bottom = if used <= shown.bottom() - top - height + 0.5 { shown.bottom() } else { top + height };
     let picture = Rect::from_min_max(egui::pos2(shown.left(), top), egui::pos2(shown.right(), bottom));
     view.shot.take(ui, picture, context.actions);
 }
 
-/// Draws the chart; gives the time under the pointer.
+/// Draws the chart; returns the time under the pointer.
 fn chart_ui(
     ui: &mut Ui,
     context: &mut Context<'_>,

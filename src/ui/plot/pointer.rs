@@ -7,7 +7,7 @@ use super::lanes::Layout;
 use crate::analysis::Time;
 use crate::app::recorder::{Cursor, RecorderAction};
 
-/// So near, in points, the pointer is on a cursor.
+/// Distance in points within which the pointer is on a cursor.
 const NEAR: f32 = 6.0;
 /// A box that is smaller, in points, was a click.
 const CLICK: f32 = 5.0;
@@ -16,12 +16,12 @@ const CLICK: f32 = 5.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Drag {
     Cursor(Cursor),
-    /// A box to look into.
+    /// A box to zoom into.
     Box {
         from: Pos2,
         to: Pos2,
     },
-    /// The picture: what lay under the pointer.
+    /// The picture, with the time that was under the pointer.
     Picture {
         under: Time,
         window: (Time, Time),
@@ -88,7 +88,7 @@ fn follow(drag: &mut Drag, place: Pos2, context: &mut Context<'_>, layout: &Layo
         }
         Drag::Box { to, .. } => *to = place,
         Drag::Picture { under, window: (from, to) } => {
-            // Seen from where it began: the layout moves with it.
+            // Relative to its start: the layout moves with it.
             let here = from.plus((f64::from(place.x - layout.chart.left()) / layout.time.scale) as i64);
             let by = under.nanoseconds_since(here);
             context.act(RecorderAction::Look(from.plus(by), to.plus(by)));
@@ -104,7 +104,7 @@ fn look_into(chosen: Rect, context: &mut Context<'_>, layout: &Layout) {
     }
     let Some(lane) = layout.lanes.iter().find(|lane| lane.rect.contains(chosen.center())) else { return };
     let part = chosen.intersect(lane.rect).height();
-    // No one drags along a line exactly: a flat box means time only, and so does one over the whole lane.
+    // Dragging is never exactly along a line: a flat box means time only, and so does one over the whole lane.
     if part >= CLICK * 3.0 && part < lane.rect.height() * 0.9 {
         let axis = lane.axis();
         let low = axis.value(chosen.bottom().min(lane.rect.bottom()));
@@ -121,7 +121,7 @@ fn hover(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layou
         ui.ctx().set_cursor_icon(egui::CursorIcon::ResizeHorizontal);
     }
     let zoom = ui.input(egui::InputState::zoom_delta);
-    // Taken: the page around the plot is not to move as well.
+    // Consumed: the page around the plot must not scroll as well.
     let scroll = ui.input_mut(|input| std::mem::take(&mut input.smooth_scroll_delta));
     let factor = f64::from((-scroll.y * 0.005).exp() / zoom);
     if (factor - 1.0).abs() > 1e-4 {
@@ -136,7 +136,7 @@ fn keys(ui: &Ui, response: &Response, context: &mut Context<'_>, layout: &Layout
     if !response.has_focus() {
         return;
     }
-    // Else the arrows would lead to the next widget.
+    // Otherwise the arrows would lead to the next widget.
     let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     let pressed = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));

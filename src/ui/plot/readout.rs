@@ -1,4 +1,5 @@
-//! The numbers below the chart: of each line the raw sample under the pointer, or the newest, and what the cursors tell.
+//! The numbers below the chart: for each line the raw sample under the pointer, or the newest, and the readings of the
+//! cursors.
 
 use egui::{RichText, Sense, Ui, vec2};
 
@@ -46,10 +47,10 @@ pub(super) fn readout_ui(ui: &mut Ui, context: &Context<'_>, hovered: Option<Tim
     }
 }
 
-/// Width in points from which the numbers of all lines stand below each other.
+/// Width in points from which the numbers of all lines are below each other.
 const WIDE: f32 = 640.0;
 
-/// A row a line, a column a number.
+/// Draws a row per line, a column per number.
 fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
     let (theme, recorder) = (context.theme, context.recorder);
     let right = |ui: &mut Ui, words: RichText| {
@@ -65,7 +66,7 @@ fn table(ui: &mut Ui, context: &Context<'_>, hovered: Option<Time>) {
         let row = |ui: &mut Ui, cells: Vec<RichText>| {
             let last = cells.len().saturating_sub(1);
             for (at, words) in cells.into_iter().enumerate() {
-                // The last column has no edge at the right to lean on.
+                // The last column has no right edge for alignment.
                 if at == last {
                     ui.label(words);
                 } else {
@@ -92,7 +93,7 @@ fn name(ui: &mut Ui, theme: &Theme, line: &Series) {
     ui.label(theme.caption(theme.words(&line.name)));
 }
 
-/// The raw sample under the pointer, or the newest.
+/// Returns the raw sample under the pointer, or the newest.
 fn now(context: &Context<'_>, line: &Series, hovered: Option<Time>) -> String {
     let sample = hovered.map_or_else(|| newest(context, line), |time| context.recorder.at(line, time));
     sample.map_or_else(|| "–".to_owned(), |sample| value(context.theme, line, &sample))
@@ -112,7 +113,7 @@ fn figures(theme: &Theme, line: &Series, measured: &Measured) -> Vec<(String, St
             (theme.say("recorder.mean"), number(Some(between.mean))),
             (theme.say("recorder.min"), number(Some(between.min))),
             (theme.say("recorder.max"), number(Some(between.max))),
-            // Noise is smaller than what is measured.
+            // Noise is smaller than the measured values.
             ("σ".to_owned(), theme.number(between.deviation, decimals + 1)),
             ("n".to_owned(), between.count.to_string()),
         ]);
@@ -134,7 +135,7 @@ fn remarks(ui: &mut Ui, theme: &Theme, line: &Series, measured: Option<&Measured
     }
 }
 
-/// The last sample of a line.
+/// Returns the last sample of a line.
 fn newest(context: &Context<'_>, line: &Series) -> Option<Sample> {
     let history = context.recorder.history(line)?;
     history.sample(line.column(), history.all().end.checked_sub(1)?)
@@ -153,7 +154,7 @@ fn small(theme: &Theme, words: impl Into<String>) -> RichText {
 }
 
 fn figure(ui: &mut Ui, theme: &Theme, label: &str, value: &str) {
-    // Sign and number stay together where a line ends.
+    // Sign and number stay together at the end of a line.
     let mut job = egui::text::LayoutJob::default();
     let format = |size, colour: crate::app::Rgb| egui::TextFormat {
         font_id: egui::FontId::monospace(size),

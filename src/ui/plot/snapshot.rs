@@ -1,5 +1,5 @@
-//! A picture of the plot: the window gives its pixels some frames later, and a part of them is kept. The plot has to be in
-//! sight as a whole, and nothing may stand over it: no menu, no pointer.
+//! A picture of the plot: the window delivers its pixels some frames later, and a part of them is kept. The whole plot must
+//! be visible, without a menu or the pointer over it.
 
 use std::sync::{Arc, OnceLock};
 
@@ -7,14 +7,14 @@ use egui::{ColorImage, Context, Rect, Ui};
 
 use crate::app::{Action, Picture};
 
-/// A picture that is wanted.
+/// Requested picture.
 #[derive(Default)]
 pub(super) enum Screenshot {
     #[default]
     None,
-    /// It is asked for as soon as the plot is in sight; so many frames were waited.
+    /// It is requested as soon as the plot is visible; number of frames waited.
     Wanted(usize),
-    /// The window was asked for its pixels; where the plot was in the frame before this one.
+    /// The pixels of the window were requested; place of the plot in the previous frame.
     Asked(Arc<OnceLock<Arc<ColorImage>>>, Rect),
 }
 
@@ -22,19 +22,19 @@ pub(super) enum Screenshot {
 const FRAMES: usize = 60;
 
 impl Screenshot {
-    /// Wishes a picture: not of this frame, in which the menu is open that it was wished in.
+    /// Requests a picture: not of this frame, in which the menu with the request is open.
     pub(super) fn request(&mut self, ctx: &Context) {
         *self = Screenshot::Wanted(0);
         ctx.request_repaint();
     }
 
-    /// The next frame may be the one that is kept.
+    /// Returns whether the next frame may be the one that is kept.
     pub(super) fn is_wanted(&self) -> bool {
         !matches!(self, Screenshot::None)
     }
 
-    /// The plot was drawn at `plot`: asks for the pixels when it can be seen as a whole, and takes its part of them when they
-    /// have come.
+    /// Handles the plot drawn at `plot`: requests the pixels when the whole of it is visible, and takes its part of them
+    /// when they have arrived.
     pub(super) fn take(&mut self, ui: &Ui, plot: Rect, actions: &mut Vec<Action>) {
         match self {
             Screenshot::None => {}
@@ -55,7 +55,7 @@ impl Screenshot {
             }
             Screenshot::Wanted(_) => *self = Screenshot::Asked(ask(ui.ctx()), plot),
             Screenshot::Asked(place, before) => match place.get().cloned() {
-                // The pixels are those of the frame before.
+                // The pixels are those of the previous frame.
                 Some(image) => {
                     let wanted = *before;
                     *self = Screenshot::None;
@@ -119,7 +119,7 @@ mod tests {
         );
     }
 
-    /// Draws a frame with a plot of this place in an area of this size; what was asked for in it.
+    /// Draws a frame with a plot at this place in an area of this size; returns the requests made in it.
     fn frame(ctx: &Context, shot: &mut Screenshot, area: f32, plot: Rect) -> Vec<Action> {
         let mut actions = Vec::new();
         let screen = Rect::from_min_size(pos2(0.0, 0.0), egui::vec2(area, area));
@@ -132,8 +132,8 @@ mod tests {
         actions
     }
 
-    /// Issue 22.14: the picture is of the plot as it stood in the frame whose pixels came, without the menu; nothing around
-    /// it, and all of it.
+    /// Issue 22.14: the picture is of the plot as it was in the frame of the pixels, without the menu; nothing around it,
+    /// and all of it.
     #[test]
     fn the_picture_is_of_the_plot_as_it_stood_in_its_frame() {
         let ctx = Context::default();
@@ -144,7 +144,7 @@ mod tests {
         assert!(frame(&ctx, &mut shot, 8.0, place(1.0)).is_empty());
         assert!(matches!(shot, Screenshot::Wanted(1)), "the menu is still open in this frame");
         frame(&ctx, &mut shot, 8.0, place(1.0));
-        // It moves in the frame that is kept, and again before the pixels have come.
+        // It moves in the kept frame, and again before the pixels have arrived.
         frame(&ctx, &mut shot, 8.0, place(4.0));
         let Screenshot::Asked(pixels, _) = &shot else { panic!() };
         let mut image = ColorImage::filled([8, 8], Color32::BLACK);
@@ -158,7 +158,7 @@ mod tests {
         assert!(!shot.is_wanted());
     }
 
-    /// Issue 22.14: a plot of which a part is out of sight gives no picture, and that is said.
+    /// Issue 22.14: a plot that is partly invisible gives no picture, which is reported.
     #[test]
     fn a_plot_that_is_not_wholly_in_sight_gives_no_picture() {
         let ctx = Context::default();

@@ -1,4 +1,4 @@
-//! The plot's tools: standing still and going on, how long a stretch, cursors, trigger, lines and their units, export.
+//! The plot's tools: hold and follow, the length of the view, cursors, trigger, lines and their units, export.
 
 use egui::{RichText, Ui};
 
@@ -26,7 +26,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
     let (theme, recorder) = (context.theme, context.recorder);
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = egui::vec2(theme.space.inside, theme.space.inside);
-        // In one row beside each other in a panel at the side of the window.
+        // In one row in a panel at the side of the window.
         ui.spacing_mut().button_padding.x = 6.0;
         let tool = |ui: &mut Ui, enabled: bool, icon: &str, id: &'static str| {
             icon_button(ui, enabled, icon, &theme.say(id)).clicked()
@@ -61,7 +61,7 @@ pub(super) fn toolbar_ui(ui: &mut Ui, context: &mut Context<'_>, view: &mut Plot
     state(ui, context);
 }
 
-/// A button that stays in.
+/// Draws a button that stays in.
 fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &str, id: &'static str) -> bool {
     let word = context.theme.say(id);
     let button = egui::Button::selectable(on, icon).frame_when_inactive(true).min_size(egui::vec2(28.0, 28.0));
@@ -74,7 +74,7 @@ fn switch(ui: &mut Ui, context: &Context<'_>, enabled: bool, on: bool, icon: &st
 fn span(ui: &mut Ui, context: &mut Context<'_>) {
     const SECOND: i64 = 1_000_000_000;
     if context.recorder.counts() {
-        // Seconds mean nothing here; zooming chooses how many.
+        // Seconds have no meaning here; zooming selects the number of samples.
         return;
     }
     let (theme, span) = (context.theme, context.recorder.span());

@@ -1,5 +1,5 @@
-//! A line of samples as shapes: dense ones as one mesh without smoothed edges, which costs little to fill; sparse ones as
-//! a smooth line with its points. Breaks stay gaps, and what is marked bad or with a warning stays to be seen.
+//! A line of samples as shapes: dense ones as one mesh without antialiasing, which is cheap to fill; sparse ones as a
+//! smooth line with its points. Breaks stay gaps, and samples marked bad or with a warning stay visible.
 
 use egui::epaint::{Vertex, WHITE_UV};
 use egui::{Color32, Mesh, Pos2, Rect, Shape, Stroke, pos2, vec2};
@@ -9,12 +9,12 @@ use crate::analysis::history::{Flags, Picture};
 
 /// Thickness of a line in points.
 const WIDTH: f32 = 1.5;
-/// Points of a line up to which it is drawn smoothly.
+/// Number of points of a line up to which it is drawn smoothly.
 const SMOOTH: usize = 1500;
 /// Least distance of samples, in points, from which each gets a dot.
 const DOTS: f32 = 8.0;
 
-/// From time to points on the screen.
+/// Conversion from time to screen coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimeAxis {
     /// The time at `left`.
@@ -42,7 +42,7 @@ impl TimeAxis {
     }
 }
 
-/// From values to points on the screen.
+/// Conversion from values to screen coordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValueAxis {
     /// The value at `bottom`.
@@ -60,7 +60,7 @@ impl ValueAxis {
     }
 
     pub(super) fn y(&self, value: f64) -> f32 {
-        // Far outside it makes no difference where; beyond what an f32 holds it would.
+        // Far outside the exact place does not matter; beyond the range of f32 it would.
         let y = f64::from(self.bottom) - (value - self.low) * self.scale;
         y.clamp(-1e6, 1e6) as f32
     }
@@ -74,7 +74,7 @@ impl ValueAxis {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pen {
     pub(super) colour: Color32,
-    /// From the samples' own unit to the one that is shown.
+    /// From the samples' own unit to the displayed one.
     pub(super) factor: f64,
     /// Flagged samples are marked.
     pub(super) marks: bool,
@@ -83,7 +83,7 @@ pub(super) struct Pen {
     pub(super) warning: Color32,
 }
 
-/// The shapes of a line in a lane.
+/// Draws the shapes of a line in a lane.
 pub(super) fn shapes(
     picture: &Picture,
     lane: Rect,
@@ -102,7 +102,7 @@ pub(super) fn shapes(
     }
 }
 
-/// One upright bar a pixel column, from the least to the greatest value, reaching to where the column before it ended.
+/// Draws one upright bar per pixel column, from the minimum to the maximum, extended to the end of the previous column.
 fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     mesh.reserve_vertices(picture.pixels.len() * 4);
@@ -113,11 +113,11 @@ fn dense(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen:
         let y = |own: f64| value.y(own * pen.factor);
         let (one, other) = (y(values.min), y(values.max));
         let (mut top, mut bottom) = (one.min(other), one.max(other));
-        // Its last sample lies in it, while its first may be a little before it.
+        // Its last sample is in it, while its first may be slightly before it.
         let left = time.column(pixel.to);
         if let Some((x, y)) = before.filter(|_| pixel.joined) {
             (top, bottom) = (top.min(y), bottom.max(y));
-            // Columns between which there are no samples are bridged.
+            // Columns without samples in between are bridged.
             if left > x + 0.01 {
                 bar(
                     &mut mesh,
@@ -158,7 +158,7 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
     for (at, pixel) in picture.pixels.iter().enumerate() {
         let Some(values) = pixel.values else { continue };
         let here = pos2(time.x(pixel.from), value.y(values.first * pen.factor));
-        // One that is joined to neither side would not be seen.
+        // One that is joined to neither side would be invisible.
         let lonely = !pixel.joined && picture.pixels.get(at + 1).is_none_or(|next| !next.joined);
         if (dots || lonely) && lane.contains(here) {
             out.push(Shape::circle_filled(here, 2.0, pen.colour));
@@ -182,11 +182,11 @@ fn sparse(picture: &Picture, lane: Rect, time: &TimeAxis, value: &ValueAxis, pen
     }
 }
 
-/// A straight piece as two triangles.
+/// Draws a straight piece as two triangles.
 fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     let along = (to - from).normalized() * (WIDTH / 2.0);
     let (across, first) = (along.rot90(), mesh.vertices.len() as u32);
-    // A little longer than it is, so that pieces at an angle leave no notch.
+    // Slightly extended, so that pieces at an angle leave no notch.
     let (from, to) = (from - along * 0.5, to + along * 0.5);
     mesh.vertices.extend([from + across, to + across, from - across, to - across].map(|pos| Vertex {
         pos,
@@ -197,7 +197,7 @@ fn segment(mesh: &mut Mesh, from: Pos2, to: Pos2, color: Color32) {
     mesh.add_triangle(first + 2, first + 1, first + 3);
 }
 
-/// The part of a straight piece that lies in a rectangle (Liang and Barsky).
+/// Returns the part of a straight piece inside a rectangle (Liang and Barsky).
 fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     if rect.contains(from) && rect.contains(to) {
         return Some((from, to));
@@ -223,7 +223,7 @@ fn clip(from: Pos2, to: Pos2, rect: Rect) -> Option<(Pos2, Pos2)> {
     (enters <= leaves).then(|| (from + along * enters, from + along * leaves))
 }
 
-/// Ticks at the foot of the lane for what is bad or comes with a warning, at any zoom.
+/// Draws ticks at the bottom of the lane for bad samples and warnings, at any zoom.
 fn marks(picture: &Picture, lane: Rect, time: &TimeAxis, pen: &Pen, out: &mut Vec<Shape>) {
     let mut mesh = Mesh::default();
     for pixel in &picture.pixels {
@@ -261,7 +261,7 @@ mod tests {
         assert_eq!(clip(pos2(50.0, -50.0), pos2(50.0, 25.0), LANE), Some((pos2(50.0, 0.0), pos2(50.0, 25.0))));
     }
 
-    /// 100 columns of a nanosecond each: `count` samples evenly over them, of which some are marked.
+    /// Draws 100 columns of a nanosecond each: `count` samples evenly over them, some of them marked.
     fn drawn(count: i64, value: impl Fn(i64) -> f64, flags: impl Fn(i64) -> Flags) -> Vec<Shape> {
         let mut history = History::new(&[Kind::Real], 1_000_000);
         let times: Vec<Time> = (0..count).map(|at| Time::from_nanoseconds(at * 100_000 / count)).collect();

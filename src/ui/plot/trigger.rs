@@ -1,4 +1,4 @@
-//! The form of a trigger: which line, what to wait for, at which level, how much before it is kept.
+//! The form of a trigger: the line, the event, the level, and the share before it.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! A bit in its cell, as every strip of bits shows it: in the colour of its field, a one stronger than a zero.
+//! A bit in its cell, as in every strip of bits: in the colour of its field, a one stronger than a zero.
 
 use egui::{Align2, Color32, CornerRadius, FontId, Painter, Rect};
 
@@ -6,13 +6,13 @@ use crate::ui::Theme;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BitCell<'a> {
-    /// The colour of its field.
+    /// Colour of its field.
     pub(crate) ink: Color32,
     /// The bit; `None`: not known.
     pub(crate) bit: Option<bool>,
     /// The text in place of an unknown bit.
     pub(crate) blank: &'a str,
-    /// It tells of something wrong: filled with its colour.
+    /// It reports an error: filled with its colour.
     pub(crate) alarm: bool,
 }
 

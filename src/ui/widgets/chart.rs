@@ -1,11 +1,11 @@
-//! Small curves and bars that stand still: the position error over a period, its harmonics, a spectrum. Drawn by
-//! egui_plot, in the window's look.
+//! Small static curves and bars: the position error over a period, its harmonics, a spectrum. Drawn by egui_plot, in the
+//! window's theme.
 //!
-//! * **Size**: as wide as there is room, as high as is given.
-//! * **Keyboard**: nothing to operate; Tab passes it.
+//! * **Size**: the available width, the given height.
+//! * **Keyboard**: none; Tab skips it.
 //! * **Pointer**: the value under it.
-//! * **Accessible**: an image with the label and the value given.
-//! * **Painting**: a line or a group of bars a series, in the series' colour; one may be dashed, or its bars hollow.
+//! * **Accessible**: an image with the given label and value.
+//! * **Painting**: a line or a group of bars per series, in the series' colour; one may be dashed, or its bars hollow.
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, Sense, Stroke, Ui, Vec2, WidgetInfo};
@@ -17,7 +17,7 @@ use crate::ui::widgets::series;
 /// A chart to be drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Chart<'a> {
-    /// Series, the first of them the main one.
+    /// Series, the main one first.
     pub traces: &'a [Trace],
     /// Accessible name.
     pub label: &'a str,
@@ -29,13 +29,13 @@ pub struct Chart<'a> {
     pub x_unit: &'a str,
     /// Unit of the vertical axis.
     pub y_unit: &'a str,
-    /// Ends of the horizontal axis; `None` fits.
+    /// Ends of the horizontal axis; `None`: fitted.
     pub x_range: Option<(f64, f64)>,
-    /// Distance of the ticks of the horizontal axis; `None` fits.
+    /// Distance of the ticks of the horizontal axis; `None`: fitted.
     pub x_step: Option<f64>,
     /// The lowest value that the vertical axis always includes.
     pub y_floor: Option<f64>,
-    /// Words at places: peaks.
+    /// Labels at points: peaks.
     pub marks: &'a [(f64, f64, String)],
     /// Bars instead of lines; their places are whole numbers.
     pub bars: bool,
@@ -53,10 +53,10 @@ pub struct Trace {
     pub dashed: bool,
 }
 
-/// Share of a place that its bars take.
+/// Share of the width used by bars.
 const BARS: f64 = 0.7;
 
-/// Draws it, with a legend above where there are several series.
+/// Draws it, with a legend above if there are several series.
 pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     legend(ui, theme, chart.traces);
     let own = *theme;
@@ -69,7 +69,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
         HoverPosition::Elsewhere { .. } => None,
     };
     theme.sunken().show(ui, |ui| {
-        // Ticks fade from one colour into the other as they come closer together.
+        // Ticks fade from one colour into the other as they get closer together.
         ui.visuals_mut().widgets.noninteractive.fg_stroke.color = theme.palette.muted.into();
         ui.visuals_mut().override_text_color = Some(theme.palette.muted.into());
         let mut plot = Plot::new(chart.label)
@@ -117,7 +117,7 @@ pub fn chart(ui: &mut Ui, theme: &Theme, chart: &Chart<'_>) {
     });
 }
 
-/// A line in its colour beside each name.
+/// Draws a line in its colour beside each name.
 fn legend(ui: &mut Ui, theme: &Theme, traces: &[Trace]) {
     if traces.len() < 2 {
         return;
@@ -163,7 +163,7 @@ fn bars(plot: &mut egui_plot::PlotUi<'_>, theme: &Theme, traces: &[Trace]) {
     }
 }
 
-/// On which side of a place its words have room.
+/// Returns the side of a point on which its label fits.
 fn label_side(traces: &[Trace], x: f64) -> Align2 {
     let ends = traces.iter().flat_map(|trace| trace.points.first().into_iter().chain(trace.points.last()));
     let (least, most) = ends.fold((x, x), |(least, most), (end, _)| (least.min(*end), most.max(*end)));
@@ -174,12 +174,12 @@ fn label_side(traces: &[Trace], x: f64) -> Align2 {
     }
 }
 
-/// An axis whose ticks are all labelled, down to this distance in points.
+/// Returns an axis with labels at all ticks, down to this distance in points.
 fn axis(hints: AxisHints<'static>, theme: Theme, least: f32) -> AxisHints<'static> {
     hints.formatter(move |mark, _| tick(&theme, mark)).label_spacing(egui::Rangef::new(least / 2.0, least))
 }
 
-/// A step of 1, 2 or 5 times a power of ten, of which about five fit.
+/// Returns a step of 1, 2 or 5 times a power of ten, of which about five fit.
 fn round_step((least, most): (f64, f64)) -> f64 {
     let rough = ((most - least).abs() / 5.0).clamp(1e-12, 1e12);
     let power = 10_f64.powf(rough.log10().floor());
@@ -187,7 +187,7 @@ fn round_step((least, most): (f64, f64)) -> f64 {
     times * power
 }
 
-/// Ticks at every so many, as many as can be told apart.
+/// Returns ticks at this step, as many as can be distinguished.
 fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     const MOST: usize = 64;
     let first = (least / step).ceil();
@@ -195,13 +195,13 @@ fn steps((least, most): (f64, f64), step: f64) -> Vec<GridMark> {
     (0..MOST).map(value).take_while(|value| *value <= most).map(|value| GridMark { value, step_size: step }).collect()
 }
 
-/// A tick with the decimals of its step.
+/// Returns the label of a tick with the decimals of its step.
 fn tick(theme: &Theme, mark: GridMark) -> String {
     let decimals = (-mark.step_size.log10().floor()).clamp(0.0, 9.0) as usize;
     theme.number(mark.value, decimals)
 }
 
-/// A number with four figures.
+/// Returns a number with four figures.
 fn figures(theme: &Theme, value: f64) -> String {
     let decimals = (3.0 - value.abs().max(1e-6).log10().floor()).clamp(0.0, 9.0) as usize;
     theme.number(value, decimals)

@@ -1,11 +1,11 @@
-//! A memory as a strip of blocks: its fields, each a run of them, and what is free.
+//! A memory as a strip of blocks: its fields, each a run of them, and the free space.
 //!
-//! * **Size**: as wide as there is room; the blocks are as large as fits two lines, and wrap.
+//! * **Size**: the available width; the blocks are as large as fits two lines, and wrap.
 //! * **Keyboard**: Tab and the left and right arrows go from field to field, Home and End to the ends; Enter or Space
-//!   selects. Resizing is offered by the caller's buttons too.
+//!   selects. The caller's buttons also offer resizing.
 //! * **Pointer**: a click selects; the handle at the end of the last field drags its size, in whole blocks, shown before
-//!   it is let go; Escape gives up.
-//! * **Accessible**: a button a field and one for what is free, with the labels given.
+//!   the release; Escape cancels.
+//! * **Accessible**: a button for each field and one for the free space, with the given labels.
 //! * **Painting**: a field in the colour of its series; locked, unreadable and edited fields carry an icon, unreadable ones
 //!   are hatched; the selected one is outlined in the accent.
 
@@ -26,7 +26,7 @@ use strip::Strip;
 pub struct MapField {
     /// Its number, shown in it.
     pub number: u8,
-    /// Blocks it takes; none takes one to be seen.
+    /// Number of its blocks; without any, one is drawn.
     pub blocks: usize,
     /// Accessible name.
     pub label: String,
@@ -38,7 +38,7 @@ pub struct MapField {
     pub locked: bool,
     /// Its access code is not known.
     pub unreadable: bool,
-    /// Has edits that are not written.
+    /// It has edits that are not written.
     pub edited: bool,
     /// Shown under the pointer.
     pub tooltip: String,
@@ -49,16 +49,16 @@ pub struct MapField {
 pub struct FieldMap<'a> {
     /// Fields in their order in the memory.
     pub fields: &'a [MapField],
-    /// Blocks behind the last field that belong to none.
+    /// Blocks after the last field that belong to none.
     pub free_blocks: usize,
-    /// Accessible name of what is free.
+    /// Accessible name of the free space.
     pub free_label: &'a str,
-    /// Shown under the pointer over what is free.
+    /// Tooltip of the free space.
     pub free_tooltip: &'a str,
     /// Number of the selected field.
     pub selected: Option<u8>,
     pub block_bytes: usize,
-    /// Sizes in blocks that the last field may be dragged to; `None` offers no handle.
+    /// Sizes in blocks that the last field may be dragged to; `None`: no handle.
     pub resize: Option<RangeInclusive<usize>>,
 }
 
@@ -69,11 +69,11 @@ pub enum MapEvent {
     Select(u8),
     /// Selects the free space.
     SelectFree,
-    /// Another size of the last field; it is not the present one.
+    /// Another size of the last field, different from the present one.
     ResizeLast { blocks: usize },
 }
 
-/// Draws the map and says what was done to it. One map a `Ui`: another needs an id of its own (`push_id`).
+/// Draws the map and returns the user's action. One map per `Ui`: another needs its own id (`push_id`).
 pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEvent> {
     let sizes: Vec<usize> = map.fields.iter().map(|field| field.blocks.max(1)).collect();
     let taken: usize = sizes.iter().sum();
@@ -109,7 +109,8 @@ pub fn field_map(ui: &mut Ui, theme: &Theme, map: &FieldMap<'_>) -> Option<MapEv
     handle(ui, theme, &strip, base, map, taken.saturating_sub(last), last).or(event)
 }
 
-/// Arrows between the parts, before they are announced: the focus is moved here and not by what lies nearest.
+/// Handles the arrows between the parts before they are announced: the focus moves in their order, not to the nearest
+/// widget.
 fn walk(ui: &Ui, ids: &[Id], has_free: bool) {
     let ids = if has_free { ids } else { ids.split_last().map_or(ids, |(_, fields)| fields) };
     let focused = ui.memory(egui::Memory::focused);
@@ -144,7 +145,7 @@ struct Part {
     state: paint::State,
 }
 
-/// A field or what is free: one button, though it may lie on several lines.
+/// Announces a field or the free space: one button, even over several lines.
 fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>, tooltip: &str) -> Part {
     let widest = strip::widest(runs);
     let mut part = Part { clicked: false, state: paint::State::default() };
@@ -158,18 +159,18 @@ fn announce(ui: &Ui, runs: &[Rect], id: Id, label: &str, selected: Option<bool>,
             });
             part.state.focused = response.has_focus();
             if response.gained_focus() {
-                // The next arrow shall be ours.
+                // The next arrow must be handled here.
                 ui.request_repaint();
             }
             response
         } else {
-            // egui gives tooltips the plain numbers.
+            // egui uses the plain numbers for tooltips.
             ui.interact(*rect, id.with("line").with(number), Sense::CLICK)
         };
         part.clicked |= response.clicked();
         part.state.hovered |= response.hovered();
         if response.clicked() {
-            // The arrows go on from here.
+            // The arrows continue from here.
             ui.memory_mut(|memory| memory.request_focus(id));
         }
         tip(response, tooltip);
@@ -185,7 +186,7 @@ fn tip(response: Response, tooltip: &str) {
     }
 }
 
-/// The handle at the end of the last field.
+/// Draws the handle at the end of the last field.
 fn handle(
     ui: &Ui,
     theme: &Theme,

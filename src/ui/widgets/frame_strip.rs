@@ -1,10 +1,10 @@
-//! A frame as it goes over the line: a cell a bit, in the order in which they come, its fields named below.
+//! A frame as transmitted: one cell per bit, in the order of transmission, its fields named below.
 //!
-//! * **Size**: as wide as there is room; the cells are as large as lets the frame lie on as few lines as it can. A field
-//!   goes to the next line as a whole, and is parted only where it is longer than a line.
-//! * **Keyboard**: nothing to operate; Tab passes it.
-//! * **Pointer**: what a field is, under it.
-//! * **Accessible**: an image with the label given; its value are the fields with theirs. A field is a label with its name
+//! * **Size**: the available width; the cells are as large as possible with the frame on as few lines as possible. A field
+//!   is moved to the next line as a whole, and is split only if it is longer than a line.
+//! * **Keyboard**: none; Tab skips it.
+//! * **Pointer**: the meaning of a field, under it.
+//! * **Accessible**: an image with the given label; its value is the fields with theirs. A field is a label with its name
 //!   and its value.
 //! * **Painting**: the bits of a field in the colour of its series, ones stronger than zeros, groups of four counted from
 //!   its last bit; a field that is lit is filled with the colour of its verdict and carries its icon.
@@ -25,15 +25,15 @@ use place::{Placed, SpaceNeeded, place};
 /// A field of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct StripField {
-    /// The name, below its bits.
+    /// Name, shown below its bits.
     pub name: String,
-    /// The value, below its name.
+    /// Value, shown below its name.
     pub value: String,
     /// Number of bits, at least 1.
     pub bits: usize,
     /// Index of the colour, one of eight; `None`: it only encloses the others.
     pub colour: Option<usize>,
-    /// It tells of something: a fault, a warning, or that all is well.
+    /// It reports something: a fault, a warning, or that all is well.
     pub lit: Option<Verdict>,
     /// Shown under the pointer.
     pub tooltip: String,
@@ -44,9 +44,9 @@ pub struct StripField {
 pub struct FrameStrip<'a> {
     /// Accessible name.
     pub label: &'a str,
-    /// Its fields, the first on the line first.
+    /// Its fields, in the order of transmission.
     pub fields: &'a [StripField],
-    /// Their bits in the same order; what is missing or `None` is not known.
+    /// Their bits in the same order; missing or `None` ones are not known.
     pub bits: &'a [Option<bool>],
 }
 
@@ -141,7 +141,7 @@ impl Words {
     }
 }
 
-/// The bits of a piece, and the bar below them that holds them together.
+/// Draws the bits of a piece, and the bar below them that holds them together.
 fn cells(
     painter: &Painter,
     theme: &Theme,

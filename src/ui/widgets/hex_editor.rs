@@ -1,14 +1,14 @@
-//! Bytes to look at and to overwrite: sixteen a line, as hex and as text.
+//! Bytes to view and to overwrite: sixteen per line, as hex and as text.
 //!
-//! * **Size**: as wide as its columns, as high as its lines, at most [`HexModel::lines`] of them before it scrolls; below
-//!   it one line that says where the cursor is, or why something was not done.
+//! * **Size**: the width of its columns, the height of its lines, at most [`HexModel::lines`] of them before it scrolls;
+//!   below it one line with the place of the cursor, or why something was not done.
 //! * **Keyboard**: arrows, Home, End, Page, with Ctrl to the ends, with Shift selecting; digits overwrite nibble by nibble,
-//!   in the text column characters; Tab goes from hex to text and on; Delete writes 00, Backspace takes the device's bytes
-//!   back; Ctrl+A, C, V, Z, Shift+Z, Y.
+//!   in the text column characters; Tab goes from hex to text and on; Delete writes 00, Backspace restores the device's
+//!   bytes; Ctrl+A, C, V, Z, Shift+Z, Y.
 //! * **Pointer**: a press sets the cursor, dragging or Shift selects, a double click selects an aligned word of four.
-//! * **Accessible**: a text input with the label given; its value is the address and the bytes selected: `0x0A: 3F`.
-//! * **Painting**: changed bytes in the colour of what is staged and underlined; the selection in the accent; marks as
-//!   brackets below their bytes.
+//! * **Accessible**: a text input with the given label; its value is the address and the selected bytes: `0x0A: 3F`.
+//! * **Painting**: changed bytes underlined and in the colour of edits; the selection in the accent; marks as brackets
+//!   below their bytes.
 
 mod grid;
 mod keys;
@@ -32,9 +32,9 @@ pub use view::HexView;
 /// The bytes to show.
 #[derive(Clone, Copy, Debug)]
 pub struct HexModel<'a> {
-    /// As read from the device; what lies beyond its end counts as changed.
+    /// As read from the device; bytes beyond its end count as changed.
     pub device: &'a [u8],
-    /// With the edits; these are shown.
+    /// The displayed bytes, with the edits.
     pub wanted: &'a [u8],
     /// Ranges that mean something.
     pub marks: &'a [HexMark<'a>],
@@ -44,7 +44,7 @@ pub struct HexModel<'a> {
     pub lines: usize,
 }
 
-/// A range that means something: it is bracketed, and its tooltip says what it is.
+/// Range with a meaning: it has a bracket, and its tooltip shows the meaning.
 #[derive(Clone, Debug)]
 pub struct HexMark<'a> {
     /// Addresses.
@@ -57,7 +57,7 @@ pub struct HexMark<'a> {
 pub enum HexEdit {
     /// Other bytes from an address on; they fit.
     Put {
-        /// Of the first byte.
+        /// Address of the first byte.
         address: usize,
         /// At least one.
         bytes: Vec<u8>,
@@ -66,7 +66,7 @@ pub enum HexEdit {
     Undo,
     /// The last undone step done again.
     Redo,
-    /// The device's bytes back; at least one of them is changed.
+    /// Restore the device's bytes; at least one of them is changed.
     Revert {
         /// Addresses.
         range: Range<usize>,
@@ -74,7 +74,7 @@ pub enum HexEdit {
 }
 
 impl<'a> HexModel<'a> {
-    /// Bytes that can be edited, without marks.
+    /// Creates bytes that can be edited, without marks.
     pub fn new(device: &'a [u8], wanted: &'a [u8]) -> Self {
         HexModel { device, wanted, marks: &[], read_only: None, lines: 16 }
     }
@@ -88,12 +88,12 @@ impl<'a> HexModel<'a> {
     }
 }
 
-/// An address as it is shown: upper-case hex with as many digits as the last one needs, two at least.
+/// Returns an address as shown: upper-case hex with as many digits as the last one needs, at least two.
 fn address_text(at: usize, digits: usize) -> String {
     format!("0x{at:0digits$X}")
 }
 
-/// Draws the editor and says what was done to it, in order; the caller changes the bytes.
+/// Draws the editor and returns the user's actions, in order; the caller changes the bytes.
 pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));
     view.fit(model.wanted.len());
@@ -108,7 +108,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
     let grid = Grid::new(ui, theme, model.wanted.len());
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::ZERO;
-        // A half-visible line of bytes is still one to read.
+        // A half-visible line of bytes must be readable.
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let narrow = ui.available_width() < grid.width + theme.space.groups * 2.0;
         let frame = theme.sunken().show(ui, |ui| {
@@ -126,7 +126,7 @@ pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>,
     edits
 }
 
-/// The header and the lines.
+/// Draws the header and the lines.
 fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) -> Response {
     let (header, _) = ui.allocate_exact_size(Vec2::new(grid.width, grid.row + theme.space.inside), Sense::hover());
     paint::header(ui, theme, grid, header, model, view);
@@ -145,7 +145,7 @@ fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, v
         let hovered = response.hover_pos().and_then(|pos| grid.hit(rect.min, pos));
         paint::lines(ui, theme, grid, rect.min, model, view, &response, hovered);
         if let Some((column, at)) = hovered {
-            // The tooltip stands beside the byte.
+            // The tooltip is beside the byte.
             let cell = grid.cell(rect.min, column, at);
             Response { rect: cell, interact_rect: cell, ..response.clone() }
                 .on_hover_ui(|ui| tip::byte(ui, theme, grid, model, at));
@@ -156,10 +156,10 @@ fn body(ui: &mut Ui, theme: &Theme, id: Id, grid: &Grid, model: &HexModel<'_>, v
     lines.inner
 }
 
-/// The pointer.
+/// Handles the pointer.
 fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: &mut HexView) {
     if response.gained_focus() {
-        // The next arrow shall move the cursor, not the focus.
+        // The next arrow must move the cursor, not the focus.
         ui.request_repaint();
     }
     if response.has_focus() {
@@ -176,7 +176,7 @@ fn point(ui: &Ui, response: &Response, grid: &Grid, model: &HexModel<'_>, view: 
     let (pressed, down, shift) =
         ui.input(|input| (input.pointer.primary_pressed(), input.pointer.primary_down(), input.modifiers.shift));
     let Some(pos) = response.interact_pointer_pos() else { return };
-    // Outside, it scrolls by a line at a time.
+    // Outside, it scrolls by one line at a time.
     let pos = response.interact_rect.expand(grid.row).clamp(pos);
     if model.wanted.is_empty() {
         return;
@@ -245,7 +245,7 @@ fn status(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, view: &
     });
 }
 
-/// A caption with its addresses in the font for bytes: the other one would make a multiplication sign of `0x`.
+/// Returns a caption with its addresses in the font for bytes: the other one would make a multiplication sign of `0x`.
 fn sentence(theme: &Theme, words: &str, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     for word in words.split_inclusive(' ') {

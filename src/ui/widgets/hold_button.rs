@@ -1,11 +1,11 @@
-//! A button that counts while it is held: for motion that ends when a finger leaves it.
+//! A button that is active while it is held: for motion that ends when the finger leaves it.
 //!
-//! * **Size**: as given, at least 56 points high, so that a gloved finger finds it.
-//! * **Keyboard**: Space or Enter, held while it has the keyboard; a key counts only after it was seen up there
-//!   ([`HoldState`]), and the caption says so until then.
-//! * **Pointer**: the first button, or a touch; leaving the button ends it, and coming back does not begin it again.
-//! * **Accessible**: a button with its label; a click that a screen reader makes has no length and does nothing.
-//! * **Painting**: the word, below it what it does; filled with the accent while it is held.
+//! * **Size**: as given, at least 56 points high, for use with gloves.
+//! * **Keyboard**: Space or Enter, held while it has the keyboard focus; a key counts only after it was seen up there
+//!   ([`HoldState`]), and the caption shows this until then.
+//! * **Pointer**: the first button, or a touch; leaving the button ends it, and returning does not start it again.
+//! * **Accessible**: a button with its label; a click by a screen reader has no duration and does nothing.
+//! * **Painting**: the label, and its effect below; filled with the accent while it is held.
 
 use egui::accesskit::Role;
 use egui::{
@@ -27,14 +27,14 @@ pub struct HoldButton<'a> {
     pub caption: &'a str,
     /// Accessible name.
     pub label: &'a str,
-    /// It may be pressed.
+    /// Whether it may be pressed.
     pub enabled: bool,
 }
 
-/// What the window passes to its hold buttons before they are drawn.
+/// Context for the hold buttons, set by the window before they are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(in crate::ui) struct HoldSurroundings {
-    /// Something stands over the window: none of them can be pressed.
+    /// Something covers the window: none of them can be pressed.
     pub(in crate::ui) covered: bool,
     /// Something moves or is about to.
     pub(in crate::ui) moving: bool,
@@ -46,14 +46,14 @@ struct HoldMemory {
     state: HoldState,
     /// The pass in which it was drawn last.
     pass: u64,
-    /// As they were then.
+    /// Their state then.
     modifiers: Modifiers,
 }
 
 /// The hold buttons of the previous frame, for the window.
 #[derive(Clone, Copy, Default)]
 struct Drawn {
-    /// The one that has the keyboard, and in which pass.
+    /// The button with the keyboard focus, and the pass in which it had it.
     keyboard: Option<(Id, u64)>,
     /// The pass in which the pointer held one.
     pointer: Option<u64>,
@@ -62,19 +62,19 @@ struct Drawn {
 /// The least height in points.
 const LEAST: f32 = 56.0;
 
-/// Tells the buttons of this picture what is around them.
+/// Sets the context for the buttons of this frame.
 pub(in crate::ui) fn surround_hold_buttons(ctx: &Context, surroundings: HoldSurroundings) {
     ctx.data_mut(|data| data.insert_temp(Id::unique("around hold buttons"), surroundings));
 }
 
-/// A hold button had the keyboard in the picture before, and has it still: keys are for it.
+/// Returns whether a hold button had the keyboard focus in the previous frame, and still has it: keys are for it.
 pub(in crate::ui) fn has_hold_button_keyboard(ctx: &Context) -> bool {
     let drawn = drawn(ctx);
     let focused = ctx.memory(|memory| memory.focused());
     drawn.keyboard.is_some_and(|(id, pass)| focused == Some(id) && pass + 1 >= ctx.cumulative_pass_nr())
 }
 
-/// The pointer held a hold button in the picture before.
+/// Returns whether the pointer held a hold button in the previous frame.
 pub(in crate::ui) fn is_hold_button_held(ctx: &Context) -> bool {
     drawn(ctx).pointer.is_some_and(|pass| pass + 1 >= ctx.cumulative_pass_nr())
 }
@@ -109,7 +109,7 @@ pub fn hold_button(ui: &mut Ui, theme: &Theme, button: &HoldButton<'_>, size: Ve
     state.begin(scene, last + 1 == pass);
     let place = response.interact_rect;
     let pressed_here = response.is_pointer_button_down_on();
-    // As they came: what the window has taken from the widgets counts here too.
+    // All events in order: those that the window has hidden from the widgets count here too.
     let (down, inside) = ui.input(|input| {
         for event in &input.raw.events {
             if let Event::ModifiersChanged(now) = event
@@ -157,7 +157,7 @@ fn translated(event: &Event, place: Rect, pressed_here: bool) -> Option<HoldInpu
             Some(key) => HoldInput::Down { key, plain: modifiers.is_none() },
             None => HoldInput::OtherKey,
         },
-        // Keys that the window was told of as what they mean.
+        // Keys that the window received as commands.
         Event::Copy | Event::Cut | Event::Paste(_) | Event::PasteImage(_) | Event::Ime(_) => HoldInput::OtherKey,
         Event::ModifiersChanged(_) => HoldInput::Modifiers,
         Event::PointerButton { pos, button, pressed: true, .. } => {

@@ -1,11 +1,11 @@
-//! Sine over cosine: the figure that the samples draw, with the ring in which the amplitude vector should stay.
+//! Sine over cosine: the figure of the samples, with the ring in which the amplitude vector should stay.
 //!
-//! * **Size**: a square, as wide as is given.
-//! * **Keyboard**: nothing to operate; Tab passes it.
-//! * **Pointer**: the place under it is told in volts, as length and as angle.
-//! * **Accessible**: an image with the label and the value given.
-//! * **Painting**: samples as a density, brighter where there are more, the fitted ellipse as a line, the good ring as a band between two lines, the limits of
-//!   a fault dashed; zero in the middle, the same scale for both axes.
+//! * **Size**: a square of the given width.
+//! * **Keyboard**: none; Tab skips it.
+//! * **Pointer**: the place under it is shown in volts, as length and as angle.
+//! * **Accessible**: an image with the given label and value.
+//! * **Painting**: samples as a density, brighter for more, the fitted ellipse as a line, the good ring as a band between
+//!   two lines, the limits of a fault dashed; zero in the middle, the same scale for both axes.
 
 use egui::accesskit::Role;
 use egui::epaint::{Mesh, PathStroke};
@@ -48,10 +48,10 @@ pub struct Figure {
 
 /// Points of a circle.
 const CIRCLE: usize = 120;
-/// Steps of an axis that may be labelled, in volts; the finest of which there are few enough.
+/// Steps of an axis with labels, in volts; the finest with few enough labels is used.
 const STEPS: [f64; 9] = [0.01, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0];
 
-/// The square on the screen, and volts to its edge.
+/// Square on the screen, and volts to its edge.
 #[derive(Clone, Copy)]
 struct PlotArea {
     rect: Rect,
@@ -101,7 +101,7 @@ pub fn lissajous(ui: &mut Ui, theme: &Theme, figure: &Lissajous<'_>, side: f32) 
     }
 }
 
-/// The picture of a density in one colour: brighter where there are more samples, and none invisible.
+/// Returns the picture of a density in one colour: brighter for more samples, and none invisible.
 pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
     /// Brightness of a single sample, as a share of the full one.
     const LEAST: f32 = 0.4;
@@ -117,7 +117,7 @@ pub fn phosphor(density: &Density, colour: Color32) -> ColorImage {
     ColorImage::new([side, side], pixels)
 }
 
-/// Volts from the middle to the edge: all samples and curves, and the good ring in any case.
+/// Returns the volts from the middle to the edge: all samples and curves, and at least the good ring.
 fn range(figure: &Lissajous<'_>) -> f64 {
     let curves = figure.figures.iter().flat_map(|own| &own.curve).map(|(x, y)| x.abs().max(y.abs()));
     let pictures = figure.figures.iter().filter_map(|own| Some(own.picture?.1.half_v));

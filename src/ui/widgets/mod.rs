@@ -1,5 +1,5 @@
-//! Widgets that egui does not have. Each draws what it is given, keeps nothing but its own selection, and says what the
-//! user wants; none knows a device. They share how the keyboard's place, what is hatched and a series' colour look.
+//! Widgets that egui does not have. Each draws its input, stores nothing but its own selection, and returns the user's
+//! request; none knows a device. They share the appearance of keyboard focus, hatching and series colours.
 
 mod bit_cell;
 mod chart;
@@ -35,13 +35,13 @@ pub use step_ring::{StepRing, step_ring};
 pub use steps::{Gauge, StepRow, StepState, Steps, StepsEvent, steps};
 pub use typed_view::typed_view;
 
-/// The ring around what has the keyboard: two points of the accent, one point off the widget.
+/// Draws the focus ring: two points of the accent, one point outside the widget.
 pub(crate) fn focus_ring(painter: &Painter, theme: &Theme, rect: Rect, corners: impl Into<CornerRadius>) {
     let corners = corners.into() + CornerRadius::same(1);
     painter.rect_stroke(rect.expand(1.0), corners, Stroke::new(2.0, theme.palette.accent), StrokeKind::Outside);
 }
 
-/// Diagonal lines.
+/// Draws diagonal lines.
 pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color32) {
     let painter = painter.with_clip_rect(rect.shrink(1.0).intersect(painter.clip_rect()));
     let mut x = rect.left() - rect.height();
@@ -52,7 +52,7 @@ pub(crate) fn hatch(painter: &Painter, theme: &Theme, rect: Rect, colour: Color3
     }
 }
 
-/// The colour of a series; they begin again after the eighth.
+/// Returns the colour of a series; they repeat after the eighth.
 pub(crate) fn series(theme: &Theme, number: usize) -> Color32 {
     let colours = &theme.palette.series;
     colours.iter().cycle().nth(number % colours.len()).copied().map_or(theme.palette.muted.into(), Color32::from)

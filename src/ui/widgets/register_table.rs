@@ -1,17 +1,17 @@
 //! Registers as a table, grouped by their banks: address, name, value as hex, as a number and decoded, access, default. Or
-//! parameters that are numbers: number, name, value, unit, range, what it is from the factory.
-//! Thousands of them scroll as easily as ten: a register is asked for only while it is in sight.
+//! parameters that are numbers: number, name, value, unit, range, factory setting. Thousands of them scroll as easily as
+//! ten: a register is requested only while it is visible.
 //!
-//! * **Size**: as wide as there is room, as high as given; columns that matter least fall away, and stand under the pointer.
-//!   Why something was not taken is told by what the table remembers ([`RegisterView::problem`]), for whoever has room.
+//! * **Size**: the available width, the given height; the least important columns are hidden, and shown in the tooltip. The
+//!   reason for refusing a value is in [`RegisterView::problem`], to be shown by the caller.
 //! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
-//!   Enter, F2 or a character edits the value, Enter takes it, Escape gives it up; Backspace takes the device's value
-//!   back; Ctrl+C copies.
+//!   Enter, F2 or a character edits the value, Enter accepts it, Escape cancels; Backspace restores the device's value;
+//!   Ctrl+C copies.
 //! * **Pointer**: a press selects, on a heading or a caret folds, on the box of a number edits; a double click edits.
-//! * **Accessible**: a table with the label given, whose value is what is selected; a row a register in sight, with its
-//!   value and how it stands; a button a group.
-//! * **Painting**: edited values in the colour of what is staged and underlined; what changed since the last reading has a
-//!   dot, what costs a write cycle a flash, what is kept without supply a disk. Numbers that can be edited lie in boxes.
+//! * **Accessible**: a table with the given label, whose value is the selection; a row for each visible register, with its
+//!   value and state; a button for each group.
+//! * **Painting**: edited values underlined and in the colour of edits; a change since the last reading has a dot, a cost
+//!   of a write cycle a flash, storage without supply a disk. Editable numbers are in boxes.
 
 mod columns;
 mod editor;
@@ -34,7 +34,7 @@ use lines::{LineKind, Lines};
 pub use view::RegisterView;
 use view::Selected;
 
-/// The location of a register: its group, and its index in the group.
+/// Location of a register: its group, and its index in the group.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterLocation {
     /// Number of the group.
@@ -49,18 +49,18 @@ pub struct RegisterTable<'a> {
     pub label: &'a str,
     /// Banks.
     pub groups: &'a [RegisterGroup],
-    /// A register of a group; asked for what is in sight or unfolded.
+    /// Returns a register of a group; called for visible or unfolded ones.
     pub row: &'a dyn Fn(RegisterLocation) -> RegisterRow,
     /// The kind of the values.
     pub kind: RegisterKind,
 }
 
-/// The kind of the values of a table; it determines the columns.
+/// Kind of the values of a table, which determines the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
     /// Bytes, in hexadecimal digits and as numbers.
     Bytes {
-        /// Of the widest register: all of them have to be seen.
+        /// Number of bytes of the widest register: all of them must be visible.
         widest: usize,
     },
     /// Numbers that have a range.
@@ -70,7 +70,7 @@ pub enum RegisterKind {
 /// A bank.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterGroup {
-    /// Its heading.
+    /// Heading of the group.
     pub title: String,
     /// A note at the end of the heading.
     pub note: String,
@@ -78,15 +78,15 @@ pub struct RegisterGroup {
     pub rows: usize,
 }
 
-/// A register as it is shown.
+/// Register as displayed.
 #[derive(Clone, Debug, Default)]
 pub struct RegisterRow {
     /// The address, such as `0x04:0x1F`, or a number.
     pub address: String,
     pub name: String,
-    /// Its value as it is typed: bytes in hexadecimal digits, or a number; empty where it was not read.
+    /// Its value as an entry: bytes in hexadecimal digits, or a number; empty if it was not read.
     pub value: String,
-    /// Of bytes: the same as a number.
+    /// For bytes: the same as a number.
     pub decimal: String,
     /// The meaning of the value, with its unit.
     pub meaning: String,
@@ -94,19 +94,19 @@ pub struct RegisterRow {
     pub access: String,
     /// The factory setting, in the form of the value; empty if not known.
     pub default: String,
-    /// Of numbers: what it may be.
+    /// For numbers: the allowed range.
     pub range: String,
-    /// It has another value than the default.
+    /// Its value differs from the default.
     pub differs: bool,
-    /// It is not as it was at the reading before.
+    /// Its value has changed since the previous reading.
     pub changed: bool,
     /// The earlier value; empty if not known.
     pub before: String,
     /// Its value was edited and is not written.
     pub edited: bool,
-    /// Writing it costs something: what, in words.
+    /// The cost of writing it, as text.
     pub cost: Option<String>,
-    /// It is kept without supply: what there is to know about that, in words.
+    /// It is stored without supply: the details, as text.
     pub kept: Option<String>,
     /// Why the value cannot be edited; `None` if it can.
     pub read_only: Option<String>,
@@ -121,7 +121,7 @@ pub struct RegisterBits {
     pub name: String,
     pub value: String,
     pub meaning: String,
-    /// It tells of something that matters.
+    /// It reports something important.
     pub lit: bool,
 }
 
@@ -136,18 +136,18 @@ pub enum RegisterEvent {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
-    /// The groups that are in sight.
+    /// The visible groups.
     pub groups: Range<usize>,
 }
 
 /// Height of a line.
 const LINE: f32 = 16.0;
-/// Between the edge of the table and its lines.
+/// Margin between the edge of the table and its lines.
 const MARGIN: i8 = 4;
 /// Characters of the longest number: −2³¹ is eleven.
 const NUMBER: usize = 12;
 
-/// Width of a value, with the distance to the next column.
+/// Returns the width of a value, with the distance to the next column.
 fn value_width(theme: &Theme, kind: RegisterKind) -> f32 {
     let characters = match kind {
         RegisterKind::Bytes { widest } => widest * 3,
@@ -173,8 +173,8 @@ impl RegisterRow {
     }
 }
 
-/// Draws the table with so much height and says what was done to it. `take` hears what was typed for a register, and says
-/// why it cannot be.
+/// Draws the table with this height and returns the user's actions. `take` gets the text entered for a register, and
+/// returns why it is refused.
 pub fn register_table(
     ui: &mut Ui,
     theme: &Theme,
@@ -195,7 +195,7 @@ pub fn register_table(
         ui.spacing_mut().scroll.fade.strength = 0.0;
         let frame = theme.sunken().inner_margin(MARGIN).show(ui, |ui| {
             controls::fill(ui);
-            // The lines lie beside their scroll bar.
+            // The lines are beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
             paint::header(ui, theme, table.kind, &columns);
@@ -212,7 +212,7 @@ pub fn register_table(
     output
 }
 
-/// The lines in sight.
+/// Draws the visible lines.
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 fn body(
     ui: &mut Ui,
@@ -231,7 +231,7 @@ fn body(
     let shown = area.min_scrolled_height(height).show_viewport(ui, |ui, viewport| {
         let size = Vec2::new(columns.width(), lines.total() as f32 * LINE);
         let (whole, _) = ui.allocate_exact_size(size, Sense::hover());
-        // The clip reaches beside the table, over what stands there.
+        // The clip rectangle extends beside the table, over its neighbours.
         let body = Rect::from_x_y_ranges(whole.x_range(), ui.clip_rect().y_range());
         let response = ui.interact(body, id, Sense::click());
         let at = |line: usize| {
@@ -273,7 +273,7 @@ fn body(
             let builder = UiBuilder::new().id_salt(id.with("edit")).max_rect(cell);
             editor::editor_ui(&mut ui.new_child(builder), theme, id, cell, table, view, take);
         }
-        // A value refused by that stays visible, and gives way to the next press.
+        // A value refused by that stays visible, and is discarded by the next press.
         let refused_now = view.is_refused() && !was_refused;
         if let Some(place) = view.wanted.take()
             && !refused_now

@@ -1,11 +1,11 @@
-//! One period as a ring of 32 steps: where the absolute position stands in it, and where the analogue one does.
+//! One period as a ring of 32 steps: the places of the absolute and of the analogue position.
 //!
-//! * **Size**: a square, as wide as is given.
-//! * **Keyboard**: nothing to operate; Tab passes it.
-//! * **Pointer**: nothing to operate.
-//! * **Accessible**: an image with the label and the value given.
-//! * **Painting**: a segment a step, zero at the top and clockwise, that of the absolute position filled; the analogue
-//!   position as a hand; between the two an arc in the colour given, which is how far they are apart.
+//! * **Size**: a square of the given width.
+//! * **Keyboard**: none; Tab skips it.
+//! * **Pointer**: none.
+//! * **Accessible**: an image with the given label and value.
+//! * **Painting**: one segment per step, zero at the top and clockwise, that of the absolute position filled; the analogue
+//!   position as a hand; between the two an arc in the given colour, which shows their distance.
 
 use egui::accesskit::Role;
 use egui::epaint::PathStroke;
@@ -21,7 +21,7 @@ pub struct StepRing<'a> {
     pub step: u64,
     /// The analogue position in periods, 0 to 1.
     pub phase: f64,
-    /// From the analogue to the absolute position, in periods; `None`: either way round.
+    /// From the analogue to the absolute position, in periods; `None`: ambiguous direction.
     pub apart: Option<f64>,
     /// Colour of the arc between them.
     pub colour: Color32,
@@ -34,7 +34,7 @@ pub struct StepRing<'a> {
 const STEPS: u8 = 32;
 /// Width of the ring, as a share of its radius.
 const WIDTH: f32 = 0.14;
-/// The part of a step that its segment leaves free at both ends.
+/// Part of a step that its segment leaves free at both ends.
 const GAP: f64 = 0.08;
 
 /// A circle around a middle.
@@ -91,7 +91,7 @@ fn segments(painter: &Painter, theme: &Theme, dial: Dial, own: u64) {
     }
 }
 
-/// The numbers of every eighth step.
+/// Draws the numbers of every eighth step.
 fn quarters(painter: &Painter, theme: &Theme, dial: Dial) {
     let font = FontId::monospace(theme.sizes.caption);
     for (step, align) in

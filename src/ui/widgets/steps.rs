@@ -1,13 +1,12 @@
-//! A guided procedure as a list of steps: what is done, what is to be done now, what comes, and how what is measured stands
-//! to its limits.
+//! A guided procedure as a list of steps: done, present and later ones, and measured values compared with their limits.
 //!
-//! * **Size**: as wide as there is room; a line a step, the one that counts now as high as what it says.
+//! * **Size**: the available width; one line per step, the present one as high as its content.
 //! * **Keyboard**: Tab goes from button to button.
-//! * **Pointer**: the buttons; why one cannot be pressed, under it.
-//! * **Accessible**: a label a step, with how far it is; a progress indicator a gauge, with its value and what is allowed;
-//!   buttons with the words given.
-//! * **Painting**: a rail with a dot a step, filled, ringed or hollow, its icon in the colour of how it ended; on a gauge
-//!   the allowed band, what is best of it stronger, and a hand where the value is, in the warning's colour outside.
+//! * **Pointer**: the buttons; a tooltip tells why one is disabled.
+//! * **Accessible**: a label for each step, with its state; a progress indicator for each gauge, with its value and the
+//!   allowed range; buttons with the given labels.
+//! * **Painting**: a rail with a dot per step, filled, ringed or hollow, its icon in the colour of its result; on a gauge
+//!   the allowed band, the best part of it stronger, and a hand at the value, in the colour of a warning outside.
 
 mod gauge;
 
@@ -27,51 +26,51 @@ pub struct StepRow {
     pub state: StepState,
     /// The state in a word, for screen readers.
     pub word: String,
-    /// What to do now, the result, or why it failed; may be empty.
+    /// The present task, the result, or why it failed; may be empty.
     pub note: String,
     /// The values measured for it.
     pub gauges: Vec<Gauge>,
-    /// The completed share, 0 to 1; `None` if it does not run or the share is not known.
+    /// Completed share, 0 to 1; `None` if it does not run or the share is not known.
     pub progress: Option<f32>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StepState {
-    /// Its turn has not come.
+    /// A later step.
     #[default]
     ToCome,
-    /// It waits for a person.
+    /// It waits for the operator.
     Waiting,
-    /// It runs.
+    /// It is running.
     Running,
     Done,
-    /// It was left out.
+    /// It was skipped.
     Skipped,
     Failed,
 }
 
-/// A measured value and what it may be.
+/// Measured value with its allowed range.
 #[derive(Clone, Debug)]
 pub struct Gauge {
     /// Name of the measured value.
     pub name: String,
-    /// The value; `None` where there is none now.
+    /// The value; `None` if there is none now.
     pub value: Option<f64>,
-    /// The value with its unit.
+    /// The value with its unit, as text.
     pub shown: String,
     pub allowed: RangeInclusive<f64>,
     /// The best range; `None` if all values are equally good.
     pub best: Option<RangeInclusive<f64>>,
-    /// The allowed range in words: `498…502 rpm`.
+    /// The allowed range as text: `498…502 rpm`.
     pub limits: String,
-    /// Ends of the scale; they reach beyond what is allowed.
+    /// Ends of the scale, beyond the allowed range.
     pub scale: RangeInclusive<f64>,
 }
 
 /// A procedure.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Steps<'a> {
-    /// Its steps, the first first.
+    /// Its steps in order.
     pub steps: &'a [StepRow],
     /// The start button of the waiting step: its label, and why it is disabled.
     pub start: Option<(&'a str, Result<(), &'a str>)>,
@@ -82,14 +81,14 @@ pub struct Steps<'a> {
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StepsEvent {
-    /// Begin with what waits.
+    /// Start the waiting step.
     Start,
-    /// Leave out what waits.
+    /// Skip the waiting step.
     Skip,
 }
 
 impl Gauge {
-    /// The value is there and allowed.
+    /// Returns whether the value is there and allowed.
     pub fn fits(&self) -> bool {
         self.value.is_some_and(|value| self.allowed.contains(&value))
     }
@@ -118,15 +117,15 @@ impl StepState {
     }
 }
 
-/// Radius of a step's dot, and the width of the rail on which it stands.
+/// Radius of a step's dot, and the width of the rail.
 const DOT: f32 = 9.0;
 const RAIL: f32 = 32.0;
 
-/// Draws the list and says what was pressed.
+/// Draws the list and returns the pressed button.
 pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     let mut dots: Vec<Pos2> = Vec::new();
-    // The step that was in turn the last time, and its height.
+    // The step that was the present one in the last frame, and its height.
     let at = ui.scope_id().with("step");
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.y = theme.space.inside;
@@ -141,7 +140,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
                     event = event.or(content(ui, theme, model, step));
                 });
             });
-            // Again when more of it comes: its gauges and buttons are what it is about.
+            // Again when it grows: its gauges and buttons must be visible.
             let height = drawn.response.rect.height();
             let before: Option<(usize, f32)> = ui.data(|data| data.get_temp(at));
             if step.state.counts() && before.is_none_or(|(own, seen)| own != number || height > seen + 1.0) {
@@ -160,7 +159,7 @@ pub fn steps(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent
     event
 }
 
-/// Draws the title, which may have several lines; the middle of the first of them.
+/// Draws the title, which may have several lines; returns the middle of the first of them.
 fn title(ui: &mut Ui, theme: &Theme, step: &StepRow) -> f32 {
     let palette = theme.palette;
     let ink = match step.state {
@@ -200,14 +199,14 @@ fn content(ui: &mut Ui, theme: &Theme, model: &Steps<'_>, step: &StepRow) -> Opt
     buttons(ui, theme, model)
 }
 
-/// Start where the eye ends, leaving out and why it cannot start beside it: it stays where it is while a motor is brought to
-/// its speed.
+/// Draws the buttons: Start at the end of the text, with Skip and the obstacle beside it, so that it stays in place while a
+/// motor is brought to its speed.
 fn buttons(ui: &mut Ui, theme: &Theme, model: &Steps<'_>) -> Option<StepsEvent> {
     let mut event = None;
     if model.start.is_none() && model.skip.is_none() {
         return None;
     }
-    // A line high: centred in all the room that is left, they would float in it.
+    // One line high: centred in the remaining space, they would be misplaced.
     let size = Vec2::new(ui.available_width(), ui.spacing().interact_size.y);
     ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
         if let Some((word, allowed)) = model.start {
@@ -248,7 +247,7 @@ fn progress(ui: &mut Ui, theme: &Theme, label: &str, share: f32) {
     });
 }
 
-/// The dot of a step: its number, or how it stands.
+/// Draws the dot of a step: its number, or its state.
 fn dot(painter: &Painter, theme: &Theme, middle: Pos2, number: usize, step: &StepRow) {
     let palette = theme.palette;
     let (icon, colour) = step.state.mark(theme);

@@ -19,7 +19,7 @@ pub(crate) fn theme() -> Theme {
     Theme::new(ThemeData::built_in().unwrap(), ColorScheme::Dark, Language::English)
 }
 
-/// A widget with its state between two buttons, in a window.
+/// Creates a window with a widget and its state between two buttons.
 pub(crate) fn window<State>(
     state: State,
     draw: impl Fn(&mut egui::Ui, &mut State) + 'static,

@@ -1,9 +1,9 @@
 //! Bytes read as numbers and as text, lowest byte first and highest byte first.
 //!
-//! * **Size**: three columns of fixed width, so that a changing value does not move; a line a type.
+//! * **Size**: three columns of fixed width, so that a changing value does not move; one line per type.
 //! * **Keyboard**: Tab and arrows go from value to value; Enter copies it.
-//! * **Pointer**: a click copies a value; what is cut off is whole in the tooltip.
-//! * **Accessible**: a button a value, named by type and byte order, with the value as its value.
+//! * **Pointer**: a click copies a value; the tooltip shows a truncated one completely.
+//! * **Accessible**: a button for each value, named by type and byte order, with the value as its value.
 //! * **Painting**: a type for which there are too few bytes shows a dash.
 
 use egui::accesskit::Role;

@@ -1,9 +1,9 @@
-//! The steps of a write, and what stops one before its first byte.
+//! Tests of the steps of a write, and of the errors that prevent its first byte.
 
 use super::*;
 use crate::profile::Written;
 
-/// Notes what is asked of it, and looks on disk what has been done before.
+/// A device that records its calls, and checks the files that exist at that moment.
 struct Spy {
     store: Store,
     steps: Vec<&'static str>,
@@ -33,7 +33,7 @@ impl OperationError for Cancelled {
     }
 }
 
-/// Costs so many write cycles.
+/// An operation that costs this number of write cycles.
 #[derive(Clone, Hash)]
 struct Op(u64);
 
@@ -205,10 +205,10 @@ fn nothing_is_written_without_operations_or_with_a_consent_to_another_plan() {
     assert!(matches!(ended, Err(JobError::NotBegun(NotBegun::OtherPlan))) && spy.steps.is_empty());
 }
 
-/// Issue 22.4: a count that is not known is no 0. It opens by force alone, and is told then.
+/// Issue 22.4: an unknown count is not 0. Such a write begins only if forced, and the logbook's error is reported then.
 #[test]
 fn a_logbook_that_cannot_be_used_stops_a_write() {
-    /// Looks at nothing.
+    /// A device that checks nothing.
     struct Plain(u32);
     impl Write for Plain {
         type Base = ();
@@ -241,7 +241,7 @@ fn a_logbook_that_cannot_be_used_stops_a_write() {
         assert!(refused && plain.0 == 0, "{seen:?}");
         let Ok(done) = write(&mut plain, agreed(seen, &[2], true)) else { panic!("{seen:?}") };
         assert!(done.logbook_warning.is_some() && plain.0 == 1, "{seen:?}");
-        // What costs nothing wears nothing.
+        // An operation without cost causes no wear.
         assert!(write(&mut plain, agreed(seen, &[0], false)).is_ok() && plain.0 == 2, "{seen:?}");
     }
 }

@@ -1,5 +1,5 @@
-//! The virtual sine/cosine source as a producer: paced by the clock, like a real one. What it did not come to while the
-//! machine was busy or asleep is made up for up to a quarter of a second; what is older is lost and counted.
+//! The virtual sine/cosine source as a producer: paced by the clock, like a real one. Samples missed while the computer was
+//! busy or asleep are made up for, up to a quarter of a second; older ones are lost and counted.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ const BATCH_NS: i64 = 10_000_000;
 /// Nanoseconds of delay that are caught up.
 const LATE_NS: i64 = 250_000_000;
 
-/// Settings of samples that are due are forgotten: the source was changed too often meanwhile.
+/// Error: settings of due samples are no longer stored, because the source was changed too often meanwhile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the settings of samples that are due are forgotten")]
 pub struct SettingsDropped;
@@ -28,7 +28,7 @@ pub struct Analogue {
 }
 
 impl Analogue {
-    /// A source that begins at `start` on the clock of its stream.
+    /// Creates a source that begins at `start` on the clock of its stream.
     pub fn new(checked: Checked, start: Moment) -> Self {
         Analogue { source: Source::new(checked, Time::from(start)), next: 0 }
     }
@@ -49,7 +49,7 @@ impl Producer for Analogue {
         };
         let period_ns = settings.period_ns();
         let now = clock.now();
-        // The last sample of a batch: what is taken there is there.
+        // The last sample of a batch: the samples of a batch exist when its last one is due.
         let full = time.plus((BATCH_NS - period_ns).max(0)).nanoseconds();
         let full = Moment::after_start(Duration::from_nanos(u64::try_from(full).unwrap_or(0)));
         clock.sleep_until(full.min(now + patience));

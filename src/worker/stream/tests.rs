@@ -1,4 +1,4 @@
-//! Streams on their threads: nobody waits for anybody, and what is lost is known.
+//! Tests of streams on their threads: neither side waits for the other, and losses are counted.
 
 use std::sync::atomic::AtomicUsize;
 use std::time::Instant;
@@ -11,12 +11,12 @@ use crate::units::Moment;
 /// Longer than anything here takes.
 const HANGS: Duration = Duration::from_secs(20);
 
-/// Numbers as fast as it can, a millisecond a batch on its clock; then nothing, or an error.
+/// A producer that counts as fast as it can, a millisecond per batch on its clock; then nothing, or an error.
 struct Numbers {
     sizes: VecDeque<usize>,
     next: u64,
     fails: bool,
-    /// Wishes heard.
+    /// Requests received.
     heard: Sender<u64>,
     /// Goes with it.
     _alive: Sender<Never>,
@@ -56,7 +56,7 @@ fn wait_until(what: impl Fn() -> bool) {
     }
 }
 
-/// Every number is either there or counted as lost, and the batches tell where.
+/// Checks that every number is either present or counted as lost, at the right batch.
 fn check(batches: &[Batch<Vec<u64>>], from: u64) -> u64 {
     batches.iter().fold(from, |next, batch| {
         assert_eq!(batch.first, next + batch.lost, "{batch:?}");
@@ -121,7 +121,7 @@ fn a_batch_larger_than_the_ring_is_kept_alone() {
 
 #[test]
 fn the_window_is_woken_twenty_times_a_second_and_at_the_end() {
-    // A second of a batch each millisecond.
+    // One second of a batch each millisecond.
     let (producer, ..) = numbers(std::iter::repeat_n(1, 1_000), true);
     let wakes = Arc::new(AtomicUsize::new(0));
     let counter = wakes.clone();
@@ -181,7 +181,7 @@ fn the_virtual_source_keeps_to_the_clock() {
     let second = next(&mut source, &clock).unwrap();
     assert_eq!((second.first, second.samples.count(), second.lost), (1_000, 1_000, 0));
     assert_eq!(second.time, first.time.plus(10_000_000));
-    // The machine slept for a minute: a quarter of a second is made up for.
+    // The computer slept for a minute: a quarter of a second is made up for.
     clock.sleep_until(Moment::after_start(Duration::from_secs(65)));
     let late = next(&mut source, &clock).unwrap();
     assert_eq!((late.first, late.samples.count(), late.lost), (5_975_001, 25_000, 5_973_001));
@@ -218,6 +218,6 @@ fn no_sample_is_missing_while_the_machine_keeps_up() {
         assert_eq!(batch.time.nanoseconds(), expected as i64 * 22_676);
         expected += batch.samples.count() as u64;
     }
-    // 4 s are 176 398 samples, and the last batch of 10 ms reaches beyond.
+    // 4 s are 176 398 samples, and the last batch of 10 ms ends later.
     assert!((176_398..=176_840).contains(&expected), "{expected}");
 }

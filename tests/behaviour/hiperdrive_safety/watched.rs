@@ -1,5 +1,5 @@
-//! Drives of a hub that do not do what they are told, over the wire: they ignore their limits, a target or a pause, or turn the
-//! wrong way. The device is in Python, and its record tells what it was commanded; the drive beside it is never moved.
+//! Drives of a hub that disobey over the connection: they ignore their limits, a target or a pause, or turn the wrong way.
+//! The device is in Python, and its record shows the commands; the other drive is never moved.
 
 use std::fs;
 use std::path::PathBuf;
@@ -15,14 +15,14 @@ use super::{FAST, Host, JOG};
 /// A turn, and 1° rounded up.
 const TURN: i32 = 65_536;
 const DEGREE: i32 = 183;
-/// Packets that are under way while the first report that shows it is.
+/// Number of packets in transit while the first report of the defect is.
 const UNDER_WAY: usize = 2;
 
 fn third() -> DriveNumber {
     DriveNumber::new(3).unwrap()
 }
 
-/// What the device was sent for a drive.
+/// A packet that the device received for a drive.
 #[derive(Debug)]
 struct Packet {
     position: i32,
@@ -51,7 +51,7 @@ impl Hub {
         self.host.motion.view().drives.iter().find(|own| own.number == third()).unwrap().phase
     }
 
-    /// Until an act is over: how it ended.
+    /// Waits for the end of an act, and returns how it ended.
     #[track_caller]
     fn until_over(&self, act: u64) -> Ended {
         let until = Instant::now() + Duration::from_secs(20);
@@ -66,7 +66,7 @@ impl Hub {
         }
     }
 
-    /// The record, once the drive stands.
+    /// Returns the record, once the drive is at standstill.
     fn record(&mut self) -> (Vec<Packet>, usize) {
         let until = Instant::now() + Duration::from_secs(20);
         while self.host.motion.view().drives.iter().any(|own| own.actual.status.state() == State::Moving) {
@@ -90,7 +90,7 @@ impl Hub {
         }
         assert!(packets.iter().all(|packet| packet.drive == 3 || !packet.moves), "the drive beside it was commanded");
         packets.retain(|packet| packet.drive == 3);
-        // Both drives have a line a packet.
+        // Both drives have a line per packet.
         (packets, told.expect("it did what it was told") / 2)
     }
 }
@@ -99,7 +99,7 @@ fn moving(packets: &[Packet]) -> Vec<&Packet> {
     packets.iter().filter(|packet| packet.moves).collect()
 }
 
-/// Issue 21.4: the drive of a hub that ignores its limits is commanded no further than the report that shows it.
+/// Issue 21.4: a drive of a hub that ignores its limits is not commanded further after the report that shows it.
 #[test]
 fn a_drive_of_a_hub_that_ignores_its_limits() {
     let bench = Bench::new();
@@ -137,7 +137,7 @@ fn a_drive_of_a_hub_that_passes_its_target() {
     let ended = hub.until_over(act);
     assert!(matches!(ended, Ended::WrongWay { position } if position > TURN), "{ended:?}");
     let (packets, _) = hub.record();
-    // Its accuracy is ±2.5°: three whole degrees are allowed where it arrives.
+    // Its accuracy is ±2.5°: three whole degrees are allowed at its target.
     let past: Vec<&Packet> = moving(&packets).into_iter().filter(|own| own.position > TURN + 3 * DEGREE).collect();
     assert!(past.len() <= UNDER_WAY + 1, "{past:?}");
 }

@@ -1,5 +1,5 @@
-//! Wires between a host and a target that can be cut: the stream goes through here, and so do the packets, whose ports are
-//! written anew where the connection is opened.
+//! Connections between a host and a target that can be cut: this proxy passes on the stream and the packets, whose ports
+//! are replaced when the connection is opened.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream, UdpSocket};
@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex};
 use std::thread::{JoinHandle, spawn};
 use std::time::Duration;
 
-/// A way of packets.
+/// A direction of packets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Transport {
     ToTarget,
@@ -23,16 +23,16 @@ pub(super) struct Wires {
 struct Shared {
     /// Both ends of the stream.
     streams: Mutex<Vec<TcpStream>>,
-    /// Takes what the host sends, and what the target sends.
+    /// Receive the packets of the host, and those of the target.
     sockets: [UdpSocket; 2],
     cut: [AtomicBool; 2],
-    /// Where the host wants its packets.
+    /// Port of the host's packets.
     host: AtomicU16,
     target: u16,
     end: AtomicBool,
 }
 
-/// Garbage on its way to both ends.
+/// Garbage that is sent in both directions.
 pub(super) struct Flood {
     end: Arc<AtomicBool>,
     sent: Arc<AtomicU64>,
@@ -40,7 +40,7 @@ pub(super) struct Flood {
 }
 
 impl Wires {
-    /// To `host:port`.
+    /// Creates the proxy to `host:port`.
     pub(super) fn to(target: &str) -> Self {
         let port = target.rsplit(':').next().unwrap().parse().unwrap();
         let socket = || {
@@ -93,7 +93,7 @@ impl Wires {
         self.shared.cut[way as usize].store(false, Ordering::SeqCst);
     }
 
-    /// Garbage to both ports, until it is ended.
+    /// Sends garbage to both ports, until it is ended.
     pub(super) fn flood(&self) -> Flood {
         let (end, sent) = (Arc::new(AtomicBool::new(false)), Arc::new(AtomicU64::new(0)));
         let ports = [self.shared.target, self.shared.host.load(Ordering::SeqCst)];
@@ -107,7 +107,7 @@ impl Wires {
                     // A full buffer drops it.
                     let _ = socket.send_to(&packet, ("127.0.0.1", port));
                 }
-                // Leaves something of the processor to the others.
+                // Yields the processor to other threads.
                 if counts.fetch_add(1, Ordering::SeqCst) % 20 == 0 {
                     std::thread::sleep(Duration::from_millis(1));
                 }
@@ -118,7 +118,7 @@ impl Wires {
 }
 
 impl Flood {
-    /// How many there were.
+    /// Ends it and returns the number of packets.
     pub(super) fn end(self) -> u64 {
         self.end.store(true, Ordering::SeqCst);
         self.thread.join().unwrap();
@@ -134,7 +134,8 @@ impl Drop for Wires {
 }
 
 impl Shared {
-    /// A frame comes in one piece here. The port in an address item of this type becomes the one of a socket of ours.
+    /// Passes on a stream, in which a frame arrives in one piece. The port in an address item of this type becomes that of
+    /// a socket of the proxy.
     fn pass_stream(&self, mut from: TcpStream, mut to: TcpStream, item: u16, ours: usize) {
         let mut buffer = [0; 4096];
         while let Ok(count) = from.read(&mut buffer) {
@@ -172,7 +173,7 @@ impl Shared {
                 Transport::ToHost => self.host.load(Ordering::SeqCst),
             };
             if !self.cut[way as usize].load(Ordering::SeqCst) {
-                // Nobody may be there any more.
+                // The receiver may no longer exist.
                 let _ = other.send_to(&buffer[..count], ("127.0.0.1", port));
             }
         }

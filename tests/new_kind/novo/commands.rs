@@ -1,4 +1,4 @@
-//! Its part of the command line.
+//! The kind's part of the command line.
 
 use std::convert::Infallible;
 

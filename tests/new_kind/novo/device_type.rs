@@ -1,4 +1,4 @@
-//! What the program knows of Novo encoders before there is one.
+//! The static data about Novo encoders.
 
 use encoder_studio::app::connect::form::{FormModel, NoFinder};
 use encoder_studio::app::review::{self, Review, Reviewed};
@@ -78,7 +78,7 @@ impl DeviceType for Encoder {
     }
 }
 
-/// A link as it is entered: the virtual encoder, or one behind a device server.
+/// The form of a link: to the virtual encoder, or to one at a device server.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoForm {
     pub(crate) link: String,

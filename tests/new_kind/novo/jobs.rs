@@ -1,4 +1,4 @@
-//! A Novo encoder at the end of a session: its jobs, and what it brings to a write.
+//! A Novo encoder in a session: its jobs, and its part of a write.
 
 use std::convert::Infallible;
 use std::sync::Arc;
@@ -23,16 +23,16 @@ pub(crate) const LIFE: u64 = 10_000;
 const TRIES: u16 = 3;
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Its wire.
+/// The encoder with its connection.
 pub(crate) struct Novo(pub(crate) Box<dyn ByteLink>);
 
-/// When, and the position.
+/// Time and position.
 pub(crate) type Sample = (Moment, u16);
 
-/// What a person wants it to keep.
+/// A change that the user wants to write.
 #[derive(Clone, Debug)]
 pub(crate) struct Change {
-    /// The serial number of the profile that is restored; `None`: edits are written.
+    /// The serial number of the profile to restore; `None`: edits are written.
     pub(crate) restored: Option<u16>,
     pub(crate) values: Values,
     pub(crate) options: RestoreOptions,
@@ -79,7 +79,7 @@ pub(crate) enum Error {
 
 pub(crate) type JobError = worker::JobError<Error, Infallible, Interrupted<Op, Error, Written, ()>, ()>;
 
-/// Where a link leads, as far as that can be told without opening it.
+/// Checks a link, as far as possible without opening it.
 pub(crate) fn check(url: &LinkUrl) -> Result<(), OpenError> {
     match url.scheme {
         Scheme::Sim => Virtual::from_pairs(url.query.pairs()).map(drop)?,

@@ -1,4 +1,4 @@
-//! What a person wants a Novo encoder to keep: kept over a crash, reviewed, written, saved and restored.
+//! Edits of a Novo encoder: kept after a crash, reviewed, written, saved and restored.
 
 use encoder_studio::app::review::{OpWords, Permit, Reviewed};
 use encoder_studio::app::session::{

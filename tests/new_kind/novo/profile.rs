@@ -1,4 +1,4 @@
-//! What is saved of a Novo encoder, compared and planned.
+//! The profile of a Novo encoder, compared and planned.
 
 use encoder_studio::expected::Expected;
 use encoder_studio::profile::{Comparison, Entries, Operation, Plan, Profile, ProfileError, Writer};
@@ -7,7 +7,7 @@ use super::protocol::{ITEMS, KIND, Values, name_of};
 
 const WORD: Expected = Expected::between(0, 65_535);
 
-/// Who it is, and what it keeps.
+/// The identity and the values.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct NovoProfile {
     pub(crate) serial: u16,
@@ -60,7 +60,7 @@ impl Operation for Op {
     }
 }
 
-/// Serial number and values, as they were read; and what becomes of them.
+/// Serial number and values as read, and their changes.
 pub(crate) type NovoPlan = Plan<(u16, Values), Op>;
 
 pub(crate) fn plan(now: &NovoProfile, wanted: &Values) -> NovoPlan {

@@ -1,25 +1,25 @@
-//! The bytes of a Novo encoder: `R` and an address ask for a word, `W`, an address and a word set one. The reply is the word
-//! that stands there, and the exclusive or of request and word.
+//! The bytes of a Novo encoder: `R` and an address request a word, `W`, an address and a word set one. The reply is the
+//! word at that address, and the exclusive or of request and word.
 
 /// The kind in profiles and on the command line.
 pub(crate) const KIND: &str = "novo";
-/// Where the serial number stands.
+/// Address of the serial number.
 pub(crate) const SERIAL: u8 = 0x01;
-/// Where the position stands: a turn has [`TURN`] steps, and it goes round after sixteen.
+/// Address of the position: a turn has [`TURN`] steps, and the counter overflows after sixteen.
 pub(crate) const POSITION: u8 = 0x03;
-/// Where the first of the [`ITEMS`] stands.
+/// Address of the first of the [`ITEMS`].
 pub(crate) const FIRST: u8 = 0x10;
 /// Steps of a turn.
 pub(crate) const TURN: u16 = 4096;
-/// What it keeps: each a word, one behind the other.
+/// The stored values: each a word, at consecutive addresses.
 pub(crate) const ITEMS: [&str; 4] = ["zero", "filter", "least", "greatest"];
 /// Bytes of a reply.
 pub(crate) const REPLY: usize = 3;
 
-/// What it keeps, in the order of [`ITEMS`].
+/// The stored values, in the order of [`ITEMS`].
 pub(crate) type Values = [u16; ITEMS.len()];
 
-/// What is asked of it.
+/// A request to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Request {
     Read(u8),
@@ -34,7 +34,7 @@ impl Request {
         }
     }
 
-    /// A whole request; `None` of anything else.
+    /// Parses a complete request; `None` for anything else.
     pub(crate) fn parse(bytes: &[u8]) -> Option<Self> {
         match *bytes {
             [b'R', address] => Some(Request::Read(address)),
@@ -44,24 +44,24 @@ impl Request {
     }
 }
 
-/// The reply to a request.
+/// Returns the reply to a request.
 pub(crate) fn reply(request: Request, word: u16) -> [u8; REPLY] {
     let [high, low] = word.to_be_bytes();
     [high, low, request.emit().iter().fold(high ^ low, |check, byte| check ^ byte)]
 }
 
-/// The word of a reply; `None` where it is damaged, or answers something else.
+/// Returns the word of a reply; `None` if it is damaged, or belongs to another request.
 pub(crate) fn parse_reply(request: Request, bytes: &[u8]) -> Option<u16> {
     let word = u16::from_be_bytes([*bytes.first()?, *bytes.get(1)?]);
     (reply(request, word) == bytes).then_some(word)
 }
 
-/// Where an item stands.
+/// Returns the address of an item.
 pub(crate) fn address_of(item: usize) -> u8 {
     ITEMS.iter().zip(FIRST..).nth(item).map_or(FIRST, |(_, address)| address)
 }
 
-/// What an item is called.
+/// Returns the name of an item.
 pub(crate) fn name_of(item: usize) -> &'static str {
     ITEMS.get(item).copied().unwrap_or_default()
 }

@@ -10,16 +10,16 @@ use encoder_studio::units::Moment;
 use super::protocol::{FIRST, POSITION, Request, SERIAL, TURN, Values, reply};
 
 parameters! {
-    /// What a virtual encoder shall be like.
+    /// The settings of a virtual encoder.
     struct Settings: ConfigError {
         serial: u16 = 1001, "serial" => Whole(Quantity::Number, 0..=65535);
         rpm: f64 = 0.0, "rpm" => RPM;
-        /// The address of a value that does not change any more.
+        /// The address of a value that no longer changes.
         stuck: Option<u8> = None, "stuck" => Maybe(Whole(Quantity::Address, 0..=255));
     }
 }
 
-/// A Novo encoder whose shaft turns evenly. Its values are lost with it.
+/// A Novo encoder whose shaft turns evenly. Its values are lost when it is dropped.
 pub(crate) struct Virtual {
     settings: Settings,
     values: Values,
@@ -28,7 +28,7 @@ pub(crate) struct Virtual {
 }
 
 impl Virtual {
-    /// As the query of a link says.
+    /// Creates an encoder from the query of a link.
     pub(crate) fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let settings = setting::read(VirtualDevice::EncoderOf("Novo"), pairs)?;
         Ok(Virtual { settings, values: [0, 3, 0, 65535], asked: vec![], answers: vec![] })

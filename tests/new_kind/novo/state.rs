@@ -26,14 +26,14 @@ pub(crate) static TEXTS: Catalogue = Catalogue::new(
 }"#,
 );
 
-/// What this kind alone can be asked for.
+/// The actions of this kind only.
 pub(crate) enum Action {
     Set(usize, u16),
 }
 
 impl DeviceAction for Action {}
 
-/// As it was read, or as the profile says.
+/// The profile as read, or as in a file.
 #[derive(Clone, Default)]
 pub(crate) struct Own(Option<NovoProfile>);
 
@@ -48,7 +48,7 @@ impl EditBase for Own {
 
 pub(crate) struct Encoder {
     pub(super) session: Session<Novo>,
-    /// What is wanted otherwise, by the number of the item.
+    /// The edits, by the number of the item.
     pub(crate) staged: Edits<Own>,
     pub(crate) last: Option<Sample>,
     pub(super) track: Track<Infallible>,
@@ -59,7 +59,7 @@ impl Encoder {
         Encoder { session, staged: Edits::default(), last: None, track: Track::default() }
     }
 
-    /// What it is to keep; `None` before it was read.
+    /// Returns the values with the edits; `None` before it was read.
     pub(crate) fn wanted(&self) -> Option<Values> {
         let mut values = self.read()?.values;
         self.staged.iter().for_each(|(item, value)| values[item] = value);

@@ -24,7 +24,7 @@ impl TabPage for Page {
     ];
 }
 
-/// What is typed for each item and does not count yet.
+/// Text typed for each item that is not yet an edit.
 type Typed = [Option<(String, Option<Text>)>; ITEMS.len()];
 
 pub(crate) struct NovoView;

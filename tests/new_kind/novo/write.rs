@@ -1,4 +1,4 @@
-//! How a plan is written into a Novo encoder.
+//! Writing a plan into a Novo encoder.
 
 use encoder_studio::profile::{Body, Confirmed, DeviceError, Write, Written};
 use encoder_studio::store::DeviceKey;

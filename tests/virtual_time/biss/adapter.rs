@@ -1,4 +1,4 @@
-//! Registers and position over an adapter: banks, checksums, wires that do not move, and adapters that do not answer.
+//! Registers and position over an adapter: banks, checksums, stuck wires, and adapters that do not answer.
 
 use std::time::Duration;
 
@@ -27,7 +27,7 @@ fn registers_and_position_are_read() {
     assert_eq!(bus.station.to_string(), "BiSS at 1000000 Hz");
 }
 
-/// The clock is the nearest below the wish that the adapter can divide its 60 MHz to: 60/9 MHz.
+/// The clock is the nearest below the requested one that the adapter can divide from its 60 MHz: 60/9 MHz.
 #[test]
 fn the_clock_is_what_the_adapter_makes_of_the_wish() {
     let mut bus = Bus::new("");
@@ -43,14 +43,14 @@ fn error_and_warning_come_with_the_position() {
     assert_eq!((reading.error, reading.warning, reading.is_valid()), (Some(true), Some(true), false));
 }
 
-/// Half a turn a second: 65536 steps.
+/// Half a turn per second: 65536 steps.
 #[test]
 fn a_position_belongs_to_the_moment_in_which_the_adapter_took_it() {
     let mut bus = Bus::new("rpm=30&position=0");
     for _ in 0..20 {
         let reading = bus.master().position().unwrap();
         let expected = reading.at.since_start().as_secs_f64() * 65_536.0;
-        // The frame and its way back take 0.4 ms, in which the shaft turns 26 steps.
+        // The frame and its transmission take 0.4 ms, in which the shaft turns 26 steps.
         assert!((f64::from(reading.steps) - expected).abs() < 20.0, "{reading:?}, not {expected}");
     }
 }
@@ -145,7 +145,7 @@ fn frames_with_wrong_checksums_are_counted_and_asked_again() {
     let mut bus = Bus::new("noise=0.15&seed=3");
     let (mut right, mut wrong) = (0, 0);
     for _ in 0..200 {
-        // A CRC of six bits finds every single flipped bit, and one is flipped.
+        // A CRC of six bits detects every single flipped bit, and one is flipped.
         let reading = bus.master().position().unwrap_or_else(|error| panic!("{error}"));
         assert_eq!(reading.position(), 0x2469_8000);
         right += 1;
@@ -208,7 +208,7 @@ fn the_supply_is_switched_on_where_that_is_wished() {
     assert_eq!(error.to_string(), "the adapter virtual adapter cannot supply an encoder");
 }
 
-/// The wire to the adapter, not that to the encoder: packets have a CRC of 16 bits.
+/// The line of the adapter, not that of the encoder: packets have a CRC of 16 bits.
 #[test]
 fn a_noisy_wire_to_the_adapter_gives_right_values_or_errors() {
     let (mut right, mut failed) = (0, 0);

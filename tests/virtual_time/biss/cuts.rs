@@ -1,6 +1,6 @@
-//! Every procedure with its link cut at every single exchange, its encoder robbed of power there, and the user's wish to
-//! end there: what is told of the encoder's state is the state that it is in, the way back leads to operation with the
-//! password cleared, and the procedure can then be carried out.
+//! Every procedure with its link cut, its encoder without power, or cancelled at every single exchange: the reported state
+//! of the encoder is the real one, the return leads to operation with the password cleared, and the procedure can then be
+//! carried out.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError, Prepared};
 use encoder_studio::devices::biss::procedures::Error;
@@ -15,7 +15,7 @@ use super::support::{Bench, Transport};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// A procedure, and what it has done when it is done.
+/// A procedure, and the check of its result.
 struct Scene {
     name: &'static str,
     change: fn() -> Change,
@@ -45,7 +45,7 @@ const SCENES: [Scene; 5] = [
     Scene { name: "Wiegand test", change: || wiegand_test(true), is_done: |bench| bench.flash_cycles() > 0 },
 ];
 
-/// All of them in one.
+/// Returns all procedures in one change.
 fn mounting() -> Change {
     let bytes = [7; 64];
     let mut profile = Bench::new(Transport::ConfigPin, "").save();
@@ -61,17 +61,17 @@ fn mounting() -> Change {
     Change::Guided { run, motor: MotorSource::Other }
 }
 
-/// How a commit went that was disturbed.
+/// The end of a disturbed commit.
 enum Ended {
-    /// To its end.
+    /// Complete.
     Done,
     /// Before the first operation; nothing was written.
     Refused(Error),
-    /// In the middle.
+    /// After the first operation.
     Interrupted(Box<Interrupted>),
 }
 
-/// Carries the change out on a copy of the bench; `disturb` is called when the plan stands.
+/// Carries the change out on a copy of the bench; `disturb` is called when the plan is complete.
 fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Bench)) -> (Bench, Ended) {
     let mut bench = original.copied();
     disturb(&mut bench);
@@ -87,7 +87,8 @@ fn disturbed(original: &Bench, prepared: &Prepared, disturb: impl FnOnce(&mut Be
     (bench, ended)
 }
 
-/// Reconnected, the encoder is led back; and, once for each step, the change carried out once more.
+/// Checks that the reconnected encoder can be returned to operation, and that, once for each step, the change can be
+/// repeated.
 fn assert_can_be_led_back(
     bench: &Bench,
     scene: &Scene,
@@ -112,7 +113,7 @@ fn assert_can_be_led_back(
     assert_eq!(again.mode_and_password(), IN_OPERATION, "{context}");
 }
 
-/// Flash cycles told are those that were spent, or one more where the last is not known.
+/// Checks that the reported flash cycles are the real ones, or one more if the last is not known.
 fn assert_cycles(told: &Interrupted, spent: u32, context: &str) {
     let told = told.done.write_cycles;
     assert!(told == u64::from(spent) || told == u64::from(spent) + 1, "{context}: {told} told, {spent} spent");
@@ -156,11 +157,11 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
     }
 }
 
-/// The cuts have hit every step in which anything is sent.
+/// Checks that the cuts have hit every step in which anything is sent.
 fn assert_all_steps(prepared: &Prepared, hit: &[ProcedureStep], name: &str, context: &str) {
     let mut missed: Vec<ProcedureStep> = prepared.plan.ops.iter().flat_map(steps_of).collect();
     if missed.contains(&ProcedureStep::Restart) && name != "lost" {
-        // An encoder that restarts owes no answer: that it has heard nothing shows when it is looked for.
+        // An encoder that restarts owes no answer: a missed command is detected when the encoder is searched for.
         missed.retain(|step| !matches!(step, ProcedureStep::Save | ProcedureStep::Fire));
     }
     missed.retain(|step| !hit.contains(step));
@@ -192,7 +193,7 @@ fn wiegand_test_cut_at_every_exchange() {
     WAYS.iter().for_each(|way| cut_at_every_exchange(&SCENES[4], *way));
 }
 
-/// The encoder loses its power before an exchange: it starts in operation, and nothing is stored by halves.
+/// The encoder loses its power before an exchange: it starts in operation, and nothing is stored partially.
 #[test]
 fn power_lost_before_every_exchange() {
     for scene in &SCENES {
@@ -204,7 +205,7 @@ fn power_lost_before_every_exchange() {
             let context = format!("{}, power lost before {at}", scene.name);
             let (bench, ended) = disturbed(&original, &prepared, |bench| {
                 let (encoder, mut sent) = (bench.handle(), 0);
-                // The trace is told of a request before it is on the line.
+                // The trace receives a request before it is sent.
                 bench.session.watch(move |entry| {
                     if entry.direction == Direction::Sent {
                         if sent == at {
@@ -225,7 +226,7 @@ fn power_lost_before_every_exchange() {
                     let running = Activity::Running(Run::CalibrationClockwise);
                     let warned = told.left.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
-                    // Power is back, and with it operation.
+                    // Power is back, and the encoder is in operation.
                     let mut again = bench.reconnected_knowing();
                     assert_eq!(again.lead_back().unwrap(), DeviceMode::OPERATION, "{context}");
                     assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
@@ -256,7 +257,7 @@ fn power_lost_in_every_store() {
     }
 }
 
-/// The user's wish to end, at every exchange: the encoder is in operation, and what was written is what was told.
+/// A cancellation at every exchange: the encoder is in operation, and the written values are the reported ones.
 #[test]
 fn cancelled_at_every_exchange() {
     for scene in &SCENES {
@@ -288,7 +289,8 @@ fn cancelled_at_every_exchange() {
     }
 }
 
-/// The whole mounting, cut at some exchanges of each of its operations: what was done before is told as done.
+/// The complete mounting, cut at some exchanges of each of its operations: operations completed before are reported as
+/// done.
 #[test]
 fn a_mounting_that_is_cut_off_tells_what_was_done() {
     let mut original = Bench::new(Transport::ConfigPin, "");

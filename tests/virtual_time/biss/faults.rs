@@ -1,4 +1,4 @@
-//! What a survey makes of a bad line, on either way: it is right, or it says what is wrong, and it ends.
+//! Surveys on a bad line, on either connection: the result is right or there is an error, and the job ends.
 
 use std::fs;
 use std::sync::{Arc, Mutex};
@@ -24,7 +24,7 @@ fn survey(bench: &mut Bench) -> Result<Survey, Error> {
     }
 }
 
-/// All but when the position was taken.
+/// Returns the survey without the time of the position.
 fn timeless(survey: Survey) -> Survey {
     let mut survey = survey;
     if let Some(reading) = &mut survey.status.position {
@@ -39,7 +39,7 @@ fn a_survey_over_a_bad_line_is_right_or_an_error() {
     let (mut right, mut failed) = (0, 0);
     for way in WAYS {
         let truth = timeless(survey(&mut Bench::new(way, "")).unwrap());
-        // The wire to an adapter is a cable of a metre: a packet that is lost twice is the end of a job.
+        // The line to an adapter is a cable of a metre: a packet that is lost twice ends a job.
         let noises = match way {
             Transport::ConfigPin => ["drop:0.005", "flip:0.005", "garbage:0.005", "drop:0.02,flip:0.02,garbage:0.02"],
             Transport::Adapter => ["drop:0.0005", "flip:0.0005", "garbage:0.0005", "drop:0.005"],
@@ -82,7 +82,7 @@ fn echo_and_byte_order_change_nothing_of_what_is_read() {
     }
 }
 
-/// Cut at every hundredth exchange: the error is that of silence, and it comes within ten seconds.
+/// Cut at every hundredth exchange: the error is that of silence, within ten seconds.
 #[test]
 fn silence_ends_a_survey_within_ten_seconds() {
     for way in WAYS {
@@ -91,7 +91,7 @@ fn silence_ends_a_survey_within_ten_seconds() {
             bench.tap().mute_from = Some(frames);
             let error = survey(&mut bench).unwrap_err();
             assert!(error.is_lost(), "{way:?} from {frames} on: {error}");
-            // A survey that is not disturbed takes half a second.
+            // An undisturbed survey takes half a second.
             assert!(bench.now() < Duration::from_secs(11), "{way:?} from {frames} on: {:?}", bench.now());
         }
     }
@@ -117,7 +117,7 @@ fn a_wish_to_end_is_heard_between_two_exchanges() {
     }
 }
 
-/// What was recorded answers as the encoder did.
+/// A recording answers as the encoder did.
 #[test]
 fn a_recording_of_either_way_can_be_played_again() {
     for way in WAYS {

@@ -1,4 +1,4 @@
-//! Noise that comes faster than anybody can read: it costs neither memory nor time without end.
+//! Noise at a high rate: memory and time remain limited.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -13,7 +13,7 @@ use encoder_studio::worker::{Event, JobId, Session};
 use super::support::Transport;
 use crate::support::{MARGIN, folder};
 
-/// Behind each request 512,000 bytes a second come for so long.
+/// A link that receives 512,000 bytes per second for a time after each request.
 struct Flood {
     clock: Arc<VirtualClock>,
     lasts: Duration,
@@ -46,7 +46,8 @@ impl ByteLink for Flood {
     }
 }
 
-/// Issue 22.11: of noise over either way the trace keeps what can be read, and a job ends also where it never does.
+/// Issue 22.11: of noise on either connection the trace keeps a limited number of bytes, and a job ends even if the noise
+/// does not.
 #[test]
 fn a_flood_of_noise_costs_neither_memory_nor_time_without_end() {
     for (way, noise) in [
@@ -57,7 +58,7 @@ fn a_flood_of_noise_costs_neither_memory_nor_time_without_end() {
     ] {
         for lasts in [300, 900, 3_600_000] {
             let (clock, folder) = (Arc::<VirtualClock>::default(), folder());
-            // Packets that are none, with an end each.
+            // Invalid packets, each with an end.
             let mut portion = [noise; 512];
             portion[511] = 0;
             let lasts = Duration::from_millis(lasts);

@@ -1,5 +1,5 @@
-//! A person at the motor of a virtual encoder, who does what is asked and presses Start when it is possible; and the
-//! changes that the tests of procedures carry out.
+//! A simulated user at the motor of a virtual encoder, who follows the requests and presses Start when possible; and the
+//! changes for the tests of procedures.
 
 use std::time::Duration;
 
@@ -18,17 +18,17 @@ use encoder_studio::worker::commit::ApprovedPlan;
 
 use super::support::{Bench, at};
 
-/// Does what is asked, and remembers it.
+/// Follows the requests, and records them.
 pub(crate) struct Hands {
     motor: Motor,
     pub(crate) seat: OperatorChannel,
-    /// Revolutions a minute in the calibration and in the Wiegand test.
+    /// Revolutions per minute in the calibration and in the Wiegand test.
     pub(crate) rpm: (f64, f64),
-    /// What was told: operation and step, each when it began.
+    /// Reported operations and steps, each when it began.
     pub(crate) steps: Vec<(usize, ProcedureStep)>,
     /// The last demand for each task, in the order in which they were made.
     pub(crate) demands: Vec<Demand>,
-    /// What is answered instead of Start.
+    /// Answers other than Start.
     pub(crate) instead: Vec<(Task, Answer)>,
 }
 
@@ -52,7 +52,7 @@ impl Hands {
         }
     }
 
-    /// Carrying this plan out, with this person at the motor.
+    /// Returns the job that carries this plan out, with this user at the motor.
     pub(crate) fn commit_of(&self, prepared: &Prepared) -> BissJob {
         let attendance = OperatorPresence::Attended(self.seat.clone());
         let consent = Consent::to(prepared.plan.id());
@@ -100,7 +100,7 @@ pub(crate) fn filter() -> Change {
     Change::SelectFilter(Filter::Dynamic)
 }
 
-/// Three bytes of OEM data, in two runs and two banks.
+/// Returns three bytes of OEM data, in two runs and two banks.
 pub(crate) fn data() -> Change {
     let edit = |place: &str, bytes: &[u8]| (place.parse().unwrap(), bytes.to_vec());
     Change::Write(vec![
@@ -122,7 +122,7 @@ impl Bench {
         }
     }
 
-    /// Carries a plan out with this person at the motor.
+    /// Carries a plan out with this user at the motor.
     pub(crate) fn commit(&mut self, prepared: &Prepared, hands: &mut Hands) -> Result<Committed, Box<JobError>> {
         match self.run_watched(hands.commit_of(prepared), &mut |news| hands.hear(news))? {
             BissOutput::Committed(committed) => Ok(*committed),
@@ -130,7 +130,7 @@ impl Bench {
         }
     }
 
-    /// Carries a plan out with nobody at the motor.
+    /// Carries a plan out without a user at the motor.
     pub(crate) fn commit_alone(&mut self, prepared: &Prepared, patience: Duration) -> Result<Committed, JobError> {
         let attendance = OperatorPresence::Unattended(Unattended { patience });
         let consent = Consent::to(prepared.plan.id());
@@ -162,12 +162,12 @@ impl Bench {
         }
     }
 
-    /// Mode and password, looked at in the encoder.
+    /// Returns mode and password, read directly in the encoder.
     pub(crate) fn mode_and_password(&self) -> (DeviceMode, u8) {
         (self.encoder(|encoder, _| encoder.mode()), self.encoder_reads(at("0x6B")).unwrap())
     }
 
-    /// A bank, looked at in the encoder's flash.
+    /// Returns a bank, read directly in the encoder's flash.
     pub(crate) fn flash_bank(&self, bank: u8) -> Vec<u8> {
         self.encoder(|encoder, _| {
             let (data, first) = match bank {
@@ -179,9 +179,9 @@ impl Bench {
     }
 }
 
-/// The exchanges of an undisturbed run at which a cut makes a difference: all but those before the first operation, which
-/// only read, and those that ask the same again and again, the position while a person is waited for and the status while
-/// a run goes on. Of these every eighth is enough.
+/// Returns the exchanges of an undisturbed run at which a cut makes a difference: all but those before the first operation,
+/// which only read, and the repeated ones, for the position while the user is waited for and for the status during a run.
+/// Every eighth of these is enough.
 pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     let mut bench = original.copied();
     let mut hands = Hands::on(&bench);
@@ -208,7 +208,7 @@ pub(crate) fn exchanges(original: &Bench, prepared: &Prepared) -> Vec<usize> {
     (0..=sent()).filter(|at| !asks_again(*at) || at % 8 == 0).collect()
 }
 
-/// The interruption, where it is one.
+/// Returns the interruption; fails for another error.
 pub(crate) fn interrupted(error: JobError) -> Interrupted {
     match error {
         JobError::Interrupted { interrupted, .. } => *interrupted,
@@ -218,7 +218,7 @@ pub(crate) fn interrupted(error: JobError) -> Interrupted {
 
 pub(crate) const IN_OPERATION: (DeviceMode, u8) = (DeviceMode::OPERATION, 0);
 
-/// The state that was told is the one in which the encoder is.
+/// Checks that the reported state is that of the encoder.
 pub(crate) fn assert_told(left: &EndState, bench: &Bench, context: &str) {
     let (mode, password) = bench.mode_and_password();
     match &left.standing {

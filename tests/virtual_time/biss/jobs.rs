@@ -157,7 +157,7 @@ fn registers_and_banks_are_read() {
     }
 }
 
-/// Manual 6.5: data are not touched while the motor runs.
+/// Manual 6.5: data are not accessed while the motor runs.
 #[test]
 fn data_are_not_read_while_the_shaft_turns() {
     for way in WAYS {
@@ -196,8 +196,8 @@ fn everything_that_can_be_restored_is_saved_over_both_ways() {
     }
 }
 
-/// Issue 22.15, reference 5.3: in mode 04 the data registers show what was entered and not saved. It is told and marked, and
-/// not compared; reading leaves it as it is, since leading back discards it.
+/// Issue 22.15, reference 5.3: in mode 04 the data registers show written and unsaved values. They are reported and marked,
+/// and not compared; reading leaves them unchanged, since returning to operation discards them.
 #[test]
 fn what_was_never_saved_is_not_taken_for_the_encoders_content() {
     for way in WAYS {
@@ -244,7 +244,7 @@ fn a_save_tells_how_far_it_is_and_ends_when_that_is_wished() {
     assert_eq!(stopped.tap().sent.len(), 1000);
 }
 
-/// What is kept is right, whatever the line does, or there is an error.
+/// A save is right, with any fault of the line, or there is an error.
 #[test]
 fn a_save_over_a_noisy_line_is_right_or_an_error() {
     let (mut saved, mut failed) = (0, 0);
@@ -266,7 +266,8 @@ fn a_save_over_a_noisy_line_is_right_or_an_error() {
     assert!(saved > 9);
 }
 
-/// A description of another device of the same manufacturer: it is told, and what every encoder has is shown.
+/// A description of another device of the same manufacturer: it is reported, and the data common to every encoder are
+/// shown.
 #[test]
 fn a_device_id_that_fits_no_description_is_told() {
     let [(_, kit), (_, unknown)] = Descriptions::BUILT_IN;
@@ -314,8 +315,8 @@ fn samples_and_watched_registers_come_one_by_one() {
     }
 }
 
-/// UBICOM reference 4: the word has no error and no warning bit, so that the registers are looked at, each once a second;
-/// a frame has both. Every position tells.
+/// UBICOM reference 4: the word has no error and no warning bit, so that the registers are read, each once per second; a
+/// frame has both. Every position includes them.
 #[test]
 fn an_error_that_comes_while_positions_are_polled_marks_them() {
     for way in WAYS {
@@ -341,14 +342,14 @@ fn an_error_that_comes_while_positions_are_polled_marks_them() {
             last = sample(&mut bench);
         }
         assert_eq!(last, (Some(true), Some(false)), "{way:?}");
-        // Asked once, it tells at once.
+        // A single request reports it at once.
         bench.encoder(|encoder, _| encoder.set_errors(ErrorRegister::default()));
         let BissOutput::Position(reading) = bench.run(BissJob::Position).unwrap() else { panic!() };
         assert_eq!((reading.error, reading.warning), (Some(false), Some(false)), "{way:?}");
     }
 }
 
-/// A frame that comes through now and then: the wrong ones are counted with the next right one, or are a sample.
+/// Some valid frames between damaged ones: the damaged ones are counted with the next valid one, or are a sample.
 #[test]
 fn polling_survives_damaged_frames() {
     let mut bench = Bench::new(Transport::Adapter, "noise=0.6&seed=2");

@@ -29,7 +29,7 @@ fn registers_and_position_are_read_with_the_published_frames() {
     assert_eq!(pin.station.line.damaged, 0);
 }
 
-/// Half a turn in a second, taken when the encoder begins to answer: a millisecond after the request's seven bytes.
+/// Half a turn per second, sampled when the encoder begins to answer: a millisecond after the request's seven bytes.
 #[test]
 fn a_position_belongs_to_the_moment_of_its_first_bit() {
     let mut pin = Pin::new("rpm=30&position=0");
@@ -66,7 +66,7 @@ fn echo_is_learned_and_removed_whatever_was_told() {
             assert_eq!((pin.station.line.echo, pin.station.line.damaged), (told, 0), "{setting:?}");
         }
     }
-    // A reply without the echo that belongs before it answers something else.
+    // A reply without the echo that should precede it belongs to another request.
     let mut pin = Pin::new("echo=off");
     pin.station.line.echo = Echo::On;
     let error = pin.master().read(at("0x66")).unwrap_err();
@@ -87,7 +87,7 @@ fn silence_is_told_after_five_tries_and_within_the_patience() {
     assert!(matches!(error, Error::NoReply { echo_heard: true, .. }), "{error}");
 }
 
-/// An encoder that answers says nothing to a register that it does not have: bank 44h of the kit encoder.
+/// An encoder that otherwise answers is silent for a register that it does not have: bank 44h of the kit encoder.
 #[test]
 fn a_register_that_is_not_there_is_told_from_an_encoder_that_is_not() {
     let mut pin = Pin::new("");
@@ -111,7 +111,7 @@ fn a_refusal_is_told_and_not_repeated() {
     assert_eq!(pin.master().read(at("0x6A")), Ok(7));
 }
 
-/// The request, or its answer, is lost: what is kept is read back, and sent again only where it has to be.
+/// The request, or its answer, is lost: a stored value is read back, and sent again only if necessary.
 #[test]
 fn a_write_whose_answer_is_lost_is_read_back() {
     for request_lost in [false, true] {
@@ -126,7 +126,7 @@ fn a_write_whose_answer_is_lost_is_read_back() {
     }
 }
 
-/// The start of a Wiegand test: the encoder cannot be asked whether it has heard it.
+/// The start of a Wiegand test: the encoder cannot report whether it received the command.
 #[test]
 fn a_command_whose_answer_is_lost_is_unclear_and_never_repeated() {
     for request_lost in [false, true] {
@@ -142,7 +142,7 @@ fn a_command_whose_answer_is_lost_is_unclear_and_never_repeated() {
     }
 }
 
-/// The wire goes while the write is on it.
+/// The connection is lost during the write.
 #[test]
 fn a_write_that_lost_its_wire_is_unclear() {
     let mut pin = Pin::new("");
@@ -176,7 +176,7 @@ fn an_end_is_heard_between_two_exchanges_and_not_in_a_shield() {
     assert_eq!(master.read(at("0x41")), Err(Error::Cancelled), "the shield ends");
 }
 
-/// A calibrating encoder says nothing for five seconds: without patience that is an error, with it the status comes.
+/// A calibrating encoder is silent for five seconds: without patience that is an error, with it the status arrives.
 #[test]
 fn who_is_silent_for_long_is_waited_for() {
     let mut pin = Pin::new("rpm=-500&calibration=7");
@@ -196,7 +196,7 @@ fn who_is_silent_for_long_is_waited_for() {
     assert!((9.0..10.5).contains(&(dead.now() - from).as_secs_f64()), "patience has an end");
 }
 
-/// No value is ever wrong without two damaged frames whose sums fit; with confirmation none is in these runs.
+/// A value is wrong only after two damaged frames whose sums match; with confirmation none is in these runs.
 #[test]
 fn a_noisy_line_gives_right_values_or_errors() {
     let (mut right, mut failed) = (0, 0);
@@ -238,7 +238,7 @@ fn writes_over_a_noisy_line_end_as_they_say() {
     }
 }
 
-/// A false beginning of a frame hides what follows until it is over; 20 ms of silence end it on both sides.
+/// A false beginning of a frame hides the following bytes until it ends; 20 ms of silence end it on both sides.
 #[test]
 fn a_line_is_found_again_after_garbage() {
     let mut pin = Pin::new("temperature=25");
@@ -250,7 +250,7 @@ fn a_line_is_found_again_after_garbage() {
     assert!(pin.clock.now().since(from) < Duration::from_secs(1));
 }
 
-/// Issue 22.11: replies that come broken are counted as damaged, and the trace has their bytes.
+/// Issue 22.11: damaged replies are counted, and the trace contains their bytes.
 #[test]
 fn broken_replies_are_counted_and_shown() {
     let mut pin = Pin::new("");
@@ -260,7 +260,7 @@ fn broken_replies_are_counted_and_shown() {
     assert!(matches!(error, Error::Damaged { .. }), "{error}");
     let quality = pin.station.line.quality.clone();
     assert_eq!((quality.damaged, quality.retries), (5, 4));
-    // Before them the order of a number's bytes was asked for.
+    // The byte order of numbers was requested before them.
     let shown = pin.shown(Direction::Received);
     assert!(shown.len() == 6 && shown.iter().all(|own| !own.contains('*')), "{shown:?}");
 }

@@ -1,4 +1,4 @@
-//! A BiSS encoder at the end of its line.
+//! A BiSS encoder on its line.
 
 mod adapter;
 mod cuts;

@@ -1,5 +1,5 @@
-//! The five procedures and the mounting run on the virtual encoder: their steps, what they measure and refuse, what their
-//! failures say, and that every end is operation with the password cleared.
+//! The five procedures and the mounting run on the virtual encoder: their steps, measurements, refusals and failures, and
+//! the return to operation with the password cleared at every end.
 
 use std::time::Duration;
 
@@ -20,8 +20,7 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// The steps that were told are those that were listed beforehand, in their order; the way back is told where there is
-/// something to lead back.
+/// Checks that the reported steps are those listed before, in their order; the return is reported if there is one.
 #[track_caller]
 fn assert_steps(bench: &mut Bench, change: Change) -> Hands {
     let prepared = bench.prepare(change).unwrap();
@@ -39,7 +38,7 @@ fn assert_steps(bench: &mut Bench, change: Change) -> Hands {
     hands
 }
 
-/// Manual 6.4: counterclockwise first, about five seconds each, saved by itself.
+/// Manual 6.4: counterclockwise first, about five seconds each, saved automatically.
 #[test]
 fn a_calibration_runs_both_ways_and_is_one_flash_cycle() {
     for way in WAYS {
@@ -87,7 +86,7 @@ fn a_wiegand_test_gives_its_results_and_saves_them_where_that_is_wished() {
             let took = bench.now() - from;
             assert!((2.0 * 30.9..75.0).contains(&took.as_secs_f64()), "{took:?}");
             assert_eq!(bench.mode_and_password(), IN_OPERATION);
-            // It shows after a restart.
+            // It takes effect after a restart.
             bench.encoder(|encoder, now| encoder.power_cycle(now));
             bench.run(encoder_studio::devices::biss::jobs::BissJob::LeadBack).unwrap();
             assert_eq!(bench.encoder_reads(at("0x00:0x12")), Some(if save { 58 } else { 0 }));
@@ -252,7 +251,7 @@ fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
     }
 }
 
-/// Nobody is there: what does not fit is told after the patience, and nothing was begun.
+/// Without a user: unsuitable values are reported after the patience, and nothing was begun.
 #[test]
 fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
     let cases = [
@@ -272,18 +271,18 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
         assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, IN_OPERATION));
         assert!(bench.now() - from < Duration::from_secs(7), "{query}");
     }
-    // A motor that turns round where the encoder waits for it.
+    // A motor that reverses when the encoder waits for it.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=-500&motor=reverse");
     let prepared = bench.prepare(calibration()).unwrap();
     let written = bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap().written;
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
-    // One that does not: the second direction never comes.
+    // A motor that does not: the second direction never begins.
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
     assert_eq!(told.left.at, ProcedureStep::Await(Task::Turn(Run::WiegandCounterclockwise)));
     assert_eq!((told.left.standing, bench.mode_and_password()), (None, IN_OPERATION));
-    // Outside of the speeds: too slow for the test, too fast for the calibration.
+    // Outside the speeds: too slow for the test, too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
         let prepared = bench.prepare(change).unwrap();
@@ -296,10 +295,10 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
     }
 }
 
-/// Manual 6.4: what the calibration's status may say. The second run loses the table.
+/// Manual 6.4: the possible errors of the calibration's status. The second run loses the table.
 #[test]
 fn a_calibration_that_fails_says_why() {
-    // Speed and direction change when the run has been started; waver and temperature are there from the beginning.
+    // Speed and direction change after the start of the run; waver and temperature are set from the beginning.
     let cases = [
         (Run::CalibrationCounterclockwise, "waver=5", None, CalibrationStatus::Failed),
         (Run::CalibrationCounterclockwise, "", Some(-600.0), CalibrationStatus::Failed),
@@ -327,18 +326,18 @@ fn a_calibration_that_fails_says_why() {
         assert_eq!(told.cause, Failure::Calibration { run, status });
         assert_eq!((told.left.at, told.left.standing), (ProcedureStep::Run(run), None));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
-        // The encoder's word on its flash is not known: a table that is lost counts as one that was written.
+        // The state of the encoder's flash is not known: a lost table counts as a write.
         let lost = run == Run::CalibrationClockwise;
         assert_eq!((bench.flash_cycles(), told.done.write_cycles), (before, u64::from(lost)));
         assert_eq!(bench.encoder(|encoder, _| encoder.flash().is_calibrated()), !lost);
-        // No backup holds the table.
+        // No backup contains the table.
         assert_eq!(words, ["write.interrupted", "biss_left.at", "biss_left.operation", "write.backup_calibration"]);
         let again = bench.prepare(calibration()).unwrap();
         assert_eq!(again.cycles_seen, Some(u64::from(lost)), "as the logbook has it");
     }
 }
 
-/// What the encoder itself finds wrong although it was measured otherwise a moment before.
+/// Errors that the encoder itself detects although the measured values were valid just before.
 #[test]
 fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
     type Spoil = fn(&mut encoder_studio::devices::biss::sim::Encoder, encoder_studio::units::Moment);
@@ -367,7 +366,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
         assert_eq!(interrupted(*error).cause, Failure::Calibration { run, status });
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
-    // A Wiegand sensor that gives no pulses, and a motor that turns on as it did.
+    // A Wiegand sensor without pulses, and a motor that continues to turn.
     let mut dead = Bench::new(Transport::ConfigPin, "pulses=0,0");
     let told = interrupted(dead.change(wiegand_test(true)).unwrap_err());
     let (run, status) = (Run::WiegandClockwise, WiegandStatus::Failed);
@@ -392,7 +391,7 @@ fn the_encoder_has_the_last_word_on_direction_speed_and_temperature() {
 
 #[test]
 fn a_run_that_never_ends_is_given_up() {
-    // The motor stops, and the revolutions never come together.
+    // The motor stops, and the revolutions are never complete.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     let prepared = bench.prepare(wiegand_test(false)).unwrap();
     let mut hands = Hands::on(&bench);
@@ -410,7 +409,7 @@ fn a_run_that_never_ends_is_given_up() {
     assert_eq!((told.left.standing, bench.mode_and_password()), (None, IN_OPERATION));
 }
 
-/// What is known before a procedure begins is refused before anything is written.
+/// Obstacles known before a procedure begins are refused before anything is written.
 #[test]
 fn what_cannot_be_done_is_refused_beforehand() {
     let run = |calibrate, wiegand| MountingRun { calibrate, wiegand, ..MountingRun::default() };
@@ -439,7 +438,7 @@ fn what_cannot_be_done_is_refused_beforehand() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// An old firmware has one filter, and its register says nothing.
+/// An old firmware has one filter, and its register has no meaning.
 #[test]
 fn an_encoder_without_a_choice_of_filter_is_calibrated() {
     let mut bench = Bench::new(Transport::ConfigPin, "firmware=1.0.0");
@@ -447,7 +446,7 @@ fn an_encoder_without_a_choice_of_filter_is_calibrated() {
     assert!(matches!(written.outcomes.as_slice(), [Outcome::Calibrated(_)]));
 }
 
-/// Somebody has left the encoder in a device mode, with the password set.
+/// Another host has left the encoder in a device mode, with the password set.
 #[test]
 fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
     for mode in [1, 2, 4, 5, 7] {
@@ -465,7 +464,7 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
             bench.change(data()).unwrap();
         }
     }
-    // Only the password: whoever writes next clears it.
+    // Only the password: the next write clears it.
     let mut bench = Bench::new(Transport::ConfigPin, "");
     bench.encoder(|encoder, now| assert!(encoder.write(now, at("0x6B"), 0x2A)));
     bench.change(data()).unwrap();
@@ -473,7 +472,7 @@ fn an_encoder_that_was_left_in_a_mode_is_led_back_first() {
     assert_eq!(bench.lead_back().unwrap(), DeviceMode::OPERATION);
 }
 
-/// A clockwise run that somebody began is let finish: leaving it would lose the table.
+/// A clockwise run of another host is allowed to finish: leaving it would lose the table.
 #[test]
 fn leading_back_waits_for_a_calibration() {
     for silent in ["on", "off"] {
@@ -494,7 +493,7 @@ fn leading_back_waits_for_a_calibration() {
     }
 }
 
-/// Start was pressed twice for the motor data: the second time is no answer for the OEM data, of which the same is asked.
+/// Start was pressed twice for the motor data: the second press does not answer the same question for the OEM data.
 #[test]
 fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -522,7 +521,7 @@ fn an_answer_that_comes_twice_does_not_start_the_next_operation() {
     assert_eq!((bench.flash_bank(0x04)[0x10], bench.flash_bank(0x24)[0x10]), (0x5A, 0));
 }
 
-/// What the status says of an earlier run is neither the end nor the failure of this one.
+/// The status of an earlier run is neither the end nor the failure of this one.
 #[test]
 fn the_status_of_an_earlier_run_is_not_taken_for_this_one() {
     for silent in ["on", "off"] {
@@ -531,7 +530,7 @@ fn the_status_of_an_earlier_run_is_not_taken_for_this_one() {
         let before = bench.flash_cycles();
         // It leaves "clockwise done".
         bench.change(calibration()).unwrap();
-        // It leaves "counterclockwise done", with which the first run is to end.
+        // It leaves "counterclockwise done", which is also the end of the first run.
         let prepared = bench.prepare(calibration()).unwrap();
         let mut hands = Hands::on(&bench);
         hands.instead.push((Task::Turn(Run::CalibrationClockwise), Answer::Skip));

@@ -1,4 +1,5 @@
-//! Positions closer than one can ask for them: the adapter streams them, and is told to end before anything else.
+//! Positions at a higher rate than single requests allow: the adapter streams them, and the stream is ended before any
+//! other request.
 
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -29,12 +30,12 @@ struct Stand {
     _folder: tempfile::TempDir,
 }
 
-/// An encoder behind an adapter, whose bus is clocked fast enough for 20 000 frames a second.
+/// Returns an encoder at an adapter, whose bus clock is fast enough for 20 000 frames per second.
 fn stand(query: &str) -> Stand {
     stand_with(query, None)
 }
 
-/// As [`stand`], with the encoder's supply as the adapter is to give it.
+/// Returns the same as [`stand`], with the encoder's supply from the adapter.
 fn stand_with(query: &str, supply: Option<Supply>) -> Stand {
     stand_at(query, supply, 2_000_000)
 }
@@ -59,7 +60,7 @@ impl Stand {
         }
     }
 
-    /// All that is streamed within so much time.
+    /// Returns all frames streamed within this time.
     fn runs(&mut self, time: Duration) -> Vec<FrameRun> {
         let end = self.clock.now() + time;
         let mut runs = Vec::new();
@@ -69,7 +70,7 @@ impl Stand {
         runs
     }
 
-    /// Bytes that the adapter sends within a second by itself.
+    /// Returns the bytes that the adapter sends within a second without a request.
     fn sends_by_itself(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
@@ -80,7 +81,7 @@ impl Stand {
         (0..1000).map(|_| bytes(1)).sum()
     }
 
-    /// How many requests of an operation were sent.
+    /// Returns the number of sent requests of an operation.
     fn count(&self, operation: Operation) -> usize {
         let mut receiver = Receiver::default();
         self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));
@@ -88,7 +89,8 @@ impl Stand {
     }
 }
 
-/// Numbers and times go on, and the position as the shaft turns: 50 revolutions a second are 327.68 steps a frame.
+/// Checks that numbers and times are continuous, and the position follows the shaft: 50 revolutions per second are 327.68
+/// steps per frame.
 fn check(runs: &[FrameRun]) {
     let first = &runs[0];
     let mut before: Option<(Moment, u64)> = None;
@@ -114,7 +116,7 @@ fn what_is_wished_closer_than_one_can_ask_is_streamed() {
     let runs = stand.runs(Duration::from_secs(3));
     check(&runs);
     assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start()));
-    // What was sampled last may still be on its way.
+    // The last samples may still be in transit.
     let frames: usize = runs.iter().map(|run| run.frames.len()).sum();
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
     assert!(frames > 50_000 && (streamed - 200..=streamed + 1).contains(&frames), "{frames} of {streamed}");
@@ -172,7 +174,7 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
     assert!(stand.tap.lock().unwrap().sent.len() > sent, "it was told to stop");
     stand.tap.lock().unwrap().mute_from = None;
-    // The stream is told to end with HELLO.
+    // HELLO ends the stream.
     assert!(stand.run().is_stream_start());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
@@ -190,7 +192,7 @@ fn what_the_clock_does_not_allow_is_told() {
     }
 }
 
-/// A reset ends the stream and forgets supply and clock: a job, or the next sample, finds that out and goes on.
+/// A reset ends the stream and clears supply and clock: a job, or the next sample, detects it and continues.
 #[test]
 fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
     let query = "supply=switched&rpm=60";
@@ -203,7 +205,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
         if by_job {
             stand.session.run_inline(BissJob::Status).unwrap();
         } else {
-            // What it had sent before still comes.
+            // Data sent before still arrive.
             let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
             assert!(matches!(error, JobError::Device(Error::Adapter(AdapterError::Mute))), "{error}");
         }
@@ -214,8 +216,8 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
     }
 }
 
-/// An adapter that falls silent may have been reset, which takes the supply away: the encoder gets it again, and the time that
-/// it needs to start.
+/// An adapter that falls silent may have been reset, which switches the supply off: it is switched on again, and the
+/// encoder gets its start-up time.
 #[test]
 fn an_encoder_that_the_adapter_supplies_gets_its_supply_again() {
     let supply = Supply { millivolt: 5_000, measured: None };

@@ -1,4 +1,4 @@
-//! Issue 22.16: how a session leaves the supply that an adapter gives the encoder.
+//! Issue 22.16: the supply that an adapter provides for the encoder, at the end of a session.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ fn has_power(bench: &Bench) -> bool {
 #[test]
 fn the_supply_goes_off_unless_it_was_on_or_is_to_stay_on() {
     let mut bench = Bench::supplied(AsFound);
-    // What was on before a session, how the session is to leave it, whether it is on then.
+    // The supply before a session, the setting for its end, and whether it is on then.
     for (found, after, left) in
         [(false, AsFound, false), (false, On, true), (true, AsFound, true), (true, Off, false), (false, Off, false)]
     {
@@ -29,7 +29,8 @@ fn the_supply_goes_off_unless_it_was_on_or_is_to_stay_on() {
     }
 }
 
-/// Issue 22.16: the same for signals that are streamed: what was switched on for them goes off, and what was on before stays on.
+/// Issue 22.16: the same for streamed signals: a supply switched on for them is switched off, and one that was on before
+/// stays on.
 #[test]
 fn streamed_signals_leave_the_supply_as_it_was() {
     let volts = SupplyVoltage { least: 4_750, given: 5_000, greatest: 12_500 };
@@ -43,7 +44,7 @@ fn streamed_signals_leave_the_supply_as_it_was() {
     assert!(bench.stream_signals(None) && has_power(&bench));
 }
 
-/// A session that never asked anything, or whose supply is no matter of the link, switches nothing.
+/// A session without requests, or whose link does not control the supply, switches nothing.
 #[test]
 fn a_session_that_switched_nothing_on_switches_nothing_off() {
     let mut bench = Bench::supplied(On);
@@ -56,7 +57,7 @@ fn a_session_that_switched_nothing_on_switches_nothing_off() {
     assert!(has_power(&bench));
 }
 
-/// What is stored is given its time before the power goes; an encoder that somebody has in a mode keeps it.
+/// A store gets its time before the power is switched off; an encoder in a mode of another host keeps its power.
 #[test]
 fn power_is_not_cut_while_something_may_be_under_way() {
     let mut bench = Bench::supplied(AsFound);
@@ -73,7 +74,7 @@ fn power_is_not_cut_while_something_may_be_under_way() {
     assert!(has_power(&bench), "it may calibrate");
 }
 
-/// Issue 22.16: nothing is heard of it from the beginning, so that it may be calibrating since an earlier session.
+/// Issue 22.16: the encoder is silent from the beginning, so that it may be calibrating since an earlier session.
 #[test]
 fn an_encoder_that_never_says_anything_keeps_its_power() {
     let mut bench = Bench::supplied_at("line=open", AsFound);
@@ -86,7 +87,7 @@ fn an_encoder_that_never_says_anything_keeps_its_power() {
     assert!(has_power(&bench), "that it may be cut off is not said by a link");
 }
 
-/// Wherever a write is cut off: what could not be led back keeps its power until it is.
+/// At any interruption of a write: an encoder that could not be returned to operation keeps its power until it is.
 #[test]
 fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
     let mut whole = Bench::supplied(AsFound);

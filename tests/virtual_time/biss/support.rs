@@ -1,4 +1,4 @@
-//! A virtual kit encoder in virtual time, a link to it that can be told to misbehave, and all that went over it.
+//! Test support: a virtual kit encoder in virtual time, a link to it with configurable faults, and a record of its data.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -24,7 +24,7 @@ use crate::support::{MARGIN, Tap, TestLink, folder};
 
 /// The configuration pin of an encoder, with the host's side of it.
 pub(crate) type Pin = Rig<Port>;
-/// An encoder behind an adapter, with the host's side of that.
+/// An encoder at an adapter, with the host's side.
 pub(crate) type Bus = Rig<Adapter>;
 
 /// A virtual device with the host's side of its line.
@@ -49,19 +49,19 @@ pub(crate) fn at(text: &str) -> RegisterAddress {
 }
 
 impl Pin {
-    /// An encoder as `sim:?…` describes it; its kind is known.
+    /// Creates an encoder as `sim:?…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
         Self::with(Port::new(&Config::from_pairs(&pairs(query)).unwrap()), Transport::ConfigPin)
     }
 }
 
 impl Bus {
-    /// An encoder as `sim:?bridge=on&…` describes it; its kind is known.
+    /// Creates an encoder as `sim:?bridge=on&…` describes it; its kind is known.
     pub(crate) fn new(query: &str) -> Self {
         Self::with(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap(), Transport::Adapter)
     }
 
-    /// How many requests of an operation were sent.
+    /// Returns the number of sent requests of an operation.
     pub(crate) fn count(&self, operation: Operation) -> usize {
         let mut receiver = Receiver::default();
         self.tap().sent.iter().for_each(|bytes| receiver.push(bytes));
@@ -90,7 +90,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         Master::new(ctx, &mut self.station)
     }
 
-    /// Bytes of somebody else on the line.
+    /// Adds bytes of another sender to the line.
     pub(crate) fn link_send(&mut self, bytes: &[u8]) {
         self.link.send(bytes).unwrap();
     }
@@ -107,7 +107,7 @@ impl<D: ByteDevice + 'static> Rig<D> {
         self.clock.now().since_start()
     }
 
-    /// What went over the line, as hexadecimal text.
+    /// Returns the data of the line, as hexadecimal text.
     pub(crate) fn shown(&self, direction: Direction) -> Vec<String> {
         let entries = self.entries.lock().unwrap();
         entries.iter().filter(|entry| entry.direction == direction).map(|entry| entry.bytes.to_string()).collect()
@@ -153,7 +153,7 @@ impl Bench {
         Self::made(way, query, store, folder)
     }
 
-    /// With these folders.
+    /// Creates it with these folders.
     pub(crate) fn in_store(way: Transport, query: &str, store: Store) -> Self {
         Self::made(way, query, store, folder())
     }
@@ -202,18 +202,18 @@ impl Bench {
         Bench { clock, session, tap, end, folder }
     }
 
-    /// The same device at the same time in a new session: a cable that was plugged in again.
+    /// Returns the same device at the same time in a new session: a cable that was plugged in again.
     pub(crate) fn reconnected(&self) -> Bench {
         let (store, folder) = (Store::at(self.folder.path()), self.folder.clone());
         Self::plugged(self.end.clone(), self.session.station().transport, self.clock.clone(), store, folder)
     }
 
-    /// Behind an adapter that switches the encoder's supply, at first off.
+    /// Creates one at an adapter that switches the encoder's supply, at first off.
     pub(crate) fn supplied(after: SupplyAfter) -> Self {
         Self::supplied_at("", after)
     }
 
-    /// The same, with more to say of the adapter.
+    /// Creates the same with further settings of the adapter.
     pub(crate) fn supplied_at(query: &str, after: SupplyAfter) -> Self {
         let query = format!("supply=switched&{query}");
         let adapter = Adapter::from_pairs(&pairs(&query), at_adapter()).unwrap();
@@ -221,7 +221,7 @@ impl Bench {
         Self::with_supply(End::Bus(Arc::new(Mutex::new(adapter))), after, Arc::default(), folder)
     }
 
-    /// Streams sine and cosine over the adapter, as the Signals tab does; whether the encoder had power meanwhile.
+    /// Streams sine and cosine over the adapter, as the Signals tab does; returns whether the encoder had power meanwhile.
     pub(crate) fn stream_signals(&self, supply: Option<SupplyVoltage>) -> bool {
         let End::Bus(adapter) = &self.end else { panic!("no adapter") };
         let mut link = TestLink::new(adapter.clone(), self.clock.clone(), Arc::default());
@@ -235,7 +235,8 @@ impl Bench {
         has_power
     }
 
-    /// As [`reconnected`](Self::reconnected), with the supply switched on again and left like this.
+    /// Returns the same as [`reconnected`](Self::reconnected), with the supply switched on again and this setting for its
+    /// end.
     pub(crate) fn supplied_again(&self, after: SupplyAfter) -> Self {
         Self::with_supply(self.end.clone(), after, self.clock.clone(), self.folder.clone())
     }
@@ -248,7 +249,7 @@ impl Bench {
         Self::with_station(end, station, clock, store, folder)
     }
 
-    /// As [`reconnected`](Self::reconnected), knowing already who is there.
+    /// Returns the same as [`reconnected`](Self::reconnected), with the identity already known.
     pub(crate) fn reconnected_knowing(&self) -> Bench {
         let known = self.session.station();
         let mut station = Station::new(known.transport, MARGIN);
@@ -258,7 +259,7 @@ impl Bench {
         Self::with_station(self.end.clone(), station, self.clock.clone(), self.store(), self.folder.clone())
     }
 
-    /// A copy of all this, the device and its time included, with nothing kept on disk.
+    /// Returns a copy, including the device and its time, without files on disk.
     pub(crate) fn copied(&self) -> Bench {
         let clock = Arc::new(VirtualClock::default());
         clock.sleep_until(self.clock.now());
@@ -270,33 +271,33 @@ impl Bench {
         Self::plugged(end, self.session.station().transport, clock, Store::at(folder.path()), folder)
     }
 
-    /// Looks into the encoder, or does something to it.
+    /// Calls a function with the encoder.
     pub(crate) fn encoder<T>(&self, look: impl FnOnce(&mut Encoder, Moment) -> T) -> T {
         self.handle().with(look)
     }
 
-    /// The tap, for whoever turns it while a job runs.
+    /// Returns the tap, to change it while a job runs.
     pub(crate) fn tap_handle(&self) -> Arc<Mutex<Tap>> {
         self.tap.clone()
     }
 
-    /// How many frames were sent, for whoever counts while a job runs.
+    /// Returns a counter of sent frames, to use while a job runs.
     pub(crate) fn counter(&self) -> impl Fn() -> usize + use<> {
         let tap = self.tap.clone();
         move || tap.lock().unwrap().sent.len()
     }
 
-    /// The encoder, for whoever looks at it while a job runs.
+    /// Returns the encoder, to inspect it while a job runs.
     pub(crate) fn handle(&self) -> Handle {
         Handle { end: self.end.clone(), clock: self.clock.clone() }
     }
 
-    /// Waits until so long after the beginning.
+    /// Waits until this time after the beginning.
     pub(crate) fn clock_to(&self, elapsed: Duration) {
         self.clock.sleep_until(Moment::after_start(elapsed));
     }
 
-    /// Carries out a job, and shows what is told of the operations of a plan.
+    /// Runs a job, and shows the reported operations of a plan.
     pub(crate) fn run_watched(
         &mut self,
         job: BissJob,
@@ -334,12 +335,12 @@ impl Bench {
         self.session.motor().unwrap()
     }
 
-    /// A register, looked at in the encoder.
+    /// Returns a register, read directly in the encoder.
     pub(crate) fn encoder_reads(&self, address: RegisterAddress) -> Option<u8> {
         self.encoder(|encoder, now| encoder.read(now, address))
     }
 
-    /// How often the encoder's flash was written.
+    /// Returns the number of writes of the encoder's flash.
     pub(crate) fn flash_cycles(&self) -> u32 {
         self.encoder(|encoder, _| encoder.flash().cycles())
     }

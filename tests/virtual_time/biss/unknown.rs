@@ -1,4 +1,4 @@
-//! An encoder that this program knows nothing of, behind an adapter: no data sheet, frames of other widths.
+//! An encoder without a description in the program, at an adapter: no data sheet, frames of other widths.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ use encoder_studio::units::{CharacterFormat, Moment};
 use super::support::{Bus, Rig, Transport};
 use crate::support::MARGIN;
 
-/// A single-turn encoder of 14 bits, and the adapter in front of it; it answers at once.
+/// A single-turn encoder of 14 bits with its adapter; it answers at once.
 struct Stranger {
     layout: Layout,
     /// Steps from one frame to the next.
@@ -57,7 +57,7 @@ impl Stranger {
             Request::BissRead => {
                 self.place = (self.place + self.step) % (1 << 14);
                 let reading = PositionData { singleturn: self.place, ..PositionData::default() };
-                // Behind its end the line is low.
+                // After its end the line is low.
                 let bits = self.layout.bits();
                 let frame = u128::from(self.layout.emit(&reading)) << 64 >> bits >> (64 - self.clocked);
                 Reply::BissRead { t_us: 0, status: BissStatus::OK, raw: frame as u64 }
@@ -123,7 +123,7 @@ fn at_rest_no_frame_is_found_and_the_encoder_is_looked_at_all_the_same() {
     assert!(matches!(error, Error::WrongWidths { data_bits: 35, crc_bits: 6, .. }), "{error}");
 }
 
-/// Issue 22.20: turns and steps are the user's word, also at rest; 14 bits of steps are 16384 a turn.
+/// Issue 22.20: turns and steps are given by the user, also at rest; 14 bits of steps are 16384 per turn.
 #[test]
 fn the_frame_that_is_given_makes_an_angle_of_the_position() {
     let mut rig = Rig::with(Stranger::new(0), Transport::Adapter);
@@ -133,7 +133,7 @@ fn the_frame_that_is_given_makes_an_angle_of_the_position() {
     assert_eq!((identity.multiturn_bits(), identity.singleturn_bits()), (Some(0), Some(14)));
     let reading = rig.master().position().unwrap();
     assert_eq!((reading.steps, reading.angle()), (100, Some(100.0 * 360.0 / 16384.0)));
-    // A kit encoder tells its frame itself.
+    // A kit encoder reports its frame itself.
     let mut kit = Bus::new("");
     kit.station.given = Layout::new(0, 14, true, true, None).ok();
     let identity = device::identify(&mut kit.master(), &Descriptions::built_in()).unwrap();

@@ -1,5 +1,5 @@
-//! Restoring and writing: the fewest registers and saves, told beforehand and noted afterwards; nothing that is not as it
-//! was; single answers lost at every exchange; wear.
+//! Restoring and writing: the fewest registers and saves, planned before and recorded afterwards; nothing on a changed
+//! base; single answers lost at every exchange; wear.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ use super::support::{Bench, Transport, at};
 
 const WAYS: [Transport; 2] = [Transport::ConfigPin, Transport::Adapter];
 
-/// The profile with other bytes in a bank.
+/// Returns the profile with other bytes in a bank.
 fn with_bytes(profile: &BissProfile, number: u8, bytes: &[(usize, u8)]) -> BissProfile {
     let mut wanted = profile.clone();
     let mut bank = profile.bank(number).unwrap();
@@ -41,7 +41,7 @@ fn history(bench: &mut Bench) -> Vec<Entry> {
     logbook.history(&device_key(&prepared.identity, true), 9).unwrap()
 }
 
-/// UBICOM writes to a bank: its global addresses, low byte first.
+/// Returns the UBICOM writes to banks: their global addresses, low byte first.
 fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8)> {
     let is_write = |frame: &&Vec<u8>| frame[..3] == [0x80, 0x01, 0x02];
     let tap = bench.tap();
@@ -50,7 +50,7 @@ fn writes_to(bench: &Bench, banks: std::ops::RangeInclusive<u8>) -> Vec<(u16, u8
     writes.filter(|(global, _)| range.contains(global)).collect()
 }
 
-/// The issue: three bytes of one bank are three registers and one save; the plan says so, and so does the logbook.
+/// The issue: three bytes of one bank are three registers and one save, in the plan and in the logbook.
 #[test]
 fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -81,7 +81,7 @@ fn three_bytes_of_a_bank_are_three_writes_and_one_save() {
     assert_eq!((&conclusion.outcome, conclusion.cycles_spent), (&Noted::Done, 1));
     assert!(bench.prepare(restore_of(&wanted)).unwrap().plan.is_empty());
 
-    // The before-image gives it back.
+    // The before-image restores it.
     let text = read_text(&committed.backup.unwrap()).unwrap();
     let kept = Document::parse(&text, program().studio.formats).unwrap();
     assert_eq!(kept.note.as_deref(), Some("before-image of a write"));
@@ -135,7 +135,7 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     assert_eq!(bench.prepare(restore(true)).unwrap().plan.write_cycles(), 2);
 }
 
-/// What was read before the plan has changed until it is carried out: nothing is written.
+/// The values read for the plan have changed before it is carried out: nothing is written.
 #[test]
 fn a_plan_whose_base_no_longer_holds_is_not_carried_out() {
     type Case = (fn() -> Change, fn(&mut Bench), &'static str);
@@ -175,7 +175,7 @@ fn a_consent_covers_one_plan() {
     assert_eq!(bench.flash_bank(0x24), [0; 64]);
 }
 
-/// Issue 22.4: write cycles that are not known are not 0.
+/// Issue 22.4: unknown write cycles are not 0.
 #[test]
 fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -198,7 +198,7 @@ fn an_encoder_whose_wear_is_not_known_is_written_only_by_force() {
     assert_eq!(bench.flash_cycles() - before, 1);
 }
 
-/// Manual 6.1: 1000 write cycles. The logbook counts; what a plan would exceed is refused, and done where that is wished.
+/// Manual 6.1: 1000 write cycles. The logbook counts; a plan that would exceed them is refused, and carried out if forced.
 #[test]
 fn a_worn_encoder_is_written_only_where_that_is_wished() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -230,8 +230,8 @@ fn a_worn_encoder_is_written_only_where_that_is_wished() {
     assert_eq!(bench.flash_cycles() - before, 3);
 }
 
-/// One answer is lost, or one request, at every exchange: a write is never repeated where that would spend a cycle, and
-/// what is told is what has happened.
+/// One answer or one request is lost at every exchange: a write is never repeated if that would spend a cycle, and the
+/// report describes the real result.
 #[test]
 fn one_lost_answer_or_request_at_every_exchange() {
     type Scene = (&'static str, fn() -> Change, u32);
@@ -257,7 +257,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
                         assert_eq!(spent, cost, "{context}");
                         assert_eq!(committed.written.verified, committed.written.written, "{context}");
                     }
-                    // A command that was not heard, and cannot be given twice.
+                    // A command that was not received, and must not be sent twice.
                     Err(error) => {
                         failures += 1;
                         assert_eq!(lost, "request", "{context}: {error}");
@@ -274,7 +274,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
     }
 }
 
-/// A Wiegand result that may not have been saved: nothing tells, so it is told so.
+/// A Wiegand result that may not have been saved: it cannot be read back, so it is reported as unclear.
 #[test]
 fn what_cannot_be_read_back_is_unclear() {
     let mut original = Bench::new(Transport::ConfigPin, "");
@@ -328,7 +328,7 @@ fn a_noisy_line_writes_right_or_tells() {
     assert!(right >= 12, "{right} right, {told} told");
 }
 
-/// Registers that no procedure guards are written one by one; what they cost is what the description says.
+/// Registers outside the procedures are written one by one; the description defines their cost.
 #[test]
 fn a_single_register_is_written_and_read_back() {
     let mut bench = Bench::new(Transport::ConfigPin, "");
@@ -337,7 +337,7 @@ fn a_single_register_is_written_and_read_back() {
     assert_eq!(prepared.plan.write_cycles(), 0);
     let written = bench.commit_alone(&prepared, Duration::ZERO).unwrap().written;
     assert_eq!((written.verified, written.write_cycles, bench.encoder_reads(at("0x40"))), (1, 0, Some(5)));
-    // The kit encoder has nothing there and refuses.
+    // The kit encoder has no register there and refuses.
     let prepared = bench.prepare(write("0x50", 1)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
     assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");

@@ -1,4 +1,4 @@
-//! The wire is cut at every request: what is told, what was written, and that everything ends in time.
+//! The connection is cut at every request: the report and the written values are checked, and everything ends in time.
 
 use std::collections::BTreeSet;
 use std::time::Duration;
@@ -12,10 +12,10 @@ use encoder_studio::link::Cancel;
 use super::support::{Stand, drive, image};
 use crate::support::Tap;
 
-/// So long a command may take to give a device up.
+/// Longest time until a command gives up on a device.
 const LIMIT: Duration = Duration::from_secs(10);
 
-/// What happens to the wire at a request.
+/// A fault of the connection at a request.
 type Cut = fn(&mut Tap, usize);
 
 const LOST: Cut = |tap, at| tap.lost_from = Some(at);
@@ -24,7 +24,7 @@ const DEAF: Cut = |tap, at| tap.deaf_from = Some(at);
 const REQUEST: Cut = |tap, at| tap.swallow_request = Some(at);
 const REPLY: Cut = |tap, at| tap.swallow_reply = Some(at);
 
-/// Three parameters and a save.
+/// Returns three parameters and a save.
 fn write() -> Change {
     Change::Write(image(&[(24, 7), (166, 200), (186, 30)]))
 }
@@ -55,7 +55,7 @@ fn a_single_loss_is_asked_again_and_nothing_is_set_twice() {
                     assert_eq!((done.written.verified, done.written.write_cycles), (3, 1), "{at}");
                     assert_eq!((stand.value(24), stand.value(166), stand.value(186)), (7, 200, 30), "{at}");
                 }
-                // What saves is never sent twice: whether it was done nobody knows.
+                // A save is never sent twice: whether it was done is not known.
                 Err(JobError::Interrupted { interrupted, backup, .. }) => {
                     assert_eq!(interrupted.unclear().as_deref(), Some("47"), "{at}: {interrupted}");
                     assert!(backup.exists() && interrupted.done.write_cycles == 1, "{at}");
@@ -64,7 +64,7 @@ fn a_single_loss_is_asked_again_and_nothing_is_set_twice() {
                 Err(error) => panic!("{at}: {error}"),
             }
             for own in [24, 166, 186] {
-                // Set again only where reading back has shown that it was not taken.
+                // Set again only if reading back has shown that it was not accepted.
                 assert!(times(own) <= most, "{at}: {sets:?}");
             }
         }
@@ -104,7 +104,7 @@ fn what_is_cut_ends_in_time_and_tells_how_far_it_came() {
     }
 }
 
-/// Carries a change out, and wishes an end with each of its requests in turn; `look` sees how each ended.
+/// Carries a change out with a cancellation at each of its requests in turn; `look` receives each end.
 fn wish_an_end_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Stand, &str, &Interrupted)) {
     for at in 0.. {
         let mut stand = Stand::new("");
@@ -119,7 +119,7 @@ fn wish_an_end_at_each_request(change: fn() -> Change, mut look: impl FnMut(&Sta
                 assert_eq!((&interrupted.cause, interrupted.unclear()), (&Error::Cancelled, None), "{at}");
                 look(&stand, &format!("request {at}"), &interrupted);
             }
-            // Behind the last operation there is nothing to end.
+            // After the last operation there is nothing to cancel.
             Ok(done) => {
                 assert_eq!(stand.value(47), 0, "{at}");
                 if stand.tap().sent.len() <= number {
@@ -139,12 +139,12 @@ fn a_wish_to_end_is_heard_between_two_operations() {
         assert_eq!(interrupted.done.ops, taken, "{label}");
         seen.insert(taken);
     });
-    // Before the first, nothing has begun; behind the third there is still the save.
+    // Before the first, nothing has begun; after the third the save remains.
     assert_eq!(seen.into_iter().collect::<Vec<_>>(), [1, 2, 3]);
 }
 
-/// 400 steps a turn instead of 65536 (reference 5), and limits of ten turns: half of that is another place than either. The
-/// greatest speed is written between them.
+/// 400 steps per turn instead of 65536 (reference 5), and limits of ten turns: half of the change would be another position
+/// than either. The maximum speed is written between them.
 #[test]
 fn nobody_ends_between_a_scale_and_its_limits() {
     const PLACE: [(u16, i64); 4] = [(154, 400), (156, 256), (158, -4_000), (160, 4_000)];

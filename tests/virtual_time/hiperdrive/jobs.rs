@@ -1,4 +1,4 @@
-//! What can be read of a device. Nothing is set for it, and no cyclic connection is opened.
+//! The data that can be read of a device. Nothing is set, and no cyclic connection is opened.
 
 use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
 use encoder_studio::devices::hiperdrive::procedures::{Error, Late};
@@ -53,7 +53,7 @@ fn a_hub_is_surveyed_with_the_drives_that_are_plugged_in() {
         "152 of a hub is 0 from the factory"
     );
     let value = |own: u16| survey.values.get(&number(own));
-    // Parameters of the device, of drives 1 and 3, and none of an empty place.
+    // Parameters of the device, of drives 1 and 3, and none of an empty slot.
     assert_eq!((value(166), value(366)), (Some(&Value::Number(350)), Some(&Value::Number(350))));
     // An HDA70 turns 16000 times each way, of 65536 steps.
     assert_eq!(value(360), Some(&Value::Number(1_048_576_000)));
@@ -99,7 +99,7 @@ fn status_tells_states_errors_and_temperatures_of_all_drives() {
     assert!(first.requested && second.faults == 1);
 }
 
-/// A recording is played back by the same jobs, whatever the numbers of sessions and requests are.
+/// A recording is played back by the same jobs, with any numbers of sessions and requests.
 #[test]
 fn a_recorded_trace_answers_as_the_device_did() {
     let mut stand = Stand::new("hub=4&drives=1,0,1&serial=4711");
@@ -167,7 +167,8 @@ fn the_check_has_a_line_for_each_thing_that_may_be_wrong() {
     assert!(of(CheckStep::Range(drive(1))).findings.contains(&CheckFinding::Within(65536)));
 }
 
-/// Reading a parameter after the other takes seconds where a reply takes long: each is told, empty places count as done.
+/// Reading one parameter after the other takes seconds if replies are slow: each is reported, and empty slots count as
+/// done.
 #[test]
 fn what_takes_many_requests_tells_each_of_them() {
     let mut stand = Stand::new("hub=4&drives=1,0,1");

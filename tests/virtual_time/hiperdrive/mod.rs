@@ -1,5 +1,4 @@
-//! Drives behind an adapter or a hub over EtherNet/IP: sessions and requests, what is read and written with them, and how
-//! everything ends.
+//! Drives at an adapter or a hub over EtherNet/IP: sessions and requests, reading and writing, and all kinds of ends.
 
 mod cuts;
 mod jobs;

@@ -1,5 +1,4 @@
-//! A target that says what the test lets it say: golden bytes of the reference (section 9), and everything that a device may
-//! do to a request.
+//! A target scripted by the test: golden bytes of the reference (section 9), and all faults of a device's answer.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex};
@@ -13,21 +12,21 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::{drive, number};
 
-/// What happens to a request.
+/// The answer to a request.
 enum Act {
-    /// It is answered with this CIP reply, in a frame with its own context.
+    /// A CIP reply in a frame with the request's context.
     Reply(&'static str),
-    /// It is answered with a frame of this status, and nothing in it.
+    /// An empty frame with this status.
     Status(u32),
-    /// It is answered under another number than its own, as an earlier one would be.
+    /// A reply with another number than the request's, as to an earlier one.
     Stale(&'static str),
-    /// Nothing comes.
+    /// No answer.
     Silence,
     /// These bytes come.
     Bytes(&'static str),
 }
 
-/// A target that goes through a list.
+/// A target that follows a list.
 #[derive(Default)]
 struct Script {
     acts: VecDeque<Act>,
@@ -93,7 +92,7 @@ impl ByteLink for Wire {
         if script.answers.is_empty() {
             self.clock.sleep_until(until);
         }
-        // In whatever portions.
+        // In portions of any size.
         let count = script.answers.len().min(7);
         into.extend(script.answers.drain(..count));
         Ok(())
@@ -108,7 +107,7 @@ impl ByteLink for Wire {
     }
 }
 
-/// A desk with a target that does these things one after the other.
+/// A session with a target that follows a script.
 struct Desk {
     script: Arc<Mutex<Script>>,
     wire: Box<dyn ByteLink>,
@@ -147,7 +146,7 @@ impl Desk {
     }
 }
 
-/// A frame with its context as 0.
+/// Returns a frame with its context as 0.
 fn without_context(frame: &[u8]) -> Vec<u8> {
     let mut frame = frame.to_vec();
     frame[12..20].fill(0);
@@ -216,7 +215,7 @@ fn values_are_of_their_type_and_sign() {
     }
 }
 
-/// Issue 21.9: a number that comes with another length than its type has is refused with both lengths, whatever asks for it.
+/// Issue 21.9: a number with another length than that of its type is refused with both lengths, for every request.
 #[test]
 fn a_number_of_another_length_is_refused_with_both() {
     const REPLIES: [&str; 5] =
@@ -243,11 +242,11 @@ fn a_number_of_another_length_is_refused_with_both() {
         error.to_string(),
         "parameter 107 (actual position) has the wrong length (bytes received: 2, expected: 4)"
     );
-    // What rules a drive is not ruled by half a number.
+    // The rules of a drive must not be read from a partial number.
     let replies = ["8E 00 00 00 01", "8E 00 00 00 00 01", "8E 00 00 00 01 00", "8E 00 00 00 00 FF"].map(Act::Reply);
     let error = Desk::with(replies).ask(|master| read_rules(master, drive(1))).unwrap_err();
     assert_eq!(error.to_string(), "parameter 158 (lower limit) has the wrong length (bytes received: 2, expected: 4)");
-    // Nor is it said why something was refused by it: 120 of one byte tells of no empty place.
+    // Nor is it used as the reason of a refusal: 120 with one byte does not prove an empty slot.
     let refused =
         Desk::with(["8E 00 0C 00", "8E 00 00 00 00", "8E 00 00 00 01"].map(Act::Reply)).read(258).unwrap_err();
     assert!(matches!(refused, Error::Refused { .. }), "{refused}");
@@ -260,10 +259,10 @@ fn a_refusal_is_told_with_the_words_of_its_row() {
     let refusal = error.refusal().unwrap();
     assert_eq!(refusal.status, GeneralStatus::new(5));
     assert_eq!(error.to_string(), "reading parameter 13 (category): 0x05 path unknown");
-    // Of a drive it is asked whether it is there at all: 0 of parameter 120 says that it is not.
+    // For a drive its existence is read as well: 0 in parameter 120 means that it does not exist.
     let mut desk = Desk::with([Act::Reply("8E 00 0C 00"), Act::Reply("8E 00 00 00 00 00")]);
     assert_eq!(desk.read(258), Err(Error::NoDrive { drive: drive(2) }));
-    // Or whether anybody wants anything of it: parameter 152.
+    // Or whether it is requested: parameter 152.
     for (requested, is_refused) in [("8E 00 00 00 00", false), ("8E 00 00 00 01", true)] {
         let replies = ["8E 00 0C 00", "8E 00 00 00 07 00", requested];
         let error = Desk::with(replies.map(Act::Reply)).read(258).unwrap_err();
@@ -283,7 +282,7 @@ fn what_there_is_not_and_what_is_only_written_is_not_asked_for() {
 #[test]
 fn broken_frames_are_asked_again_and_silence_ends_in_time() {
     for broken in [
-        // A length that no frame has; a frame whose end does not come; a message that is none.
+        // A length that no frame has; a frame without its end; an invalid message.
         "6F 00 FF FF 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00",
         "6F 00 18 00 78 56",
         "55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA 55 AA",
@@ -299,7 +298,7 @@ fn broken_frames_are_asked_again_and_silence_ends_in_time() {
     assert!(error.is_lost() && desk.clock.now() < Moment::after_start(Duration::from_secs(10)));
 }
 
-/// What a silent device is asked again and again holds up nobody who wishes something else.
+/// Repeated requests to a silent device do not delay other work.
 #[test]
 fn reading_what_rules_a_drive_can_be_cut_short() {
     let mut desk = Desk::with([]);
@@ -307,18 +306,18 @@ fn reading_what_rules_a_drive_can_be_cut_short() {
     cancel.request();
     assert_eq!(desk.ask_until(cancel.clone(), |master| read_rules(master, drive(1))), Err(Error::Cancelled));
     assert_eq!(desk.clock.now(), Moment::START, "nothing was waited for");
-    // Behind a write it is known how it is now.
+    // After a write the current state is known.
     let ended = desk.ask_until(cancel, |master| master.shielded(|master| read_rules(master, drive(1))));
     assert!(matches!(ended, Err(Error::NoReply { .. })), "{ended:?}");
 }
 
-/// ForwardOpen as the reference has it, but for what differs from connection to connection: numbers of both ways, of the
-/// connection and of whoever opens it.
+/// ForwardOpen as in the reference, except for the parts that differ between connections: numbers of both directions, of
+/// the connection and of its originator.
 const OPEN: &str = "54 02 20 06 24 01 03 FA 00 00 00 00 .. .. .. .. .. .. 34 12 .. .. .. .. 01 00 00 00 \
     10 27 00 00 16 48 10 27 00 00 12 48 01 04 20 04 24 68 2C 64 2C 65";
 const OPENED: &str = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 10 27 00 00 10 27 00 00 00 00";
 
-/// The CIP part of a frame and what stands behind it, with two dots for what is not looked at.
+/// Returns the CIP part of a frame and the part after it, with two dots for ignored bytes.
 fn cip(frame: &[u8], pattern: &str) -> (String, Vec<u8>) {
     let pattern: Vec<&str> = pattern.split_whitespace().collect();
     let (own, beside) = frame[40..].split_at(pattern.len());
@@ -339,7 +338,7 @@ fn a_cyclic_connection_is_opened_with_the_references_bytes() {
     let opened = desk.ask(|master| master.forward_open(Topology::Adapter, 0x1234)).unwrap();
     let (own, beside) = cip(&desk.sent()[1], OPEN);
     assert_eq!(own, flat(OPEN));
-    // Where packets to us are to go: item 8001 with our port, in the order of the network.
+    // The target address of packets to the host: item 8001 with its port, in network order.
     assert_eq!(beside, bytes("01 80 10 00 00 02 12 34 00 00 00 00 00 00 00 00 00 00 00 00"));
     assert_eq!((opened.to_target_id, opened.to_originator_id), (0x0002_0001, 0x0001_0001));
     assert_eq!((opened.to_target_interval, opened.timeout), (Duration::from_millis(10), Duration::from_millis(80)));
@@ -395,7 +394,7 @@ fn another_master_is_told_and_nothing_is_tried_twice() {
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     let remedy = error.refusal().unwrap().remedy();
     assert_eq!(remedy, Some("ask for a longer interval"));
-    // A reply that is lost may be one to a connection that is open: it is not opened twice.
+    // A lost reply may belong to a connection that is open: it is not opened twice.
     let mut desk = Desk::with([]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     assert_eq!(error, Error::NoReply { requested: RequestedItem::Open, tries: 1, late: None });
@@ -405,13 +404,13 @@ fn another_master_is_told_and_nothing_is_tried_twice() {
 
 #[test]
 fn a_connection_that_is_too_slow_is_closed_again() {
-    // 50 ms each way where 10 were asked for: C350h.
+    // 50 ms each way although 10 were requested: C350h.
     let slow = "D4 00 00 00 01 00 02 00 01 00 01 00 01 00 34 12 CD AB 00 00 50 C3 00 00 10 27 00 00 00 00";
     let mut desk = Desk::with([Act::Reply(slow), Act::Reply("CE 00 00 00 01 00 34 12 CD AB 00 00 00 00")]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     assert_eq!(error, Error::TooSlow { asked_ms: 10, got_ms: 50 });
     assert_eq!(desk.sent()[2][40], 0x4E);
-    // From 35 ms on a target gives up after four intervals, before that after eight.
+    // From 35 ms on a target gives up after four intervals, below that after eight.
     for (ms, multiplier) in [(34, 1), (35, 0)] {
         let mut desk = Desk::with([]);
         desk.station.link.interval = Duration::from_millis(ms);

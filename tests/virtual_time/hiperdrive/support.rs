@@ -1,4 +1,4 @@
-//! A virtual adapter or hub in virtual time, with a session on it, and all that went over the wire.
+//! Test support: a virtual adapter or hub in virtual time, with a session and a record of its data.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -24,7 +24,7 @@ pub(crate) struct Stand {
     pub(crate) target: Target,
     pub(crate) clock: Arc<VirtualClock>,
     pub(crate) tap: Arc<Mutex<Tap>>,
-    /// Backups and the logbook lie in it.
+    /// Folder of backups and the logbook.
     folder: tempfile::TempDir,
     pub(crate) session: Session<Hiperdrive>,
 }
@@ -42,14 +42,14 @@ pub(crate) fn image(values: &[(u16, i64)]) -> Box<Image> {
 }
 
 impl Stand {
-    /// A device as `sim:?…` describes it.
+    /// Creates a device as `sim:?…` describes it.
     pub(crate) fn new(query: &str) -> Self {
         let pairs = query.split('&').filter_map(|item| item.split_once('='));
         let pairs: Vec<_> = pairs.map(|(key, value)| (key.to_owned(), value.to_owned())).collect();
         Stand::at(Target::new(&Config::from_pairs(&pairs).unwrap()), Arc::new(VirtualClock::default()))
     }
 
-    /// Another session with a device.
+    /// Creates another session with a device.
     pub(crate) fn at(target: Target, clock: Arc<VirtualClock>) -> Self {
         let tap = Arc::<Mutex<Tap>>::default();
         let connection = target.connection(Ipv4Addr::UNSPECIFIED);
@@ -103,12 +103,12 @@ impl Stand {
         self.commit(prepared)
     }
 
-    /// What is in the way of the logbook.
+    /// Blocks the path of the logbook.
     pub(crate) fn block_logbook(&self) {
         std::fs::create_dir_all(Store::at(self.folder.path()).logbook_path()).unwrap();
     }
 
-    /// A parameter as the device has it.
+    /// Returns a parameter as the device has it.
     pub(crate) fn value(&self, own: u16) -> i64 {
         let now = self.clock.now();
         match self.target.with(|station| station.read(now, number(own))).unwrap() {
@@ -117,7 +117,7 @@ impl Stand {
         }
     }
 
-    /// What was asked of objects, in its order.
+    /// Returns the requests to objects, in their order.
     pub(crate) fn requests(&self) -> Vec<Request> {
         let tap = self.tap();
         let frames = tap.sent.iter().map(|bytes| Frame::parse(bytes).unwrap());
@@ -129,7 +129,7 @@ impl Stand {
         .collect()
     }
 
-    /// What was set, as parameter and data.
+    /// Returns the set values, as parameter and data.
     pub(crate) fn sets(&self) -> Vec<(u16, Vec<u8>)> {
         use encoder_studio::buses::ethernet_ip::protocol::{LogicalKind, Service};
         let of_parameter = |request: &Request| {

@@ -1,4 +1,4 @@
-//! What is written: exactly what was planned, each read back, then one save; and what is refused names why.
+//! Writing: exactly the planned values, each read back, then one save; and refusals with their reasons.
 
 use encoder_studio::devices::hiperdrive::jobs::{Change, ChangeKind, HiperdriveJob, HiperdriveOutput, JobError};
 use encoder_studio::devices::hiperdrive::procedures::dead_man::Lock;
@@ -42,7 +42,7 @@ fn what_differs_is_written_read_back_and_saved_once() {
     assert_eq!((prepared.cycles_seen, prepared.wear()), (Some(1), None), "saves are counted by the device's number");
 }
 
-/// Issue 22.4: no limit of saves is known, and yet they are counted: where they cannot be, only force writes.
+/// Issue 22.4: no limit of saves is known, but they are counted: if they cannot be, only a forced write is carried out.
 #[test]
 fn a_device_whose_saves_cannot_be_counted_is_written_only_by_force() {
     let mut stand = Stand::new("serial=42");
@@ -95,7 +95,7 @@ fn a_profile_comes_back_after_everything_was_set_back() {
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 400, -131_072), "the hub's own alone");
     stand.change(Change::Do(Service::FactoryAll)).unwrap();
     assert_eq!((stand.value(24), stand.value(154), stand.value(358)), (0, 256, -33_488_896));
-    // From the factory a hub asks for no drive: that it does has to come back, too.
+    // In the factory settings a hub requests no drive: the request has to be restored, too.
     let change = || Change::Restore { profile: profile.clone(), options: RestoreOptions::default() };
     let done = stand.change(change()).unwrap();
     assert_eq!(done.written.write_cycles, 1);
@@ -124,7 +124,7 @@ fn values_out_of_range_name_both_limits_whoever_refuses_them() {
     let mut stand = Stand::new("position=65536");
     let refused = stand.prepare(Change::Write(image(&[(166, 400)]))).unwrap_err();
     assert_eq!(refused.to_string(), "parameter 166 (maximum speed) cannot be 400: it may be 5 to 350");
-    // The drive turned on meanwhile: the plan does not know, and the device refuses.
+    // The drive has turned meanwhile: the plan does not include it, and the device refuses.
     let prepared = stand.prepare(Change::Write(image(&[(158, 60_000)]))).unwrap();
     let now = stand.clock.now();
     stand.target.with(|station| station.write(now, number(198), &Value::Number(640))).unwrap();
@@ -171,8 +171,8 @@ fn services_wait_until_they_are_done() {
     assert_eq!((prepared.kind, prepared.plan.write_cycles()), (ChangeKind::Service(Service::FactoryAll), 1));
 }
 
-/// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). So long is waited for, it
-/// is sent once, and it tells nothing of how fast the network is.
+/// Issue 21.8: the manual allows 2 s with an adapter and 8 s with a hub until 47 = −4 is answered (6.2). The program waits
+/// for that time, sends it once, and does not use it to measure the speed of the network.
 #[test]
 fn a_presence_test_is_given_the_time_of_the_manual() {
     for (query, ms) in [("reset=2000", 2000), ("hub=4&reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -187,11 +187,11 @@ fn a_presence_test_is_given_the_time_of_the_manual() {
     }
 }
 
-/// Issue 21.8: what is slower than the manual allows, and what falls silent while it is waited for, ends in time (CLI.md: within
-/// 10 s), is sent once, and is told as what it is: nobody knows whether it was done.
+/// Issue 21.8: a reply slower than the manual allows, or a connection that falls silent meanwhile, ends in time (CLI.md:
+/// within 10 s), the request is sent once, and the report says that the result is not known.
 #[test]
 fn a_presence_test_that_is_not_answered_ends_in_time() {
-    // As many frames as come before it.
+    // The number of frames before it.
     let mut whole = Stand::new("hub=8");
     whole.change(Change::Do(Service::Reset)).unwrap();
     let is_set = |frame: &Vec<u8>| frame.ends_with(&[0x10, 3, 0x20, 0x64, 0x24, 1, 0x30, 47, 0xFC, 0xFF]);

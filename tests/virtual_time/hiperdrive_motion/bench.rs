@@ -1,4 +1,4 @@
-//! A virtual drive, its dead-man and the wire between them, cycle by cycle.
+//! A virtual drive, its dead-man and the connection between them, cycle by cycle.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -14,22 +14,22 @@ pub(super) const INTERVAL: Duration = Duration::from_millis(10);
 /// Eight intervals.
 const TIMEOUT: Duration = Duration::from_millis(80);
 
-/// All of it. The intent is kept fresh unless somebody is absent.
+/// A drive with its dead-man. The intent is refreshed unless `absent` is set.
 pub(super) struct Bench {
     pub(super) station: Station,
     pub(super) man: DeadMan,
     pub(super) now: Moment,
     pub(super) intent: Intent,
     pub(super) permit: Permit,
-    /// Nobody refreshes what is wanted.
+    /// Whether the intent is no longer refreshed.
     pub(super) absent: bool,
     /// Nothing reaches the drive.
     pub(super) cut_out: bool,
-    /// Nothing comes back.
+    /// Whether no reports arrive.
     pub(super) cut_back: bool,
-    /// Reports come so many cycles late.
+    /// Delay of the reports in cycles.
     pub(super) late: usize,
-    /// The drive moves when it does, whatever it is sent: it answers as if a jog were under way.
+    /// Reports of a drive that moves independently of its commands, as if a jog were running.
     pub(super) heard: Option<Actual>,
     reports: VecDeque<Actual>,
     words: Vec<u16>,
@@ -58,14 +58,14 @@ impl Bench {
         }
     }
 
-    /// A person wants something: the number of the act.
+    /// Makes a request of the user; returns the number of the act.
     pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
         self.intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: self.now };
         number
     }
 
-    /// One interval: what was sent, looked at from all sides.
+    /// Runs one interval; checks and returns the sent set-point.
     pub(super) fn cycle(&mut self) -> Setpoint {
         if !self.absent {
             self.intent.refreshed = self.now;
@@ -102,7 +102,7 @@ impl Bench {
         });
     }
 
-    /// Until the act that was wanted last has ended: how.
+    /// Runs until the last act has ended; returns how.
     pub(super) fn until_over(&mut self) -> Ended {
         for _ in 0..6000 {
             self.cycle();
@@ -115,7 +115,7 @@ impl Bench {
         panic!("it never ends: {:?} {:?}", self.man.phase(), self.actual());
     }
 
-    /// What the drive really does.
+    /// Returns the real state of the drive.
     pub(super) fn actual(&mut self) -> Actual {
         self.station.image(self.now).drives[0]
     }
@@ -133,7 +133,7 @@ impl Bench {
         actual.speed != 0 || actual.status.state() == State::Moving
     }
 
-    /// The words sent since the last time, each once, beginning with the one that was on the wire.
+    /// Returns the words sent since the last time, each once, beginning with the one that was on the wire.
     pub(super) fn take_words(&mut self) -> Vec<u16> {
         let last = self.words.last().copied();
         std::mem::replace(&mut self.words, last.into_iter().collect())
@@ -154,12 +154,12 @@ impl Bench {
         self.station.write(self.now, number, &Value::Number(value)).unwrap();
     }
 
-    /// The drives start anew, and the connection stays: 47 = −4. Refused while they are at it.
+    /// Restarts the drives, while the connection stays: 47 = −4. Refused while they restart.
     pub(super) fn reset(&mut self) {
         let _ = self.station.write(self.now, ParameterNumber::SAVE, &Value::Number(-4));
     }
 
-    /// The connection is opened again, by somebody who has not acted yet.
+    /// Opens the connection again, without an act of the user.
     pub(super) fn reconnect(&mut self) {
         self.station.close(self.now);
         self.station.open(self.now, TIMEOUT);

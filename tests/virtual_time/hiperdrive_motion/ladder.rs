@@ -1,4 +1,4 @@
-//! Whatever ends a motion: the word that stands goes out with the same call, and up the ladder while the drive does not.
+//! All ends of a motion: the stop word is sent with the same call, and escalates on the ladder while the drive moves.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, MotionRequest, Phase, Rung};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber};
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use super::bench::Bench;
 use super::{TURN, jog, to};
 
-/// What may happen while something moves.
+/// An event during a motion.
 type Cause = fn(&mut Bench);
 
 const CAUSES: [(&str, Cause, Ended); 7] = [
@@ -66,7 +66,7 @@ fn each_cause_stops_with_the_same_call() {
     }
 }
 
-/// Nobody says that it is wanted still: 250 ms, and an interval. When somebody does again, it stays as it is.
+/// The intent is not refreshed: 250 ms, and an interval. When the refreshes return, the drive remains stopped.
 #[test]
 fn a_frozen_hand_stops() {
     for wish in [to(9 * TURN), jog(Direction::Clockwise)] {
@@ -85,7 +85,7 @@ fn a_frozen_hand_stops() {
         let stood = bench.position();
         bench.run(2000);
         assert_eq!(bench.position(), stood, "the same act begins again");
-        // Also one that was frozen before it could begin.
+        // Also an act that froze before it could begin.
         bench.act(MotionRequest::Lead(Goal::Off));
         bench.until_over();
         bench.act(wish);
@@ -100,7 +100,7 @@ fn a_frozen_hand_stops() {
     }
 }
 
-/// The drive says on and on that it moves: 200 ms a rung.
+/// The drive continues to report motion: 200 ms per rung.
 #[test]
 fn up_the_ladder_while_it_does_not_stand() {
     for (wish, stop) in [(to(9 * TURN), "0469"), (jog(Direction::Clockwise), "1419")] {
@@ -127,7 +127,7 @@ fn up_the_ladder_while_it_does_not_stand() {
     }
 }
 
-/// Nothing comes back any more: it is taken for a drive that does not stand.
+/// No further reports arrive: the drive is treated as moving.
 #[test]
 fn a_drive_that_is_not_heard_is_stopped() {
     let mut bench = Bench::new();
@@ -158,7 +158,7 @@ fn what_moves_unasked_is_stopped() {
     assert!(bench.man.gives_up());
 }
 
-/// Nothing moves after a connection was opened until somebody acts, whatever was wanted before.
+/// Nothing moves after a connection was opened until the user acts, whatever was requested before.
 #[test]
 fn a_new_connection_moves_nothing() {
     let mut bench = Bench::new();

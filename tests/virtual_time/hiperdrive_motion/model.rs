@@ -1,4 +1,4 @@
-//! What a person has asked for, in a book of its own: a word that commands motion needs an act in it.
+//! A separate record of the user's requests: a word that commands motion needs an act in it.
 
 use std::time::Duration;
 
@@ -17,13 +17,13 @@ struct Live {
     number: u64,
     wish: MotionRequest,
     said: Moment,
-    /// Where a job leads, from the first word that commanded it.
+    /// Target of a job, from the first word that commanded it.
     target: Option<i32>,
-    /// The drive has been inside its limits since the act.
+    /// Whether the drive has been inside its limits since the act.
     was_inside: bool,
 }
 
-/// What a word commands, by the bits of the reference (3): bit 3 enables, bit 12 is speed mode.
+/// The command of a word, by the bits of the reference (3): bit 3 enables, bit 12 is speed mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Commands {
     Nothing,
@@ -32,12 +32,12 @@ enum Commands {
         clockwise: bool,
         endless: bool,
     },
-    /// Bits 4 and 5, and bit 6 other than it was acknowledged, or a job on its way.
+    /// Bits 4 and 5, and bit 6 different from its acknowledgement, or a job in progress.
     Job,
 }
 
 const ENABLED: u16 = 0x0409;
-/// How long an act holds that nobody says again.
+/// Time that an act remains valid without a refresh.
 const FRESH: Duration = Duration::from_millis(250);
 /// Steps of a degree, rounded up.
 const DEGREE: i64 = 183;
@@ -60,11 +60,11 @@ impl Model {
         Model { live: None, limits }
     }
 
-    /// A person acts.
+    /// Records an act of the user.
     pub(super) fn act(&mut self, number: u64, wish: MotionRequest, now: Moment) {
         let is_job = |live: &Live| matches!(live.wish, MotionRequest::Move { .. } | MotionRequest::Step { .. });
         match wish {
-            // They carry a job on, and begin nothing.
+            // They continue a job, and begin nothing.
             MotionRequest::Pause | MotionRequest::Resume => {
                 self.live = self.live.take().filter(is_job).map(|live| Live { number, said: now, ..live });
             }
@@ -78,14 +78,14 @@ impl Model {
         }
     }
 
-    /// It is said that the act is wanted still.
+    /// Records a refresh of the act.
     pub(super) fn say(&mut self, now: Moment) {
         if let Some(live) = &mut self.live {
             live.said = now;
         }
     }
 
-    /// Nothing that was asked for before counts any more.
+    /// Discards all earlier requests.
     pub(super) fn end(&mut self) {
         self.live = None;
     }
@@ -94,14 +94,14 @@ impl Model {
         self.limits = limits;
     }
 
-    /// How far outside the limits, on the upper side (positive) or the lower one.
+    /// Returns the distance outside the limits, positive on the upper side, negative on the lower one.
     fn outside(&self, position: i32) -> i64 {
         let (low, high) = self.limits;
         let (position, low, high) = (i64::from(position), i64::from(low), i64::from(high));
         if position > high { position - high } else { (position - low).min(0) }
     }
 
-    /// Holds what was sent against the book. `heard`: the report before it.
+    /// Checks a sent set-point against the record. `heard`: the report before it.
     pub(super) fn look(&mut self, now: Moment, sent: Setpoint, heard: Actual, ended: Option<(u64, Ended)>) {
         let out = self.outside(heard.position);
         let live = self.live.take().filter(|live| {
@@ -150,7 +150,7 @@ impl Model {
     }
 }
 
-/// A job within a degree of its target, which lies within the limits.
+/// Returns whether a job is within a degree of its target, which lies within the limits.
 fn is_arriving(commands: Commands, live: &Live, heard: Actual) -> bool {
     let near = |target: i32| (i64::from(heard.position) - i64::from(target)).abs() <= DEGREE;
     commands == Commands::Job && live.target.is_some_and(near)

@@ -1,6 +1,8 @@
-//! Drives that ignore their limits or turn the wrong way: the dead-man sees it in their positions (issues 21.4 and 21.5).
+//! Drives that ignore their limits or turn the wrong way: the dead-man detects it in their positions (issues 21.4 and
+//! 21.5).
 //!
-//! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps a millisecond, 382 in an interval of 10 ms.
+//! A turn has 65536 steps, a degree 182.04. At 35 rpm a drive makes 38.2 steps per millisecond, 382 in an interval of 10
+//! ms.
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{Effort, Ended, MotionRequest, Permit, Phase, Refusal};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, RunEnd, StatusBit};
@@ -10,7 +12,7 @@ use super::bench::Bench;
 use super::{FULL, TURN, to};
 
 const DEGREE: i32 = 183;
-/// 35 rpm · 65536 steps / 60 s / 100 intervals a second.
+/// 35 rpm · 65536 steps / 60 s / 100 intervals per second.
 const INTERVAL_AT_FULL_SPEED: i32 = 383;
 const LIMITS: (i32, i32) = (-TURN, TURN);
 
@@ -22,7 +24,7 @@ fn run(direction: Direction, end: RunEnd) -> MotionRequest {
     MotionRequest::Run { direction, end, effort: FULL }
 }
 
-/// A drive with a defect between ±1 turn.
+/// Returns a drive with a defect between ±1 turn.
 fn bench(defect: Option<Defect>) -> Bench {
     let mut bench = Bench::new();
     bench.write(158, LIMITS.0.into());
@@ -32,21 +34,21 @@ fn bench(defect: Option<Defect>) -> Bench {
     bench
 }
 
-/// A drive that stands outside, so many steps beyond its upper limit (or below the lower one).
+/// Returns a drive at rest outside its limits, by this number of steps above the upper limit (or below the lower one).
 fn bench_outside(beyond: i32, defect: Option<Defect>) -> Bench {
     let mut bench = bench(None);
     bench.act(to(if beyond > 0 { TURN } else { -TURN }));
     assert_eq!(bench.until_over(), Ended::Arrived);
     bench.run(100);
-    // The numbers of the places change, as with a limit that another master writes.
+    // The values of the limits change, as with a limit that another master writes.
     let (low, high) = if beyond > 0 { (-TURN, TURN - beyond) } else { (-TURN - beyond, TURN) };
     bench.permit = Permit::within(low, high);
     bench.load(SpindleLoad { defect, ..SpindleLoad::default() });
     bench
 }
 
-/// Until the word commands no motion any more: how many intervals after the report that first showed a position beyond
-/// `limit`, and the position then.
+/// Runs until the word commands no motion: returns the number of intervals after the report that first showed a position
+/// beyond `limit`, and the position then.
 fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     let mut past = None;
     for _ in 0..6000 {
@@ -63,8 +65,8 @@ fn intervals_past(bench: &mut Bench, limit: i32) -> (u32, i32) {
     panic!("it is never stopped: {:?}", bench.man.phase());
 }
 
-/// Issue 21.4: the packet behind the report that shows a position beyond a limit commands no motion any more, though the
-/// drive goes on.
+/// Issue 21.4: the packet after the report that shows a position beyond a limit commands no motion, though the drive
+/// continues.
 #[test]
 fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     for effort in [Effort::JOG, FULL] {
@@ -88,7 +90,7 @@ fn a_drive_that_ignores_its_limits_is_stopped_with_the_next_packet() {
     }
 }
 
-/// Issue 21.4: status bit 15 ends a run as well, also where the position is within the limits that were read.
+/// Issue 21.4: status bit 15 ends a run as well, even if the position is within the limits that were read.
 #[test]
 fn bit_15_ends_a_run() {
     let mut bench = bench(Some(Defect::RunsOn));
@@ -98,7 +100,7 @@ fn bit_15_ends_a_run() {
     assert_eq!((intervals, bench.man.ended().unwrap().1), (0, Ended::Beyond { position }));
 }
 
-/// Issue 21.4, case *endless run*: an expert's run is not held against limits that it is to ignore.
+/// Issue 21.4, case *endless run*: a run that ignores the limits is not checked against them.
 #[test]
 fn an_endless_run_is_not_watched() {
     let mut bench = bench(None);
@@ -108,7 +110,7 @@ fn an_endless_run_is_not_watched() {
     assert!(bench.position() > 2 * TURN && matches!(bench.man.phase(), Phase::Moving(_)), "{:?}", bench.man.ended());
 }
 
-/// Issue 21.4, case *unread limits*: what moves is stopped with the next packet.
+/// Issue 21.4, case *unread limits*: a motion is stopped with the next packet.
 #[test]
 fn a_run_ends_where_its_limits_are_not_known_any_more() {
     let mut bench = bench(None);
@@ -119,7 +121,7 @@ fn a_run_ends_where_its_limits_are_not_known_any_more() {
     assert!(matches!(bench.man.ended(), Some((_, Ended::Locked(_)))), "{:?}", bench.man.ended());
 }
 
-/// Issue 21.4, case *already outside*: back in is free, further out is refused before anything is sent.
+/// Issue 21.4, case *already outside*: the inward direction is allowed, further outward is refused before anything is sent.
 #[test]
 fn from_outside_only_the_way_in_is_free() {
     for (beyond, inward, outward) in [
@@ -150,8 +152,8 @@ fn from_outside_only_the_way_in_is_free() {
     }
 }
 
-/// Issue 21.4: a drive that says by status bit 15 that it is outside, while its position is well inside, does not tell which
-/// way leads in: nothing moves but what was freed for one press.
+/// Issue 21.4: if a drive reports by status bit 15 that it is outside, while its position is well inside, the inward
+/// direction is not known: nothing moves except what was permitted for one press.
 #[test]
 fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
     let ways = [Direction::Clockwise, Direction::Counterclockwise];
@@ -173,7 +175,7 @@ fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
         bench.run(1500);
         assert!(bench.position().abs() > 1000 && matches!(bench.man.phase(), Phase::Moving(_)), "{way:?}");
         assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));
-        // Beyond the limits by its position it is stopped, as any other.
+        // If its position is beyond the limits, it is stopped like any other.
         bench.permit = Permit::within(-bench.position().abs(), bench.position().abs());
         bench.run(30);
         assert!(matches!(bench.man.ended(), Some((_, Ended::Beyond { .. }))), "{:?}", bench.man.ended());
@@ -190,7 +192,8 @@ fn outside_by_bit_15_alone_nothing_moves_that_was_not_freed() {
     }
 }
 
-/// Issue 21.4: the way out that was freed for one press is slow and weak, whatever is asked for, and for that press alone.
+/// Issue 21.4: the outward direction permitted for one press is slow and weak, whatever is requested, and only for that
+/// press.
 #[test]
 fn the_way_out_can_be_freed_for_one_press() {
     let mut bench = bench_outside(5000, None);
@@ -205,13 +208,13 @@ fn the_way_out_can_be_freed_for_one_press() {
     bench.run(500);
     bench.act(jog(Direction::Clockwise, FULL, false));
     assert!(matches!(bench.until_over(), Ended::Refused(Refusal::Outward { .. })));
-    // Freed for nothing: from inside the limits hold.
+    // An unnecessary permission: from inside the limits apply.
     let mut bench = super::watch::bench(Some(Defect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, true));
     assert_eq!(intervals_past(&mut bench, TURN).0, 0);
 }
 
-/// Issue 21.4: a drive that counts the other way moves out where it should come in: stopped within a degree.
+/// Issue 21.4: a drive that counts the other way moves outward instead of inward: stopped within a degree.
 #[test]
 fn the_way_in_that_leads_out_is_stopped() {
     let mut bench = bench_outside(5000, Some(Defect::Reversed));
@@ -220,19 +223,19 @@ fn the_way_in_that_leads_out_is_stopped() {
     bench.act(jog(Direction::Counterclockwise, Effort::JOG, false));
     let Ended::WrongWay { position } = bench.until_over() else { panic!("{:?}", bench.man.ended()) };
     assert!(position > stood + DEGREE && position <= stood + DEGREE + INTERVAL_AT_FULL_SPEED / 10 + 1, "{position}");
-    // Freed, the other way leads in.
+    // With permission, the other direction leads in.
     bench.run(500);
     bench.act(jog(Direction::Clockwise, Effort::JOG, true));
     bench.run(1500);
     assert!(bench.position() < stood);
 }
 
-/// Issue 21.4, case *overrun while braking*: the stop goes on, and keeps its reason.
+/// Issue 21.4, case *overrun while braking*: the stop continues, and keeps its reason.
 #[test]
 fn an_overrun_while_braking_changes_nothing() {
     let mut bench = bench(Some(Defect::RunsOn));
     bench.act(jog(Direction::Clockwise, FULL, false));
-    // At 35 rpm it brakes within 0.1 s, and goes 1911 steps on.
+    // At 35 rpm it brakes within 0.1 s, and moves on by 1911 steps.
     while bench.position() < TURN - 1000 {
         bench.cycle();
     }
@@ -244,7 +247,7 @@ fn an_overrun_while_braking_changes_nothing() {
     assert!(!bench.moves());
 }
 
-/// Issue 21.5: a move that goes the wrong way is stopped with the report that shows more than a degree.
+/// Issue 21.5: a move in the wrong direction is stopped with the report that shows more than a degree.
 #[test]
 fn a_move_the_wrong_way_is_stopped_at_once() {
     for target in [TURN / 2, -TURN / 2] {
@@ -257,7 +260,7 @@ fn a_move_the_wrong_way_is_stopped_at_once() {
     }
 }
 
-/// Issue 21.5: a jog that turns against its pad is stopped with the report that shows more than a degree.
+/// Issue 21.5: a jog against its direction is stopped with the report that shows more than a degree.
 #[test]
 fn a_jog_the_wrong_way_is_stopped_at_once() {
     for (direction, sign) in [(Direction::Clockwise, 1), (Direction::Counterclockwise, -1)] {
@@ -270,13 +273,14 @@ fn a_jog_the_wrong_way_is_stopped_at_once() {
     }
 }
 
-/// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit beyond that limit.
+/// Issue 21.5: a move that does not stop at its target is stopped there, and one whose target is a limit is stopped beyond
+/// that limit.
 #[test]
 fn a_move_that_runs_on_is_stopped() {
     for target in [TURN / 2, TURN, -TURN] {
         let mut bench = bench(Some(Defect::RunsOn));
         bench.act(to(target));
-        // Its accuracy is 2.5°: three whole degrees are allowed where it arrives, but one beyond a limit.
+        // Its accuracy is 2.5°: three whole degrees are allowed at its target, but one beyond a limit.
         let degrees = if target.abs() == TURN { 1 } else { 3 };
         let (intervals, position) = intervals_past(&mut bench, target + target.signum() * degrees * DEGREE);
         assert_eq!(intervals, 0, "{target}: stopped at {position}");
@@ -289,7 +293,7 @@ fn a_move_that_runs_on_is_stopped() {
     }
 }
 
-/// A drive without a defect is never stopped by the watch: at its limits, at any target, with reports that come late.
+/// A drive without a defect is never stopped by the watch: at its limits, at any target, with late reports.
 #[test]
 fn a_sound_drive_arrives_everywhere() {
     let mut dice = fastrand::Rng::with_seed(21);

@@ -1,4 +1,5 @@
-//! The wire is cut at every request: what is told, in which state the encoder is, and that everything ends in time.
+//! The connection is cut at every request: the report and the state of the encoder are checked, and everything ends in
+//! time.
 
 use std::time::Duration;
 
@@ -13,10 +14,10 @@ use super::support::{Stand, program};
 use crate::support::Tap;
 
 const QUERY: &str = "steps=3600&revolutions=1&serial=5&cams=demo&program=2";
-/// So long a command may take to give a gateway up.
+/// Longest time until a command gives up on a gateway.
 const LIMIT: Duration = Duration::from_secs(12);
 
-/// What happens to the wire at a request.
+/// A fault of the connection at a request.
 type Cut = fn(&mut Tap, usize);
 
 const LOST: Cut = |tap, at| tap.lost_from = Some(at);
@@ -35,7 +36,7 @@ fn requests(job: impl Fn(&mut Stand) -> InterbusJob) -> usize {
     tap.sent.len()
 }
 
-/// Two parameters and a mask.
+/// Returns two parameters and a mask.
 fn write(stand: &mut Stand) -> InterbusJob {
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
         InterbusOutput::Surveyed(survey) => *survey,
@@ -92,7 +93,7 @@ fn a_read_that_is_cut_ends_in_time_and_says_what_out_is() {
             let (out, mode) = stand.left();
             assert_eq!(mode, StartupMode::Cams(program(2)), "{at}");
             match error {
-                // What was sent last has reached it, unless it was that which did not.
+                // The last word has reached it, unless that word was the lost one.
                 Error::NotLedBack { standing, .. } => assert!(!hears || standing.out == out, "{at}: {standing}"),
                 _ => assert_eq!(out, 0, "{at}"),
             }
@@ -126,7 +127,7 @@ fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be()
                                 "{at}: {interrupted}"
                             );
                         }
-                        // The last that it heard was normal running.
+                        // The last word that it received was normal running.
                         EndState::AsFound => assert_eq!((out, mode), (0, StartupMode::Cams(program(2))), "{at}"),
                     }
                 }
@@ -134,7 +135,7 @@ fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be()
                 other => panic!("{at}: {other:?}"),
             }
             assert!(stand.elapsed() - begun < LIMIT + CONFIRMED, "{at}: {:?}", stand.elapsed() - begun);
-            // The cable is back: the encoder can be led back.
+            // The cable is back: the encoder can be returned to its mode.
             *stand.tap() = Tap::default();
             stand.run(InterbusJob::LeadBack).unwrap();
             assert!(stand.session.sample().unwrap().is_valid(), "{at}");
@@ -146,7 +147,7 @@ fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be()
 /// The work before the cut.
 const CONFIRMED: Duration = Duration::from_secs(8);
 
-/// What the virtual gateway has as faults on purpose.
+/// The deliberate faults of the virtual gateway.
 #[test]
 fn a_bad_gateway_is_got_along_with() {
     for fault in ["drop:0.05", "garbage:0.03", "delay:40"] {
@@ -162,8 +163,8 @@ fn a_bad_gateway_is_got_along_with() {
     assert!(matches!(stand.run(InterbusJob::Survey), Ok(InterbusOutput::Surveyed(_))));
 }
 
-/// Issue 22.6: reading is cut off while a cam program is selected, and nothing can be sent any more. The next run leads the
-/// encoder back to what it did before, not to the program in which it was left.
+/// Issue 22.6: reading is cut off while a cam program is selected, and nothing more can be sent. The next run returns the
+/// encoder to its earlier mode, not to the program in which it was left.
 #[test]
 fn a_run_that_was_cut_off_reading_cams_is_led_back_by_the_next() {
     let save = || InterbusJob::Save { programs: true };
@@ -182,14 +183,14 @@ fn a_run_that_was_cut_off_reading_cams_is_led_back_by_the_next() {
             away += usize::from(stand.left().1 != found);
             stand.run_again();
             match stand.run(InterbusJob::Identify) {
-                // Left in the echo of a selection: somebody has to say that it is nobody else's.
+                // Left in the echo of a selection: the user has to confirm that no other master uses it.
                 Err(JobError::Device(Error::NotRunning { .. })) => {
                     stand.run(InterbusJob::LeadBack).unwrap();
                 }
                 ended => assert!(ended.is_ok(), "{at}: {ended:?}"),
             }
             assert_eq!(stand.left(), (0, found), "{at}");
-            // Only once: a program that is selected from then on is somebody's choice.
+            // Only once: a program selected later is another master's choice.
             let chosen = StartupMode::Cams(program(4));
             stand.run(InterbusJob::Select(chosen)).unwrap();
             stand.run_again();
@@ -200,7 +201,7 @@ fn a_run_that_was_cut_off_reading_cams_is_led_back_by_the_next() {
     }
 }
 
-/// Issue 22.6: a mode into which no run has sent it is another master's choice.
+/// Issue 22.6: a mode that no run has set is another master's choice.
 #[test]
 fn a_mode_that_somebody_has_chosen_since_stays() {
     let query = "steps=3600&revolutions=1&serial=77&cams=demo";

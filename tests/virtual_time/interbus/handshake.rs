@@ -1,5 +1,5 @@
-//! The handshake word by word, from the tables of reference 4 and 5: what is waited for, what is not taken for an answer,
-//! and what is made of each that is wrong.
+//! The handshake word by word, from the tables of reference 4 and 5: the awaited answers, words that are no answer, and all
+//! invalid ones.
 
 use std::time::Duration;
 
@@ -14,15 +14,15 @@ use encoder_studio::devices::interbus::protocol::{Parameter, StartupMode, Window
 use super::scripted::{POSITION, Script, cams, carry_out, parameters};
 use super::support::{program, station};
 
-/// Steps 255 and 4 turns, as a script that reads back 103 and 203 does not have them.
+/// Steps 255 and 4 turns, which a script does not have that reads back 103 and 203.
 const STEPS: u32 = 0x0200_00FF;
 const RUN: u32 = 0x8000_0000;
 
-/// Answers a read-out after the parameterisation as it was set: 255 steps, 1 turn, clockwise, preset 0.
+/// Answers a read-out after the parameterisation with the set values: 255 steps, 1 turn, clockwise, preset 0.
 fn reading_back(script: Script) -> Script {
     let value = |number: u32, value: u32| (0x2021_0000 + number, [0xA000_0000 | value]);
     [value(1, 255), value(2, 1), value(3, 3), value(4, 0)].iter().fold(script, |script, (out, words)| {
-        // Once to be read back, once for the gear.
+        // Once for the read-back, once for the gear.
         script.on(*out, words).on(*out, words)
     })
 }
@@ -32,7 +32,7 @@ fn worked_example() -> Vec<Op> {
     parameters(&[(Steps, 255), (Turns, 1), (Direction, 3), (Preset, 0)])
 }
 
-/// Reference 4, "Worked example": old echoes stand first, and each word waits for its own.
+/// Reference 4, "Worked example": old echoes come first, and each word waits for its own.
 #[test]
 fn the_worked_example_is_sent_word_by_word() {
     let script = Script::new()
@@ -48,7 +48,7 @@ fn the_worked_example_is_sent_word_by_word() {
     assert_eq!(sent.last(), Some(&0));
 }
 
-/// Echoes of the same code with other data, busy words, and an echo that is gone again in the next cycle.
+/// Echoes of the same code with other data, busy words, and an echo that disappears in the next cycle.
 #[test]
 fn nothing_but_the_exact_echo_that_stands_counts() {
     let cases: [(&str, &[u32]); 6] = [
@@ -89,7 +89,7 @@ fn an_error_at_any_step_is_told_and_led_back_from() {
             assert_eq!(interrupted.left, EndState::AsFound, "{interrupted}");
             assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "a store may have been spent");
             assert_eq!(interrupted.unfinished.unwrap().items().len(), 4);
-            // The words up to that one, then back.
+            // The words up to that one, then the return.
             assert_eq!(sent[..=at], words[..=at], "{sent:08X?}");
             assert!(sent[1 + at..].contains(&0) && sent.contains(&RUN), "{sent:08X?}");
             assert_eq!(sent.last(), Some(&0));
@@ -107,11 +107,11 @@ fn an_edge_beyond_the_range_is_refused_by_the_encoder_as_well() {
     assert!(sent.ends_with(&[0x2080_0000, RUN, 0, 0x2021_0009, 0]), "{sent:08X?}");
 }
 
-/// Reference 5: the start of cam 0 at 0 has the busy word for an echo. It has to stand for longer.
+/// Reference 5: the start of cam 0 at 0 has the busy word as its echo. It has to be stable for longer.
 #[test]
 fn the_echo_that_looks_busy_stands_for_longer() {
     let (ended, steps, sent) = carry_out(Script::new(), cams(0, 0, 0, 1));
-    // The script reads back 0 for everything: the mask is not taken.
+    // The script reads back 0 for everything: the mask is not accepted.
     let interrupted = ended.unwrap_err();
     assert!(matches!(&interrupted.cause, Error::NotTaken { item, wanted: 1, reads: 0 } if item == "cam-mask:1"));
     let cam = [0x4000_0000, 0x2020_0010, 0, 0x6000_0000, 0x2020_0020, 0, 0x2040_0001];
@@ -120,13 +120,13 @@ fn the_echo_that_looks_busy_stands_for_longer() {
     let stop = steps.iter().position(|step| step.out == 0x6000_0000).unwrap();
     // Half of the patience.
     assert!(steps[stop].at.since(steps[start].at).as_millis() >= 1000);
-    // It was busy indeed, for 600 ms, and refuses then.
+    // It was really busy, for 600 ms, and refuses then.
     let busy: Vec<u32> = std::iter::repeat_n(0xC000_0000, 120).chain([0x9800_0004]).collect();
     let interrupted = carry_out(Script::new().on(0x4000_0000, &busy), cams(0, 0, 0, 1)).0.unwrap_err();
     assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == 0x4000_0000), "{interrupted}");
 }
 
-/// A gateway gives the same word again and again until it has looked at the bus: what one looks at more often is no older.
+/// A gateway returns the same word until it has read the bus: reading it more often does not make it older.
 #[test]
 fn a_word_stands_by_time_and_not_by_how_often_it_is_read() {
     let pace = Duration::from_millis(1);
@@ -139,24 +139,24 @@ fn a_word_stands_by_time_and_not_by_how_often_it_is_read() {
     }
 }
 
-/// Issue 22.2: manual 5.3, "Encoder sends old confirmation": it may be that of an earlier word, with other data than were
-/// sent, with the manufacturer's bit, and late. It is no other master's.
+/// Issue 22.2: manual 5.3, "Encoder sends old confirmation": it may belong to an earlier word, with other data than sent,
+/// with the manufacturer's bit, and late. It does not prove another master.
 #[test]
 fn a_stale_echo_is_waited_out() {
-    // 0.4 to 0.8 s at 5 ms a look; the example's own C2000100 was never sent.
+    // 0.4 to 0.8 s at 5 ms per read; the example's own C2000100 was never sent.
     for (stale, looks) in [(0xC200_0100, 80), (0xC200_0100, 160), (0xE200_00FF, 160), (0xC600_0004, 120)] {
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xC800_0000]).collect();
         let script = reading_back(Script::new().on(STEPS, &[0xC000_0000, 0xC200_00FF]).on(0x0800_0000, &old));
         let (ended, ..) = carry_out(script, parameters(&[(Parameter::Steps, 255), (Parameter::Preset, 0)]));
         assert_eq!(ended.unwrap().verified, 2, "{stale:08X}");
-        // While a value is asked for.
+        // While a value is requested.
         let old: Vec<u32> = std::iter::repeat_n(stale, looks).chain([0xA000_0003]).collect();
         let identity = identify(&mut Master::over(Script::new().on(0x2021_0000, &old), &mut station("")));
         assert_eq!(identity.unwrap().serial_number, "3", "{stale:08X}");
     }
 }
 
-/// Issue 22.2: one that never goes is named after the time-out, and nobody is accused.
+/// Issue 22.2: an echo that remains is named after the time-out, without blaming another master.
 #[test]
 fn an_echo_that_stays_is_named_after_the_time_out() {
     let (ended, ..) = carry_out(Script::new().on(STEPS, &[0xC600_0004]), worked_example());
@@ -166,8 +166,8 @@ fn an_echo_that_stays_is_named_after_the_time_out() {
     assert_eq!(cause.to_string(), expected);
 }
 
-/// Issue 22.1, reference 6.11a: the processing word may carry the data that were sent (manual 10.4, X). An encoder that is
-/// at work for `busy` milliseconds and then refuses was not done before.
+/// Issue 22.1, reference 6.11a: the processing word may carry the sent data (manual 10.4, X). An encoder that is busy for
+/// `busy` milliseconds and then refuses had not accepted the word.
 #[test]
 fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     for (word, echo) in
@@ -189,15 +189,15 @@ fn a_processing_word_with_the_data_sent_is_no_echo_of_cam_0() {
     }
 }
 
-/// Cam 0 of program 1 from 15h to 20h, as it reads before the program is left and once more behind `80000000`.
+/// Returns cam 0 of program 1 from 15h to 20h, as it reads before the program is left and again after `80000000`.
 fn reading_cams(script: Script) -> Script {
     [(0x2020_0010, 0xA000_0015), (0x2020_0020, 0xA000_0020)]
         .iter()
         .fold(script, |script, (out, value)| script.on(*out, &[*value]).on(*out, &[*value]))
 }
 
-/// Issue 22.1: what was said to be received and was not taken is sent again before `80000000` stores it, each time watched
-/// for longer; where it never takes, nothing of that is called done.
+/// Issue 22.1: a word that was acknowledged and not accepted is sent again before `80000000` stores it, each time watched
+/// for longer; if it is never accepted, no operation is reported as done.
 #[test]
 fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let script = reading_cams(
@@ -212,14 +212,14 @@ fn an_edge_of_cam_0_is_read_out_before_the_program_is_left() {
     let start = [0x4000_0015, 0x2020_0010];
     let expected = [&start[..], &start, &start, &[0x6000_0020, 0x2020_0020, 0x2040_0001]].concat();
     assert_eq!(own, expected, "{sent:08X?}");
-    // Steps are told when they change: from the word itself to the question behind it.
+    // Steps are reported when they change: from the word itself to the question after it.
     let watched: Vec<u128> = steps
         .windows(2)
         .filter(|pair| pair[0].out == 0x4000_0015)
         .map(|pair| pair[1].at.since(pair[0].at).as_millis())
         .collect();
     assert!(watched.len() == 3 && watched[0] >= 100 && watched[1] >= 200 && watched[2] >= 400, "{watched:?}");
-    // It never takes it.
+    // It never accepts it.
     let never = (0..9).fold(Script::new(), |script, _| script.on(0x2020_0010, &[0xA000_0007]));
     let interrupted = carry_out(never, cams(0, 0x15, 0x20, 1)).0.unwrap_err();
     assert_eq!(interrupted.cause.to_string(), "cam:1:0 start is 7 after 21 was written");
@@ -247,7 +247,7 @@ fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
     assert_eq!(*sent.lock().unwrap(), [0x2021_0009, 0]);
 }
 
-/// What stands on OUT already has no edge.
+/// A word that is already on OUT has no edge.
 #[test]
 fn leading_back_makes_an_edge_of_run() {
     let script = Script { out: RUN, input: 0xC200_00FF, ..Script::new() };
@@ -256,7 +256,7 @@ fn leading_back_makes_an_edge_of_run() {
     assert_eq!(sent.lock().unwrap()[..2], [0, RUN]);
 }
 
-/// The shaft is two steps from the preset already: it is not taken for fired before it is.
+/// The shaft is already two steps from the preset: the preset counts as applied only when the position equals it.
 #[test]
 fn a_preset_is_fired_until_the_position_is_it() {
     let fire = || vec![Op::FirePreset { value: POSITION + 2 }];
@@ -265,13 +265,13 @@ fn a_preset_is_fired_until_the_position_is_it() {
     assert!(ended.is_ok() && sent.ends_with(&[0x4000_0000, 0]), "{sent:08X?}");
     let at = |out| steps.iter().filter(|step| step.out == out).map(|step| step.at).next_back().unwrap();
     assert!(at(0).since(at(0x4000_0000)).as_millis() >= 95);
-    // One that does not take it stays two steps away: the word is told.
+    // An encoder that does not accept it stays two steps away: the word is reported.
     let interrupted = carry_out(Script::new().on(0x4000_0000, &[POSITION]), fire()).0.unwrap_err();
     let missing = Error::TimeOut { awaited: Awaited::Preset, sent: 0x4000_0000, input: POSITION, milliseconds: 2000 };
     assert_eq!(interrupted.cause, missing);
 }
 
-/// The program is selected first, and asked for before any word that would do something else in position mode.
+/// The program is selected first, and confirmed before any word with another meaning in position mode.
 #[test]
 fn cam_words_follow_a_mode_that_was_confirmed() {
     let (_, _, sent) = carry_out(Script::new(), cams(3, 15, 213, 8));
@@ -305,7 +305,7 @@ fn a_missing_echo_position_or_value_is_named_with_its_words() {
         let interrupted = ended.unwrap_err();
         let expected = Error::TimeOut { awaited, sent: word, input: 0xC000_0000, milliseconds: 2000 };
         match &interrupted.cause {
-            // `80000000` does not lead back either, because it stands already.
+            // `80000000` does not return it either, because it is already on OUT.
             Error::NotLedBack { cause, standing } => {
                 assert_eq!((**cause == expected, standing.out, standing.parameterising), (true, RUN, true));
             }
@@ -328,7 +328,7 @@ fn halves_that_are_exchanged_are_suspected() {
     assert_eq!(error.to_string(), "IN 12340000 makes sense as 00001234 only: the word order may be swapped");
 }
 
-/// What ends a mode the manual does not say: an encoder that goes back to its position with `00000000` is kept in its mode
+/// The manual does not define what ends a mode: an encoder that returns to its position with `00000000` is kept in its mode
 /// with the word that keeps it.
 #[test]
 fn an_encoder_that_leaves_its_mode_with_normal_running_is_kept_in_it() {
@@ -341,7 +341,7 @@ fn an_encoder_that_leaves_its_mode_with_normal_running_is_kept_in_it() {
         assert_eq!(identity.mode.emit(), mode);
         assert_eq!(sent.lock().unwrap().last(), Some(&holds), "mode {mode}: {:08X?}", sent.lock().unwrap());
     }
-    // The same for one that is selected; in the next job it is known.
+    // The same for a selected program; in the next job it is known.
     let mut station: Station = station("");
     let script = Script { normal_ends_modes: true, ..Script::new() };
     let sent = script.sent.clone();
@@ -353,7 +353,7 @@ fn an_encoder_that_leaves_its_mode_with_normal_running_is_kept_in_it() {
     assert_eq!(sent.lock().unwrap().last(), Some(&RUN));
 }
 
-/// The value of a question about a cam may stay behind `00000000`: bit 16 is clear in the question as well.
+/// The value of a question about a cam may remain after `00000000`: bit 16 is clear in the question as well.
 #[test]
 fn values_of_cams_are_left_with_run_where_normal_running_does_not() {
     let script = Script { normal_keeps_values: true, ..Script::new() }
@@ -369,7 +369,7 @@ fn values_of_cams_are_left_with_run_where_normal_running_does_not() {
     assert!(sent.windows(4).any(|own| own == [0x2020_0013, 0, RUN, 0]), "{sent:08X?}");
 }
 
-/// Nothing is sent before an encoder has said what it does, but that question.
+/// Nothing but that question is sent before an encoder has reported its mode.
 #[test]
 fn words_that_mean_something_else_in_the_mode_found_are_not_sent() {
     let script = Script::in_mode(0x55);
@@ -378,7 +378,7 @@ fn words_that_mean_something_else_in_the_mode_found_are_not_sent() {
     let mut master = Master::over(script, &mut station);
     assert_eq!(identify(&mut master).unwrap().mode.emit(), 0x55);
     assert_eq!(sent.lock().unwrap().last(), Some(&0));
-    // Nor after that: whatever it does with 20800000 there, nobody knows.
+    // Nor after that: the effect of 20800000 there is not known.
     for wanted in [StartupMode::K3, StartupMode::Velocity, StartupMode::Cams(program(1))] {
         let error = select(&mut master, wanted).unwrap_err();
         assert_eq!(

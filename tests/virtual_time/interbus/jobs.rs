@@ -1,4 +1,4 @@
-//! What is read: with which words, and how the encoder is afterwards.
+//! Reading: the words sent, and the state of the encoder afterwards.
 
 use encoder_studio::devices::interbus::jobs::{InterbusJob, InterbusOutput, JobError, open};
 use encoder_studio::devices::interbus::procedures::check::{CheckFinding, CheckStep, InterbusStepResult, Verdict};
@@ -81,7 +81,7 @@ fn everything_that_can_be_read_out_is() {
     assert_eq!(stand.left(), (0, K3));
 }
 
-/// The value of a read-out looks like that of the one before: it has to be gone first, however long it stays.
+/// The value of a read-out looks like the previous one, which has to disappear first, however long it remains.
 #[test]
 fn old_values_and_busy_words_are_no_values() {
     for query in ["stale=3", "stale=30", "busy=200&stale=5", "stale=3&busy=900"] {
@@ -132,7 +132,7 @@ fn a_mode_that_is_selected_stays() {
         let output = stand.run(InterbusJob::Select(mode)).unwrap();
         assert!(matches!(output, InterbusOutput::Selected(own) if own == mode), "{mode:?}");
         assert_eq!(stand.left(), (0, mode));
-        // What is asked in between changes nothing of it.
+        // Requests in between do not change it.
         stand.run(InterbusJob::Identify).unwrap();
         assert_eq!(stand.left(), (0, mode));
         let reading = stand.session.sample().unwrap();
@@ -248,7 +248,7 @@ fn the_device_check_has_a_verdict_a_line_and_sets_nothing() {
 
 #[test]
 fn the_device_check_says_what_is_wrong() {
-    // Halves exchanged: a step less than 3 000 000 is 2DC6BFh, which looks like an echo then, and OUT asks for nothing.
+    // Exchanged halves: a step less than 3 000 000 is 2DC6BFh, which then looks like an echo, and OUT requests nothing.
     let far = gateway("steps=33554431&revolutions=4096&position=3000000&order=low-first");
     let mut stand = Stand::with(far, station(""));
     let lines = checked(&mut stand);
@@ -266,7 +266,7 @@ fn the_device_check_says_what_is_wrong() {
     let lines = checked(&mut stand);
     assert_eq!(verdict(&lines, CheckStep::InputWord), Some(Verdict::Bad), "{lines:?}");
     assert_eq!(stand.sent(), Vec::<u32>::new());
-    // Somebody reads its serial number.
+    // Another master reads its serial number.
     let mut stand = Stand::new("steps=4096&revolutions=1");
     stand.gateway.with_encoder(|encoder| encoder.write(Moment::START, 0x2021_0000));
     let lines = checked(&mut stand);
@@ -283,7 +283,7 @@ fn the_device_check_says_what_is_wrong() {
     }
 }
 
-/// A recording is played back by the same jobs, whatever the numbers of the requests are.
+/// A recording is played back by the same jobs, with any numbers of the requests.
 #[test]
 fn a_recorded_trace_answers_as_the_encoder_did() {
     let mut stand = Stand::new("steps=3600&revolutions=1&serial=4711");

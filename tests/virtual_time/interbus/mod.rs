@@ -1,4 +1,4 @@
-//! A K3 encoder behind its gateway: the handshake, what is read and written with it, and how everything ends.
+//! A K3 encoder at its gateway: the handshake, reading and writing, and all kinds of ends.
 
 mod cuts;
 mod handshake;

@@ -21,31 +21,31 @@ use encoder_studio::worker::commit::write_plan;
 
 use super::support::{program, station};
 
-/// The position while nothing else is written down.
+/// The position if the script contains nothing else.
 pub(crate) const POSITION: u32 = 1234;
 
-/// An encoder that acknowledges every word at once, but for those that are written down: each of these gives its IN words
-/// cycle by cycle, and the last one from then on. A value of a read-out stands until `00000000` or `80000000`.
+/// An encoder that acknowledges every word at once, except for those of the script: each of these gives its IN words cycle
+/// by cycle, and the last one from then on. A value of a read-out remains until `00000000` or `80000000`.
 #[derive(Default)]
 pub(crate) struct Script {
     /// By OUT word; of several lists the first is for the first time that it is written.
     pub(crate) answers: HashMap<u32, VecDeque<Vec<u32>>>,
-    /// What the gateway says that OUT is, where it is not what was written.
+    /// OUT as the gateway returns it, if it is not the written word.
     pub(crate) output: Option<u32>,
     /// `00000000` ends cam mode and velocity mode.
     pub(crate) normal_ends_modes: bool,
     /// `00000000` does not end the reading of cams.
     pub(crate) normal_keeps_values: bool,
-    /// Every word that was written, each once where it stays.
+    /// Every word that was written, once if it is repeated.
     pub(crate) sent: Arc<Mutex<Vec<u32>>>,
     pub(crate) mode: u32,
     pub(crate) out: u32,
     pub(crate) standing: VecDeque<u32>,
     pub(crate) input: u32,
     pub(crate) now: Duration,
-    /// From one look at IN to the next.
+    /// Interval between two reads of IN.
     pub(crate) pace: Duration,
-    /// The gateway refuses this word with this exception, the first time that it is written; and whether it wrote it.
+    /// A word that the gateway refuses with this exception, the first time that it is written; and whether it wrote it.
     pub(crate) refuses: Option<(u32, u8, bool)>,
 }
 
@@ -58,7 +58,7 @@ impl Script {
         Script { mode, ..Script::new() }
     }
 
-    /// To this word it answers with these.
+    /// Adds the answers to a word.
     pub(crate) fn on(mut self, out: u32, words: &[u32]) -> Self {
         self.answers.entry(out).or_default().push_back(words.to_vec());
         self
@@ -139,7 +139,7 @@ impl ProcessData for Script {
     }
 }
 
-/// The encoder that a script is.
+/// Returns the encoder that a script is.
 pub(crate) fn identity() -> Identity {
     Identity {
         serial_number: "3".to_owned(),
@@ -152,7 +152,7 @@ pub(crate) fn identity() -> Identity {
     }
 }
 
-/// Carries operations out with a script; how that ended, each step, and all words that were written then.
+/// Carries operations out with a script; returns the result, each step, and all written words.
 pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<Interrupted>>, Vec<Handshake>, Vec<u32>) {
     let plan = InterbusPlan { base: Base::default(), ops };
     let (folder, consent) = (tempfile::tempdir().unwrap(), Consent::to(plan.id()));
@@ -176,7 +176,7 @@ pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<In
     let ended: Result<Committed, JobError> = {
         let master = Master::over(script, &mut station).telling(|step| steps.push(step));
         let mut write = EncoderWrite { master, identity: &commit.prepared.identity };
-        // What was read again is no part of it.
+        // Without the words that read again.
         let begins = &mut |at: Progress<&Op>| {
             if at.done == 0 {
                 sent.lock().unwrap().clear()
@@ -193,13 +193,13 @@ pub(crate) fn carry_out(script: Script, ops: Vec<Op>) -> (Result<Written, Box<In
     (ended, steps, sent)
 }
 
-/// Parameters in one parameterisation.
+/// Returns the parameters in one parameterisation.
 pub(crate) fn parameters(changes: &[(Parameter, u32)]) -> Vec<Op> {
     let change = |(parameter, to): &(Parameter, u32)| ParameterChange { parameter: *parameter, from: 0, to: *to };
     vec![Op::Parameterise(changes.iter().map(change).collect())]
 }
 
-/// Program 1 with both edges of a cam, and its mask.
+/// Returns program 1 with both edges of a cam, and its mask.
 pub(crate) fn cams(cam: u8, start: u32, stop: u32, mask: u8) -> Vec<Op> {
     let change = |edge, to: u32| CamChange {
         cam: CamNumber::new(cam).unwrap(),

@@ -1,4 +1,4 @@
-//! A virtual encoder behind a virtual gateway in virtual time, with a session on it, and all that went over the wire.
+//! Test support: a virtual encoder at a virtual gateway in virtual time, with a session and a record of its data.
 
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::Duration;
@@ -37,7 +37,7 @@ pub(crate) fn station(query: &str) -> Station {
 }
 
 impl Stand {
-    /// An encoder as `sim:?…` describes it.
+    /// Creates an encoder as `sim:?…` describes it.
     pub(crate) fn new(query: &str) -> Self {
         Stand::with(gateway(query), station(""))
     }
@@ -56,7 +56,7 @@ impl Stand {
         Stand { gateway, clock, tap, trace, folder, session }
     }
 
-    /// Another run of the program on the same gateway, with what the one before kept on disk.
+    /// Starts another run of the program on the same gateway, with the files of the one before.
     pub(crate) fn run_again(&mut self) {
         self.tap = Arc::default();
         let link = TestLink::new(Arc::new(Mutex::new(self.gateway.connection())), self.clock.clone(), self.tap.clone());
@@ -84,7 +84,7 @@ impl Stand {
         self.session.run_inline(job)
     }
 
-    /// Runs a job; what it gives, and each step of the handshake.
+    /// Runs a job; returns its result, and each step of the handshake.
     pub(crate) fn follow(&mut self, job: InterbusJob) -> (Result<InterbusOutput, JobError>, Vec<Handshake>) {
         let mut steps = Vec::new();
         let ended = self.session.run(JobId::default(), job, &mut |event| {
@@ -124,7 +124,7 @@ impl Stand {
         }
     }
 
-    /// The OUT words that were written, each once where it was written again.
+    /// Returns the OUT words that were written, once if repeated.
     pub(crate) fn sent(&self) -> Vec<u32> {
         let entries = self.trace.lock().unwrap();
         let sent = entries.iter().filter(|entry| entry.direction == Direction::Sent);
@@ -137,7 +137,7 @@ impl Stand {
             .collect()
     }
 
-    /// OUT as the encoder has it, and the mode that it would start with.
+    /// Returns OUT as the encoder has it, and the mode that it would start with.
     pub(crate) fn left(&self) -> (u32, StartupMode) {
         self.gateway.with_encoder(|encoder| (encoder.out(), encoder.startup_mode()))
     }

@@ -1,5 +1,5 @@
-//! Bytes between us and a gateway, written by hand from the Modbus application protocol: what is sent, and what is made of
-//! everything that a gateway may say.
+//! Bytes between the program and a gateway, written by hand from the Modbus application protocol: the requests, and the
+//! handling of every answer of a gateway.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,10 +13,10 @@ use encoder_studio::units::{CharacterFormat, Moment};
 
 use super::support::station;
 
-/// What comes after a request: so many milliseconds later these bytes.
+/// Bytes after a request, each with its delay in milliseconds.
 type Answer = Vec<(u64, Vec<u8>)>;
 
-/// A gateway that says what a test makes of each request and its number, from 0.
+/// A gateway whose answer a test computes from each request and its number, from 0.
 struct Gateway<F> {
     clock: Arc<VirtualClock>,
     answer: F,
@@ -61,18 +61,18 @@ impl<F: FnMut(usize, &[u8]) -> Answer + Send> ByteLink for Gateway<F> {
     }
 }
 
-/// A reply to a request, with its number.
+/// Returns a reply to a request, with its number.
 fn reply(request: &[u8], body: &[u8]) -> Vec<u8> {
     let length = u16::try_from(body.len()).unwrap().to_be_bytes();
     [&request[..2], &[0, 0], &length, body].concat()
 }
 
-/// The reply to a reading of two registers.
+/// Returns the reply to a reading of two registers.
 fn registers(request: &[u8], word: u32) -> Vec<u8> {
     reply(request, &[&[request[6], request[7], 4][..], &word.to_be_bytes()].concat())
 }
 
-/// What came of it, the requests, and how long it took.
+/// The result, the requests, and the time taken.
 type Seen<T> = (Result<T, Error>, Vec<Vec<u8>>, Duration);
 
 fn with<T>(
@@ -127,7 +127,7 @@ fn an_out_word_is_two_holding_registers_written_at_once() {
     assert_eq!(carried(true, &requests[0], WordOrder::HighFirst), None);
 }
 
-/// Every request has its own number: what comes for an earlier one is let pass, be it its only answer.
+/// Every request has its own number: a reply to an earlier one is ignored, even if it is the only answer.
 #[test]
 fn a_late_reply_is_not_taken_for_the_next() {
     let answer = |number: usize, request: &[u8]| match number {
@@ -137,7 +137,7 @@ fn a_late_reply_is_not_taken_for_the_next() {
     let (ended, requests, _) = read("", answer);
     assert_eq!((ended.unwrap().word, requests.len()), (2, 2));
     assert_ne!(requests[0][..2], requests[1][..2]);
-    // In one piece with the right one behind it.
+    // In one piece with the right one after it.
     let answer = |number: usize, request: &[u8]| match number {
         0 => vec![],
         _ => {
@@ -180,7 +180,7 @@ fn a_refusal_is_told_with_its_cause() {
         assert_eq!(requests.len(), tries, "{text}");
         assert!(took < Duration::from_secs(12));
     }
-    // Who was busy once answers then.
+    // A gateway that was busy once answers then.
     let (ended, requests, _) = read("", |number, request| match number {
         0 | 1 => vec![(2, reply(request, &[1, 0x84, 6]))],
         _ => vec![(2, registers(request, 5))],
@@ -220,7 +220,7 @@ fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
     assert_eq!(ended.unwrap_err(), Error::NoReply { requested: RequestedItem::Input { register: 0 }, tries: 3 });
     assert_eq!(requests.len(), 3);
     assert!(took < Duration::from_secs(12), "{took:?}");
-    // It hangs after a while: also leading back ends soon.
+    // It hangs after a while: the return to the mode ends soon as well.
     for answered in 0..40 {
         let answer = move |number: usize, request: &[u8]| match (number < answered, request[7]) {
             (false, _) => vec![],
@@ -236,7 +236,7 @@ fn a_gateway_that_says_nothing_or_never_ends_is_given_up() {
     assert_eq!((ended.unwrap_err(), took < Duration::from_secs(12)), (Error::NeverSilent, true));
 }
 
-/// A recording answers with the numbers of its day.
+/// A recording answers with its own numbers.
 #[test]
 fn a_recording_answers_whatever_the_number() {
     let mut station = station("");

@@ -1,4 +1,4 @@
-//! What is written: only what differs, each read back, one store an operation; and what is refused before anything is.
+//! Writing: only differences, each read back, one store per operation; and refusals before any write.
 
 use std::path::Path;
 use std::time::Duration;
@@ -20,7 +20,7 @@ use super::support::{Stand, cam, program};
 
 const SCALED: &str = "steps=3600&revolutions=1&preset=10&serial=77&cams=demo&position=100";
 
-/// The encoder as it is, with these programs.
+/// Returns the current content of the encoder, with these programs.
 fn image(stand: &mut Stand, programs: &[u8]) -> Image {
     let survey = match stand.run(InterbusJob::Survey).unwrap() {
         InterbusOutput::Surveyed(survey) => *survey,
@@ -40,7 +40,7 @@ fn edited(stand: &mut Stand, programs: &[u8], edit: impl FnOnce(&mut Image)) -> 
     Change::Write(Box::new(wanted))
 }
 
-/// The words that set something: no question, no normal running.
+/// Returns the words that set a value: no question, no normal running.
 fn setting(stand: &Stand) -> Vec<u32> {
     let questions = |word: &u32| matches!(word >> 16, 0x2020 | 0x2021);
     stand.sent().into_iter().filter(|word| *word != 0 && !questions(word)).collect()
@@ -61,7 +61,7 @@ fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
         let done = stand.commit(prepared).unwrap();
         assert_eq!((done.written.ops, done.written.written, done.written.verified), (1, 3, 3));
         assert_eq!((done.written.write_cycles, stand.stores()), (1, before + 1));
-        // 20 000 = 4E20h, and 4 turns have room for them only once they are set.
+        // 20 000 = 4E20h, for which there is room only after 4 turns are set.
         assert_eq!(setting(&stand), [0x0400_0004, 0x0200_4E20, 0x0800_4E1F, 0x8000_0000]);
         assert_eq!(stand.left(), (0, StartupMode::K3));
         let kept = stand.gateway.with_encoder(|encoder| encoder.stored().clone());
@@ -75,7 +75,7 @@ fn parameters_are_set_in_one_parameterisation_which_is_one_store() {
     }
 }
 
-/// The issue's measure on the wire: of 64 cams four differ, in two programs.
+/// The issue's measure for the sent words: of 64 cams four differ, in two programs.
 #[test]
 fn only_edges_that_differ_are_sent_and_a_program_is_one_store() {
     let all: Vec<u8> = (1..=8).collect();
@@ -95,7 +95,7 @@ fn only_edges_that_differ_are_sent_and_a_program_is_one_store() {
         let done = stand.commit(prepared).unwrap();
         assert_eq!((done.written.ops, done.written.written, done.written.verified), (2, 5, 5), "{faults}");
         assert_eq!((done.written.write_cycles, stand.stores()), (2, before + 2), "{faults}");
-        // Edges alone: 010 and 011 in front, of which 40000000 could be a preset elsewhere.
+        // Only edges: 010 and 011 in front, of which 40000000 could be a preset elsewhere.
         let edges = setting(&stand).into_iter().filter(|word| matches!(word >> 29, 0b010 | 0b011)).count();
         assert_eq!(edges, 8, "{faults}");
         assert_eq!(stand.left(), (0, found), "{faults}");
@@ -185,7 +185,7 @@ fn a_restore_writes_what_differs_and_leaves_the_mounting_of_another() {
         let wanted = profile.image.program(number).unwrap();
         assert_eq!((kept.program(number).mask, kept.program(number).cams), (wanted.mask, wanted.cams));
     }
-    // Once more: nothing differs, nothing is written.
+    // Repeated: nothing differs, nothing is written.
     let (stores, prepared) = (other.stores(), other.prepare(Change::Restore { profile, options }));
     assert!(prepared.plan.is_empty());
     assert!(other.commit(prepared).unwrap().backup.is_none());
@@ -241,7 +241,7 @@ fn a_worn_eeprom_is_written_only_by_force() {
         let ended = stand.run(job(false));
         let is_refused = match seen {
             Some(_) => matches!(ended, Err(JobError::NotBegun(NotBegun::Worn { .. }))),
-            // Issue 22.4: a count that is not known is no 0.
+            // Issue 22.4: an unknown count is not 0.
             None => matches!(ended, Err(JobError::NotBegun(NotBegun::WearUnknown { cost: 1 }))),
         };
         assert_eq!(is_refused, refused, "{seen:?}: {ended:?}");
@@ -275,8 +275,8 @@ fn the_logbook_counts_stores_by_serial_number() {
     assert!(history.iter().all(|entry| entry.planned_cycles == 1 && entry.backup.as_deref().is_some_and(Path::exists)));
 }
 
-/// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), changed or not. Each that was selected to be
-/// read counts once; a changed one's store is the write's.
+/// Issue 22.3: an encoder may store a program when it is left (manual 5.4.4), changed or not. Each program that was
+/// selected for reading counts once; the store of a changed one belongs to the write.
 #[test]
 fn programs_that_are_read_count_as_stores() {
     let mut stand = Stand::new(SCALED);
@@ -287,19 +287,19 @@ fn programs_that_are_read_count_as_stores() {
     assert_eq!(stand.counted(), 3);
     stand.run(InterbusJob::Read("cam:2:0".parse().unwrap())).unwrap();
     assert_eq!(stand.counted(), 4);
-    // Read for the plan, and once more before it is written, which stores.
+    // Read for the plan, and again before it is written, which stores.
     let before = stand.stores();
     let prepared = stand.prepare(Change::Item(Item::CamMask(program(6)), ItemValue::Mask(0x5A)));
     assert_eq!(prepared.cycles_seen, Some(5));
     let done = stand.commit(prepared).unwrap();
     assert_eq!((done.written.write_cycles, stand.stores() - before, stand.counted()), (1, 1, 7));
-    // The program in which it was found is left as well.
+    // The original program is left as well.
     let mut stand = Stand::new(&format!("{SCALED}&program=4"));
     stand.programs(&[6]);
     assert_eq!(stand.counted(), 2);
     stand.programs(&[4]);
     assert_eq!(stand.counted(), 2);
-    // What another master has left half set is stored by leading back.
+    // Parameters that another master has partly set are stored by the return to the mode.
     let now = stand.clock.now();
     stand.gateway.with_encoder(|encoder| encoder.write(now, 0x2040_0011));
     stand.run(InterbusJob::LeadBack).unwrap();
@@ -323,7 +323,7 @@ fn steps_less_one_are_read_and_written_as_they_are() {
     assert_eq!(stand.session.sample().unwrap().gear.map(|gear| gear.steps()), Some(720));
 }
 
-/// A wish to end is heard between two words; then the encoder runs again, in the mode in which it was.
+/// A cancellation takes effect between two words; then the encoder runs again, in its original mode.
 #[test]
 fn a_wish_to_end_leaves_an_encoder_that_runs() {
     let wanted = |stand: &mut Stand| {
@@ -377,11 +377,11 @@ fn an_operation_tells_what_it_changes() {
         }
     });
     assert!(matches!(ended, Event::Finished(..)));
-    // What is set, then what is fired.
+    // First the set value, then the applied one.
     assert_eq!(told, [(0, 2, "preset".to_owned()), (1, 2, "position".to_owned())]);
 }
 
-/// It is near already, and gives old words: what it gives afterwards is the preset.
+/// It is already near, and returns old words; afterwards it returns the preset.
 #[test]
 fn a_preset_near_the_shaft_s_position_is_set_to_the_step() {
     for (preset, faults) in [(102, "stale=6"), (98, "stale=6&busy=60"), (101, "stale=6"), (102, "stale=0")] {
@@ -394,7 +394,7 @@ fn a_preset_near_the_shaft_s_position_is_set_to_the_step() {
     }
 }
 
-/// IN is 86000000 all the time: what it held was lost. The remedy that this names has to work.
+/// IN is 86000000 all the time: the content was lost. The remedy in the message has to work.
 #[test]
 fn an_encoder_with_lost_parameters_is_led_back_and_restored() {
     let mut stand = Stand::new("steps=360&revolutions=1&cams=demo&serial=5&fault=die-in-store:1");

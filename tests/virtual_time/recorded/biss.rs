@@ -1,4 +1,4 @@
-//! Writes to a BiSS encoder, at its configuration pin and behind an adapter.
+//! Writes to a BiSS encoder, at its configuration pin and at an adapter.
 
 use encoder_studio::devices::biss::jobs::{Change, JobError};
 use encoder_studio::devices::biss::procedures::Error;

@@ -14,7 +14,7 @@ fn status(byte: u8) -> DataFieldStatus {
     DataFieldStatus::from_byte(byte)
 }
 
-/// An encoder with four fields, one of them guarded by a code of its own and write protected.
+/// Returns an encoder with four fields, one of them guarded by its own code and write protected.
 fn scene() -> Desk {
     let mut desk = Desk::new("codes=2:66&position=4096");
     desk.know_code(2, 0x66);

@@ -1,9 +1,9 @@
-//! What goes over the wire while something is written, and at every early end of it, byte for byte as in the recordings
-//! under `tests/fixtures/wire`: one file a kind of write. A recording shows the whole write; of each early end it tells
-//! how many lines are those of the whole, how many follow them, a sum of all, and how the write ended.
+//! The data of a write, and of every early end of it, byte for byte as in the recordings under `tests/fixtures/wire`: one
+//! file per kind of write. A recording shows the complete write; for each early end it has the number of lines that equal
+//! the complete write, the number of lines after them, a sum of all, and the result.
 //!
-//! With `ENCODER_STUDIO_RECORD=1` the files are written anew: only where the wire is meant to change, and the difference
-//! belongs into the same commit.
+//! With `ENCODER_STUDIO_RECORD=1` the files are written again: only if the data are meant to change, and the difference
+//! belongs in the same commit.
 
 mod biss;
 mod hiperdrive;
@@ -19,19 +19,19 @@ use encoder_studio::worker::{Device, Session};
 
 use crate::support::Tap;
 
-/// A write that stands ready, and how to disturb it.
+/// A prepared write, and the means to disturb it.
 struct Ready {
     tap: Arc<Mutex<Tap>>,
     cancel: Cancel,
     lines: Lines,
-    /// Carries it out; tells how it ended.
+    /// Carries it out; returns the result as text.
     carry_out: Box<dyn FnOnce() -> String>,
 }
 
 /// Frames as the trace shows them: access codes are masked.
 type Lines = Arc<Mutex<Vec<String>>>;
 
-/// From now on, every frame of the session; and the wish to end it.
+/// Records every frame of the session from now on; returns the cancellation as well.
 fn listen<D: Device>(session: &mut Session<D>) -> (Lines, Cancel) {
     let lines = Lines::default();
     let kept = lines.clone();
@@ -47,7 +47,7 @@ fn listen<D: Device>(session: &mut Session<D>) -> (Lines, Cancel) {
 /// Ends a write early, at the frame with this number.
 type EarlyEnd = fn(&mut Tap, &Cancel, usize);
 
-/// How a write ends early, at a frame of ours.
+/// The early ends of a write, at one of the sent frames.
 const EARLY: [(&str, EarlyEnd); 3] = [
     ("cancelled", |tap, cancel, at| tap.cancel_at = Some((at, cancel.clone()))),
     ("lost", |tap, _, at| tap.lost_from = Some(at)),
@@ -62,8 +62,8 @@ impl Ready {
     }
 }
 
-/// Compares a write and its early ends with its recording. `points` are the frames of ours at which it ends early, from 0;
-/// every one of them where there are none.
+/// Compares a write and its early ends with its recording. `points` are the sent frames at which it ends early, from 0; all
+/// of them if there are none.
 fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Ready) {
     let undisturbed = ready();
     let (tap, first) = (undisturbed.tap.clone(), undisturbed.tap.lock().unwrap().sent.len());
@@ -86,7 +86,7 @@ fn compare(name: &str, points: Option<&[usize]>, ready: &mut dyn FnMut() -> Read
     assert_recorded(name, &text);
 }
 
-/// FNV-1a of 64 bits.
+/// Returns FNV-1a of 64 bits.
 fn sum(lines: &[String]) -> u64 {
     let bytes = lines.iter().flat_map(|line| line.bytes().chain([b'\n']));
     bytes.fold(0xCBF2_9CE4_8422_2325, |sum, byte| (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))

@@ -1,4 +1,4 @@
-//! Who the adapter is, how words are taken, a word.
+//! The identity of the adapter, the settings for words, and a single word.
 
 use encoder_studio::buses::bridge::procedures::AdapterError;
 use encoder_studio::buses::bridge::protocol::{Capabilities, Operation};
@@ -31,15 +31,15 @@ fn who_the_adapter_is_and_how_words_are_taken() {
     assert_eq!((identity.hello.name.as_str(), identity.hello.firmware.as_str()), ("virtual adapter", "1.0"));
     assert!(identity.hello.capabilities.has(Capabilities::SSI));
     assert_eq!(identity.asking, Asking { clocks: 25, clock_hz: 700_000, pause_us: 200 });
-    // 60 MHz by 86 is the nearest clock below.
+    // 60 MHz divided by 86 is the nearest clock below.
     assert_eq!(identity.clock_hz, 697_674);
     // 300 mW at 12 V.
     assert_eq!(identity.supply, Some(Supply { millivolt: 12_000, measured: Some((12_000, 25)) }));
-    // What is known is not asked again.
+    // Known data are not requested again.
     assert_eq!(hello(&mut stand), identity);
     let counts = [Operation::Hello, Operation::Supply, Operation::SsiConfig].map(|own| stand.count(own));
     assert_eq!(counts, [1, 1, 1]);
-    // Issue 22.16: what was switched on goes off at the end.
+    // Issue 22.16: a supply that was switched on is switched off at the end.
     stand.session.leave();
     assert_eq!(stand.count(Operation::Supply), 2);
 }
@@ -50,15 +50,15 @@ fn the_supply_stays_off_where_nobody_wishes_it() {
     assert_eq!((hello(&mut stand).supply, stand.count(Operation::Supply)), (None, 0));
 }
 
-/// ATM60 as delivered, 12 bits of turns and 13 of steps in Gray; the shaft stands at turn 1234h, 270°: turn 234h of 4096,
-/// step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
+/// ATM60 with factory settings, 12 bits of turns and 13 of steps in Gray; the shaft is at turn 1234h, 270°: turn 234h of
+/// 4096, step 1800h of 8192, of which 0x469800 ^ 0x234C00 is the Gray code.
 #[test]
 fn a_word_is_taken_as_it_is_asked_for() {
     let mut stand = Stand::new("", "ssi=atm60,code=gray&position=0x24698000");
     let words = stand.read();
     assert_eq!((words.words.as_slice(), words.clocks, words.first, words.lost), (&[0x65_D400][..], 25, 0, 0));
     assert!(words.is_stream_start() && !words.is_streamed() && !words.is_limited && words.period_ns == 0);
-    // More clocks than bits: zeros behind; fewer: the first ones.
+    // More clocks than bits: zeros after the frame; fewer: its first bits.
     assert_eq!(set(&mut stand, Asking { clocks: 27, ..QUICK }).unwrap().clock_hz, 1_500_000);
     let longer = stand.read();
     assert_eq!((longer.words.as_slice(), longer.clocks, longer.first), (&[0x65_D400 << 2][..], 27, 0));
@@ -91,7 +91,7 @@ fn an_adapter_of_another_version_is_refused_with_both_named() {
     assert_eq!(error, Error::Adapter(AdapterError::Version { expected: 1, got: 2 }));
 }
 
-/// Nothing has ever come from it: the request is repeated once, as the reference says.
+/// The adapter has never answered: the request is repeated once, as in the reference.
 #[test]
 fn a_silent_adapter_is_told_after_two_tries() {
     let mut stand = Stand::new("", "fault=silent-after:0");
@@ -99,7 +99,7 @@ fn a_silent_adapter_is_told_after_two_tries() {
     assert_eq!((error, stand.count(Operation::Hello)), (Error::Adapter(AdapterError::Silent), 2));
 }
 
-/// One byte in a hundred gets lost, so that a quarter of all exchanges fails; what is read is right all the same.
+/// One byte in a hundred is lost, so that a quarter of all exchanges fails; the values read are right nevertheless.
 #[test]
 fn words_are_asked_for_again_on_a_line_that_loses_bytes() {
     for seed in 0..20 {

@@ -1,4 +1,4 @@
-//! An SSI encoder behind an adapter.
+//! An SSI encoder at an adapter.
 
 mod jobs;
 mod streams;

@@ -1,4 +1,4 @@
-//! Words again and again: asked for where there is time to, else streamed, and the stream ended before anything else.
+//! Repeated words: requested if there is time, otherwise streamed, and the stream ended before any other request.
 
 use std::time::Duration;
 
@@ -14,10 +14,10 @@ use super::support::{QUICK, Stand};
 use crate::biss::support::pairs;
 
 const FAST: Duration = Duration::from_micros(50);
-/// Of ATM60: a turn has 8192 steps, so that 50 revolutions a second are 20.48 steps a word of 50 µs.
+/// ATM60: a turn has 8192 steps, so that 50 revolutions per second are 20.48 steps per word of 50 µs.
 const TURNING: &str = "ssi=atm60,code=binary&rpm=3000&position=0";
 
-/// Numbers and times go on, and the position as the shaft turns.
+/// Checks that numbers and times are continuous, and the position follows the shaft.
 fn check(runs: &[Words]) {
     let (mut next, mut before) = (runs[0].first, None);
     for run in runs {
@@ -57,7 +57,7 @@ fn what_is_wished_closer_than_one_can_ask_is_streamed() {
     let runs = stand.samples(Duration::from_secs(3));
     check(&runs);
     assert!(runs[0].is_stream_start() && runs[1..].iter().all(|run| !run.is_stream_start() && run.is_streamed()));
-    // What was taken last may still be on its way.
+    // The last words may still be in transit.
     let words: usize = runs.iter().map(|run| run.words.len()).sum();
     let streamed = stand.clock.now().since(runs[0].at).as_micros() as usize / 50;
     assert!(words > 50_000 && (streamed - 200..=streamed + 1).contains(&words), "{words} of {streamed}");
@@ -89,7 +89,7 @@ fn a_job_ends_the_stream_and_the_next_sample_begins_another() {
     assert_eq!(stand.sample().period_ns, 100_000, "another pace is another stream");
 }
 
-/// A stream that is wished goes on, with the new width from its first word on.
+/// A requested stream continues, with the new width from its first word on.
 #[test]
 fn words_are_taken_otherwise_while_a_stream_is_wished() {
     let mut stand = Stand::quick(TURNING);
@@ -127,14 +127,14 @@ fn a_wire_that_goes_ends_the_stream_and_what_comes_back_begins_anew() {
     let error = stand.session.sample().unwrap_err();
     assert_eq!(error, Error::Adapter(AdapterError::Mute));
     stand.tap.lock().unwrap().mute_from = None;
-    // The stream is told to end with HELLO.
+    // HELLO ends the stream.
     assert!(stand.sample().is_stream_start());
     assert_eq!(stand.count(Operation::Hello), 2);
     stand.tap.lock().unwrap().unplugged = true;
     assert!(matches!(stand.session.sample(), Err(Error::Link(error)) if error.is_lost()));
 }
 
-/// A reset ends the stream and forgets supply and clock: the next job, or the next sample, finds that out and goes on.
+/// A reset ends the stream and clears supply and clock: the next job, or the next sample, detects it and continues.
 #[test]
 fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
     let query = "supply=switched&rpm=60";
@@ -146,7 +146,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
         if by_job {
             stand.read();
         } else {
-            // What it had sent before still comes.
+            // Data sent before still arrive.
             let error = (0..100).find_map(|_| stand.session.sample().err()).unwrap();
             assert_eq!(error, Error::Adapter(AdapterError::Mute));
         }
@@ -155,7 +155,7 @@ fn an_adapter_that_was_reset_while_it_streamed_is_set_again() {
     }
 }
 
-/// Asked word by word, it is found out with the next one.
+/// With single requests, it is detected with the next one.
 #[test]
 fn an_adapter_that_was_reset_between_two_words_is_set_again() {
     let query = "supply=switched&rpm=60";
@@ -168,7 +168,7 @@ fn an_adapter_that_was_reset_between_two_words_is_set_again() {
     assert_eq!((stand.count(Operation::Supply), stand.count(Operation::SsiConfig)), (2, 2));
 }
 
-/// Packets that are damaged on the way are missing before the next, and no word is a wrong one.
+/// Damaged packets are counted as missing before the next, and no word is wrong.
 #[test]
 fn what_gets_lost_on_the_way_is_told() {
     let mut stand = Stand::quick(&format!("{TURNING}&seed=3&fault=drop:0.001"));

@@ -28,13 +28,13 @@ pub(crate) struct Stand {
 }
 
 impl Stand {
-    /// With what a link to the adapter and the virtual adapter itself say.
+    /// Creates one from the settings of a link to the adapter and of the virtual adapter.
     pub(crate) fn new(link: &str, query: &str) -> Self {
         let adapter = Arc::new(Mutex::new(Adapter::from_pairs(&pairs(query), at_adapter()).unwrap()));
         Self::before(link, adapter)
     }
 
-    /// An adapter whose words come 20 000 times a second.
+    /// Creates an adapter with 20 000 words per second.
     pub(crate) fn quick(query: &str) -> Self {
         Self::new("clock=1500000&pause=30", query)
     }
@@ -49,7 +49,7 @@ impl Stand {
         Stand { clock, adapter, tap, session, _folder: folder }
     }
 
-    /// The word that is asked for by itself.
+    /// Requests a single word.
     pub(crate) fn read(&mut self) -> Words {
         match self.session.run_inline(SsiJob::Read).unwrap() {
             SsiOutput::Read(words) => words,
@@ -61,7 +61,7 @@ impl Stand {
         self.session.sample().unwrap()
     }
 
-    /// All samples within so much time.
+    /// Returns all samples within this time.
     pub(crate) fn samples(&mut self, time: Duration) -> Vec<Words> {
         let end = self.clock.now() + time;
         let mut samples = Vec::new();
@@ -71,7 +71,7 @@ impl Stand {
         samples
     }
 
-    /// Bytes that the adapter sends within a second by itself.
+    /// Returns the bytes that the adapter sends within a second without a request.
     pub(crate) fn sends_by_itself(&mut self) -> usize {
         let mut adapter = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
@@ -82,7 +82,7 @@ impl Stand {
         (0..1000).map(|_| bytes(1)).sum()
     }
 
-    /// The requests of an operation.
+    /// Returns the requests of an operation.
     pub(crate) fn requests(&self, operation: Operation) -> Vec<Packet> {
         let mut receiver = Receiver::default();
         self.tap.lock().unwrap().sent.iter().for_each(|bytes| receiver.push(bytes));

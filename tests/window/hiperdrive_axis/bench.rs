@@ -1,4 +1,4 @@
-//! A desk on which axes are set up: steps, writes that go well and that do not, jogs.
+//! Test support for the set-up of axes: steps, successful and failed writes, jogs.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -14,7 +14,7 @@ use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive,
 use crate::hiperdrive_acts::{ATTEMPTS, has_lapsed, hold_pad_until, last_end, until_free};
 use crate::support::Desk;
 
-/// An adapter whose drive nobody has asked for.
+/// An adapter whose drive was never requested.
 pub(super) const FRESH: &str = "sim:?requested=0";
 
 pub(super) fn unit(desk: &Desk) -> &Unit {
@@ -43,7 +43,7 @@ pub(super) fn seen(desk: &Desk) -> DriveFacts {
     unit(desk).seen(unit(desk).drive())
 }
 
-/// A parameter by its own number.
+/// Reads a parameter by its own number.
 pub(super) fn read(desk: &Desk, number: u16) -> i64 {
     match unit(desk).value(ParameterNumber::new(number).unwrap()) {
         Some(Value::Number(value)) => *value,
@@ -51,7 +51,7 @@ pub(super) fn read(desk: &Desk, number: u16) -> i64 {
     }
 }
 
-/// A pad is pressed, as soon as the drive may move, and held until something is so.
+/// Presses a pad as soon as the drive may move, and holds it until a condition holds.
 #[track_caller]
 pub(super) fn held_until(desk: &mut Desk, press: Motor, what: &str, condition: impl Fn(&Unit) -> bool) {
     let drive = unit(desk).drive();
@@ -107,7 +107,7 @@ pub(super) fn step_with_write(desk: &mut Desk) {
     write(desk);
 }
 
-/// The step is done, and the next one comes.
+/// Completes the step, and goes to the next one.
 #[track_caller]
 pub(super) fn next(desk: &mut Desk, step: AxisStep) {
     let (axis, seen) = (axis(desk), seen(desk));
@@ -122,7 +122,7 @@ pub(super) fn edit(desk: &mut Desk, change: impl FnOnce(&mut Entries)) {
     run(desk, Run::Edit(Box::new(entries)));
 }
 
-/// Where the axis is, once packets say so.
+/// Waits for packets, and returns the position of the axis.
 #[track_caller]
 pub(super) fn position(desk: &mut Desk) -> i32 {
     let drive = unit(desk).drive();
@@ -136,7 +136,7 @@ pub(super) fn number(desk: &Desk, number: u16) -> i64 {
     unit(desk).number(unit(desk).drive(), number).unwrap()
 }
 
-/// Held until it has gone so far, then let go.
+/// Holds the jog until the axis has moved this far, then releases it.
 #[track_caller]
 pub(super) fn jog(desk: &mut Desk, direction: Direction, steps: i32) {
     let from = position(desk);
@@ -154,7 +154,7 @@ pub(super) fn stands(desk: &mut Desk) {
     });
 }
 
-/// A write of this step, by the number of drive 1; where the way is `rough`, it is refused first, then cut off in the middle.
+/// Runs a write of this step, by the number of drive 1; if `rough`, it is refused first, then cut off in the middle.
 #[track_caller]
 pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
     for hindrance in [WriteFault::Refused, WriteFault::CutOff].into_iter().filter(|_| rough) {
@@ -189,7 +189,7 @@ pub(super) fn step_with_writes(desk: &mut Desk, number: u16, rough: bool) {
             control(desk);
         }
     }
-    // What was cut off may have come: then it is done already.
+    // The interrupted write may have arrived: then it is already done.
     if axis(desk).ask(Button::Do, &seen(desk)).is_ok() {
         step_with_write(desk);
     } else {
@@ -206,7 +206,7 @@ pub(super) fn control(desk: &mut Desk) {
     });
 }
 
-/// A drive with 400 steps a turn of 4 mm, whose limits are to be confirmed.
+/// Returns a drive with 400 steps per turn of 4 mm, whose limits are to be confirmed.
 pub(super) fn until_scaled(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = Desk::fresh("");
     desk.act(Action::ShowTab(crate::tabs::HIPERDRIVE));
@@ -234,11 +234,11 @@ pub(super) fn until_jog() -> Desk {
     until_scaled(FRESH, 1, false)
 }
 
-/// With control, in the step with the slow jog.
+/// Takes control and confirms, up to the step with the slow jog.
 pub(super) fn confirm(mut desk: Desk) -> Desk {
     run(&mut desk, Run::Press(Button::Confirm));
     next(&mut desk, AxisStep::Jog);
-    // Before that the mark of these limits may still be read back from the file, and locks them anew.
+    // Before that the mark of these limits may still be read back from the file, and locks them again.
     let path = desk.outside.store().settings_path();
     desk.until("the confirmation is kept", |_| {
         std::fs::read_to_string(&path).is_ok_and(|text| text.contains("unconfirmed: []"))
@@ -251,7 +251,7 @@ pub(super) fn confirmed() -> Desk {
     confirm(until_jog())
 }
 
-/// With a place that was set to 128 steps, before the limits are taught.
+/// Returns a drive with its position set to 128 steps, before the limits are taught.
 pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = confirm(until_scaled(link, drive, rough));
     jog(&mut desk, Direction::Clockwise, 20);
@@ -268,7 +268,7 @@ pub(super) fn referenced(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// In the test, with limits that were taught.
+/// Returns a drive in the test, with taught limits.
 pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = referenced(link, drive, rough);
     jog(&mut desk, Direction::Counterclockwise, 10);
@@ -284,7 +284,7 @@ pub(super) fn until_test(link: &str, drive: u8, rough: bool) -> Desk {
     desk
 }
 
-/// Goes to a place until something is so; once more where nobody looked for 250 ms on a busy computer, which ends it.
+/// Moves to a place until a condition holds; again after a delay of 250 ms on a busy computer, which ends the motion.
 #[track_caller]
 pub(super) fn go(desk: &mut Desk, place: TestTarget, condition: impl Fn(&Unit) -> bool) {
     let drive = unit(desk).drive();
@@ -316,7 +316,7 @@ pub(super) fn tested(mut desk: Desk) -> Desk {
     desk
 }
 
-/// Saved, before the check over the supply.
+/// Returns the saved axis, before the check over the supply.
 pub(super) fn until_saved_with(link: &str, drive: u8, rough: bool) -> Desk {
     let mut desk = tested(until_test(link, drive, rough));
     next(&mut desk, AxisStep::Save);

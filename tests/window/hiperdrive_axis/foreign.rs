@@ -1,4 +1,4 @@
-//! Another master sets the reference again, at another place, to the number that it has: no parameter changes by it.
+//! Another master sets the reference again, at another place, to the same number: no parameter changes.
 
 use crate::tabs::Tabs as _;
 use encoder_studio::app::DeviceCommand;
@@ -7,7 +7,7 @@ use encoder_studio::sim::Faults;
 
 use super::*;
 
-/// A drive whose place was set to 128 steps and that stands 0.15 turns from there.
+/// Returns a drive whose position was set to 128 steps and that is now 0.15 turns from there.
 fn elsewhere() -> Desk {
     let mut desk = referenced("sim:?requested=0&timeout=250", 1, false);
     jog(&mut desk, Direction::Clockwise, 60);
@@ -22,7 +22,8 @@ fn set_by_another(desk: &Desk) {
     target.with(|station| station.write(Moment::default(), reference, &Value::Number(128)).unwrap());
 }
 
-/// Issue 21.6 (c): the position jumps while the axis stands, and what counts by the reference falls with it.
+/// Issue 21.6 (c): the position jumps while the axis is at standstill, and everything based on the reference becomes
+/// invalid.
 #[test]
 fn a_reference_set_again_at_another_place_is_noticed() {
     let mut desk = elsewhere();
@@ -35,7 +36,7 @@ fn a_reference_set_again_at_another_place_is_noticed() {
     assert_eq!(axis(&desk).may_move(&seen(&desk)).unwrap_err().id(), "hd_axis.fallen");
 }
 
-/// Issue 21.6 (c): while the line is gone it may have been moved as well: that is told, and nothing is concluded.
+/// Issue 21.6 (c): while the connection is lost it may have been moved as well: that is reported, without a conclusion.
 #[test]
 fn a_reference_set_again_while_the_line_is_gone_is_told() {
     let mut desk = elsewhere();

@@ -1,4 +1,4 @@
-//! Captures whose numbers are not to be trusted as they are, and what is said of that.
+//! Captures with unreliable numbers, and the resulting findings.
 
 use super::*;
 
@@ -39,7 +39,8 @@ fn a_time_that_goes_back_is_told() {
 
 #[test]
 fn a_shaft_that_turns_back_has_the_mean_of_both_directions() {
-    // 12 periods to either side, eight times a second: 0.4 s are 3.2 of these, 153.6 periods and what the rest comes to.
+    // 12 periods in both directions, eight times per second: 0.4 s are 3.2 of these, 153.6 periods and the path of the
+    // rest.
     let capture = made(|time| 12.0 * (TAU * 8.0 * time).sin(), plain);
     assert_eq!(found(&capture), [FindingKind::Reversed { times: 6 }]);
     // 6 turning points: 12 + 5·24 to the last one at −12, and back to 12·sin(6.4π) = 11.413.
@@ -76,7 +77,7 @@ fn beside_a_disturbance_the_parameters_are_uncertain() {
 
 #[test]
 fn a_correction_that_harms_is_told() {
-    // Against each other: the distance from the ellipse repeats twice a period, which passes for a gain of 1.04.
+    // In opposite phase: the distance from the ellipse repeats twice per period, which looks like a gain of 1.04.
     let third =
         |_, angle: f64, (sine, cosine)| (sine - 0.01 * (3.0 * angle).sin(), cosine - 0.01 * (3.0 * angle).cos());
     let other =
@@ -84,7 +85,7 @@ fn a_correction_that_harms_is_told() {
     for capture in [made(steady, third), made(steady, other)] {
         let found = found(&capture);
         let [FindingKind::CorrectionHarms { raw_deg, corrected_deg }] = found.as_slice() else { panic!("{found:?}") };
-        // 0.02·sin 2θ, and with the gain as much again: Python gives 2.29° and 4.59°.
+        // 0.02·sin 2θ, and with the gain the same amount again: Python gives 2.29° and 4.59°.
         near(*raw_deg, 2.29, 0.02);
         near(*corrected_deg, 4.59, 0.1);
     }

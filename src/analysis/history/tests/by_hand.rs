@@ -17,7 +17,7 @@ fn picture(history: &History, from: i64, to: i64, pixels: usize) -> Picture {
     picture
 }
 
-/// A sample every 10 ns.
+/// Returns a sample every 10 ns.
 fn history(values: &[f64], flags: &[Flags]) -> History {
     let mut history = History::new(&[Kind::Real], values.len());
     let times = times((0..values.len() as i64).map(|k| 10 * k));

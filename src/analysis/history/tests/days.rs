@@ -1,5 +1,5 @@
-//! Long runs in virtual time, and what they take of memory. These are shorter than a day's samples, so that they can be
-//! run unoptimised; `benches/history.rs` does the whole day.
+//! Long runs in virtual time, and their memory use. These are shorter than a day's samples, so that they can be run
+//! unoptimised; `benches/history.rs` runs the whole day.
 
 use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture};
 use crate::analysis::{Motion, Time, Unwrap};
@@ -44,7 +44,7 @@ fn memory_is_little_more_than_the_raw_columns() {
 fn times_are_exact_over_ten_days() {
     let mut history = History::new(&[Kind::Whole], 10_000);
     let ten_days = 10 * 86_400_000;
-    // An hour's batch each time, of which the history sees the last seconds: 1 kHz, and the clock's odd nanoseconds.
+    // An hour's batch each time, of which the history keeps the last seconds: 1 kHz, and the clock's odd nanoseconds.
     let at = |k: i64| Time::from_nanoseconds(k * MILLISECOND + k % 7);
     for start in (0..ten_days).step_by(3_600_000) {
         let numbers: Vec<i64> = (start..start + 5_000).collect();
@@ -64,7 +64,7 @@ fn times_are_exact_over_ten_days() {
 fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
     const BATCH: i64 = 5_000;
     const RANGE: i64 = 4096 * 4096;
-    // Steps a millisecond: about 6000 rpm, so the position wraps every 41 s.
+    // Steps per millisecond: about 6000 rpm, so the position wraps every 41 s.
     const SPEED: i64 = 409;
     let mut history = History::new(&[Kind::Whole, Kind::Real], 200_000).with_longest_pause(10 * MILLISECOND);
     let mut unwrap = Unwrap::rotary(RANGE).unwrap();
@@ -77,7 +77,7 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
         let mut speeds = Vec::new();
         let mut times = Vec::new();
         if batch % 7 == 3 {
-            // The wire was unplugged for 100 ms.
+            // The cable was unplugged for 100 ms.
             start += 100;
             gaps += 1;
             unwrap.gap();
@@ -100,7 +100,7 @@ fn hours_of_a_turning_encoder_lose_no_break_and_show_no_wrap() {
         most = most.max(history.memory());
     }
     assert!(most < 200_000 * 24 * 135 / 100, "{most}");
-    // What is left, at three zooms: every gap there is a break, and no column is higher than the encoder turns.
+    // The remaining samples, at three zooms: every gap is a break, and no column is higher than the encoder turns.
     let all = history.all();
     let (from, to) = (history.time(all.start).unwrap(), history.time(all.end - 1).unwrap().plus(1));
     let kept = all.clone().filter(|index| history.sample(0, *index).unwrap().flags == Flags::BREAK).count();

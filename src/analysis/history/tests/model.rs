@@ -1,11 +1,11 @@
-//! The naive history: everything in plain vectors, and every question answered by looking at each sample.
+//! The naive history: everything in plain vectors, and every query answered from each sample.
 
 use std::ops::Range;
 
 use super::super::{BLOCK, Flags, Grid, Pixel, Reduced, Value};
 use crate::analysis::Time;
 
-/// One column with its times, and what is still there of it.
+/// One column with its times, and what is still stored of it.
 #[derive(Default)]
 pub(super) struct Model {
     pub(super) times: Vec<i64>,
@@ -14,7 +14,7 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// As `History` would keep it: NaN is bad, bad breaks, and so does a pause.
+    /// Adds a sample as `History` would store it: NaN is bad, bad breaks, and so does a pause.
     pub(super) fn push(&mut self, time: i64, value: Value, mut flags: Flags, broken: bool, pause: i64) {
         if !value.to_f64().is_finite() {
             flags |= Flags::BAD;
@@ -45,7 +45,7 @@ impl Model {
         self.flags[range].iter().fold(Flags::NONE, |all, flags| all | *flags)
     }
 
-    /// What a picture has to have, without any rounding, and whether it consists of samples.
+    /// Returns the required picture, without any rounding, and whether it consists of samples.
     pub(super) fn picture(&self, first: usize, grid: &Grid) -> (Vec<Pixel>, bool) {
         let mut edges: Vec<usize> = (0..=grid.pixels()).map(|pixel| self.edge(first, grid, pixel)).collect();
         let (from, to) = (edges[0], edges[grid.pixels()]);
@@ -84,8 +84,8 @@ impl Model {
         (ranges.into_iter().map(pixel).collect(), raw)
     }
 
-    /// The first sample of a pixel column: the first behind its edge, or the beginning of 512, 64 or 8 samples that is no
-    /// earlier than a sixteenth of a column before the edge.
+    /// Returns the first sample of a pixel column: the first after its edge, or the beginning of 512, 64 or 8 samples that
+    /// is no earlier than a sixteenth of a column before the edge.
     fn edge(&self, first: usize, grid: &Grid, pixel: usize) -> usize {
         let edge = grid.edge(pixel);
         let exact = self.between(first, edge, edge).start;
@@ -96,7 +96,7 @@ impl Model {
         starts.into_iter().find(near).filter(|_| inner).unwrap_or(exact)
     }
 
-    /// The range of the values in the blocks that lie between two times: what the rounding is measured by.
+    /// Returns the range of the values in the blocks between two times, by which the rounding is measured.
     pub(super) fn around(&self, first: usize, from: Time, to: Time) -> f64 {
         let range = self.between(first, from, to.plus(1));
         let blocks = range.start / BLOCK * BLOCK..range.end.next_multiple_of(BLOCK).min(self.times.len());

@@ -1,4 +1,4 @@
-//! Whatever is appended, evicted and asked: the answer is that of a full scan.
+//! For any appended, evicted and queried samples: the result is that of a full scan.
 
 use proptest::prelude::*;
 
@@ -6,7 +6,7 @@ use super::super::{BLOCK, Flags, Grid, History, Kind, Part, Picture, Pixel, Valu
 use super::model::Model;
 use crate::analysis::Time;
 
-/// What the values of a run of samples look like.
+/// Shape of the values of a run of samples.
 #[derive(Clone, Copy, Debug)]
 enum Shape {
     Noise,
@@ -24,7 +24,7 @@ struct Run {
     count: usize,
     shape: Shape,
     offset: i64,
-    /// One in so many is remarkable; 0: none.
+    /// One in this many has a flag; 0: none.
     flagged: usize,
     broken: bool,
     batch: usize,
@@ -78,7 +78,7 @@ fn value(kind: Kind, shape: Shape, offset: i64, at: usize, random: &mut fastrand
     })
 }
 
-/// A history and its model with the same samples.
+/// Returns a history and its model with the same samples.
 fn build(kind: Kind, runs: &[Run], capacity: usize) -> (History, Model) {
     let mut history = History::new(&[Kind::Real, kind], capacity).with_longest_pause(PAUSE);
     let mut model = Model::default();
@@ -96,7 +96,7 @@ fn build(kind: Kind, runs: &[Run], capacity: usize) -> (History, Model) {
             let flags =
                 if remarkable { [Flags::BAD, Flags::WARNING, Flags::BREAK][random.usize(0..3)] } else { Flags::NONE };
             let value = value(kind, run.shape, run.offset, at, &mut random);
-            // The history has to draw the consequences itself.
+            // The history must draw the consequences itself.
             model.times.push(now);
             model.values.push(value);
             model.flags.push(flags);
@@ -140,7 +140,7 @@ fn append(history: &mut History, kind: Kind, given: &Model, run: &Run) {
     }
 }
 
-/// The extremes contain the true ones and are hardly further out; everything else is equal.
+/// Checks that the extremes contain the true ones and are hardly further out; everything else must be equal.
 fn check(found: &[Pixel], wanted: &[Pixel], around: impl Fn(&Pixel) -> f64) -> Result<(), TestCaseError> {
     prop_assert_eq!(found.len(), wanted.len());
     for (found, wanted) in found.iter().zip(wanted) {
@@ -260,26 +260,26 @@ proptest! {
         let (later, _) = build(kind, &[runs, more].concat(), capacity);
         let mut later_picture = Picture::default();
         later.picture(1, &later.cut(&grid), &mut later_picture);
-        // What lay in complete blocks, and is still there, is the same to the last bit.
+        // The samples of complete blocks that are still stored are identical to the last bit.
         let settled = history.time(history.all().end / BLOCK as u64 * BLOCK as u64).map_or(end, Time::nanoseconds);
         let oldest = later.time(later.all().start).unwrap();
         if !picture.raw && !later_picture.raw {
             let is_settled = |pixel: &&Pixel| pixel.from > oldest && pixel.to.nanoseconds() < settled;
             let old: Vec<&Pixel> = picture.pixels.iter().filter(is_settled).collect();
             let new: Vec<&Pixel> = later_picture.pixels.iter().filter(is_settled).collect();
-            // The column that eviction has cut into comes first.
+            // The column truncated by eviction comes first.
             let cut = usize::from(later.all().start > history.all().start) * 2;
             prop_assert_eq!(old.iter().rev().take(old.len().saturating_sub(cut)).collect::<Vec<_>>(),
                 new.iter().rev().take(old.len().saturating_sub(cut)).collect::<Vec<_>>());
         }
-        // A view that moves by whole columns finds the same columns again.
+        // A view that moves by whole columns has the same columns again.
         let width = grid.width();
         let moved = Grid::new(Time::from_nanoseconds(10 * width), Time::from_nanoseconds(60 * width), 50);
         prop_assert_eq!(moved.width(), width);
         let mut moved_picture = Picture::default();
         history.picture(1, &history.cut(&moved), &mut moved_picture);
         if !picture.raw && !moved_picture.raw {
-            // The ends of a picture are where it says; between them a column may begin a sixteenth of its width earlier.
+            // The ends of a picture are exact; between them a column may begin a sixteenth of its width earlier.
             let (from, to) = (moved.edge(1), grid.edge(grid.pixels() - 1).plus(-(width / 16)));
             let inside = |pixel: &&Pixel| pixel.from >= from && pixel.from < to;
             let still: Vec<&Pixel> = picture.pixels.iter().filter(inside).collect();

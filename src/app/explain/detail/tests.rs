@@ -1,10 +1,10 @@
-//! What lower layers say, in both languages. What a device's layers say stands with the device.
+//! Texts of lower layers, in both languages. Those of a device's layers are tested with the device.
 
 use super::*;
 use crate::app::Language::{English, German};
 use crate::link::{LinkUrl, read_trace};
 
-/// English is what the lower floor says, and German is not.
+/// Checks that English equals the message of the lower layer, and German does not.
 #[track_caller]
 pub(crate) fn check(text: &Text, error: &dyn std::fmt::Display) {
     assert_eq!(text.words(English), error.to_string());

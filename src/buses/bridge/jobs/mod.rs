@@ -1,5 +1,5 @@
-//! An adapter as a producer: it is opened, identified and configured on the stream's own thread, so that nothing waits
-//! for it; its stream is ended there as well. Samples damaged or lost are reported as missing before the next batch.
+//! An adapter as a producer: it is opened, identified and configured on the stream's own thread, so that nothing waits for
+//! it; its stream is ended there as well. Damaged or lost samples are reported as missing before the next batch.
 
 mod open;
 
@@ -17,7 +17,7 @@ use crate::worker::stream::{Batch, Producer, SampleCount};
 pub(crate) use open::FORMAT;
 pub use open::open_adapter;
 
-/// The configuration of a stream, and its samples.
+/// Configuration of a stream, and its samples.
 pub trait Stretch: Send + 'static {
     /// The samples of a batch.
     type Samples: SampleCount;
@@ -31,7 +31,7 @@ pub trait Stretch: Send + 'static {
 
 #[derive(Clone, Copy, Debug)]
 pub struct SineCosine {
-    /// Samples a second.
+    /// Samples per second.
     pub sample_hz: u32,
 }
 
@@ -42,7 +42,7 @@ pub struct Pair {
     pub cosine_v: Vec<f64>,
 }
 
-/// Why an adapter does not stream, or no longer.
+/// Why an adapter does not stream, or no longer does.
 #[derive(Debug, thiserror::Error)]
 pub enum BridgeError {
     /// The link.
@@ -67,8 +67,8 @@ pub struct Bridge<S> {
 }
 
 impl<S: Stretch> Bridge<S> {
-    /// An adapter at the wire that `open` opens; a reply may come by `margin` later than the protocol says. The encoder's
-    /// supply stays off unless one is given.
+    /// Creates a producer for the adapter on the connection opened by `open`; a reply may arrive `margin` later than the
+    /// protocol specifies. The encoder's supply stays off unless one is given.
     pub fn new(stretch: S, supply: Option<SupplyVoltage>, margin: Duration, open: Open) -> Self {
         Bridge { stretch, supply, open: Some(open), wire: None, tap: Tap::new(margin), streaming: Arc::default() }
     }

@@ -1,4 +1,4 @@
-//! From a link URL to an adapter that streams: `bridge:` leads to a real one, `sim:` to the virtual one.
+//! Opening an adapter that streams from a link URL: `bridge:` to a real one, `sim:` to the virtual one.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -13,23 +13,23 @@ use crate::units::{Baud, CharacterFormat, Parity};
 use crate::worker::OpenError;
 use crate::worker::open::{inside, leads_elsewhere, margin, open_bytes, simulated};
 
-/// A parameter of links to the virtual adapter that sessions need; here there is no other device.
+/// Link parameter of the virtual adapter that sessions need; there is no other device here.
 const BRIDGE: &str = "bridge";
 /// The format of an adapter's serial port, which matters only behind a converter.
 pub(crate) const FORMAT: CharacterFormat = CharacterFormat { baud: Baud::B115200, parity: Parity::None };
 
 parameters! {
     struct LinkParameters: UrlError {
-        /// How much later than the protocol's worst case a reply may arrive; `None` for the default of the link.
+        /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
         margin: Option<Duration> = None, "margin" => Maybe(MARGIN);
     }
 }
 
-/// Returns the margin for late replies, and the function that opens the wire on any thread. These devices are attached
-/// to a virtual adapter.
+/// Returns the margin for late replies, and the function that opens the connection on any thread. These devices are
+/// attached to a virtual adapter.
 ///
 /// # Errors
-/// A link that does not lead to an adapter, or a parameter that it does not take; nothing has been opened.
+/// A link that does not lead to an adapter, or an unsupported parameter; nothing has been opened.
 pub fn open_adapter(
     url: &LinkUrl,
     clock: Arc<dyn Clock>,

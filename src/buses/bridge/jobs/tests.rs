@@ -1,4 +1,4 @@
-//! Streams of the virtual adapter and of one that follows a script, in virtual time: nothing is lost unseen.
+//! Streams of the virtual adapter and of a scripted one, in virtual time: every loss is reported.
 
 use std::sync::Mutex;
 
@@ -44,7 +44,7 @@ pub(crate) struct RawFrames;
 impl Stretch for RawFrames {
     type Samples = Vec<u64>;
 
-    /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.
+    /// 20 000 frames per second; a frame of 43 clocks takes 21.5 µs at 2 MHz, and 27 µs of waiting.
     fn wanted(&self) -> StreamRequest {
         StreamRequest::Biss { clock_hz: 2_000_000, data_bits: 35, crc_bits: 6, period_us: 50 }
     }
@@ -60,7 +60,7 @@ impl<S: Stretch> Bench<S> {
         self.bridge.next(&*self.clock, PATIENCE)
     }
 
-    /// What comes within so much time.
+    /// Returns the batches received within this time.
     pub(crate) fn take(&mut self, time: Duration) -> Vec<Batch<S::Samples>> {
         let end = self.clock.now() + time;
         let mut batches = Vec::new();
@@ -70,7 +70,7 @@ impl<S: Stretch> Bench<S> {
         batches
     }
 
-    /// How it ends, which is within a few seconds.
+    /// Returns the error with which it ends, within a few seconds.
     fn error(&mut self) -> BridgeError {
         let end = self.clock.now() + Duration::from_secs(20);
         while self.clock.now() < end {
@@ -81,7 +81,7 @@ impl<S: Stretch> Bench<S> {
         panic!("it goes on")
     }
 
-    /// Bytes that the adapter sends in a second without being asked, beside what is on its way.
+    /// Returns the number of bytes that the adapter sends in a second without a request, in addition to those in transit.
     pub(crate) fn sends_by_itself(&self) -> usize {
         let mut device = self.adapter.lock().unwrap();
         let mut bytes = |milliseconds| {
@@ -93,7 +93,7 @@ impl<S: Stretch> Bench<S> {
     }
 }
 
-/// Every number is either there or counted as lost before the batch behind it; how many there are of both.
+/// Checks that every number is either present or counted as lost before the next batch; returns how many there are of both.
 pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
     let (mut next, mut there, mut lost) = (0, 0, 0);
     for batch in batches {
@@ -109,7 +109,7 @@ pub(crate) fn count<T>(batches: &[Batch<Vec<T>>]) -> (u64, u64) {
 fn what_nobody_fetched_and_what_came_damaged_is_missing_and_counted() {
     let mut bench = bench(RawFrames, virtual_adapter("fault=flip:0.00002&seed=1"));
     let before = bench.take(Duration::from_secs(1));
-    // The machine slept: the adapter keeps a second.
+    // The computer slept: the adapter keeps a second.
     let asleep = bench.clock.now() + Duration::from_secs(7);
     bench.clock.sleep_until(asleep);
     let batches = [before, bench.take(Duration::from_secs(1))].concat();
@@ -118,7 +118,7 @@ fn what_nobody_fetched_and_what_came_damaged_is_missing_and_counted() {
     let slept = batches.iter().map(|batch| batch.lost).max().unwrap();
     assert!((115_000..=125_000).contains(&slept), "six of the seven seconds: {slept}");
     assert!(lost > slept + 100, "damaged packets too: {lost}");
-    // Times go on through the gap as the numbers do.
+    // Times continue through the gap like the numbers.
     let begin = batches[0].time.plus(batches[0].first as i64 * -50_000);
     for batch in &batches {
         assert_eq!(batch.time, begin.plus(batch.first as i64 * 50_000), "{}", batch.first);
@@ -129,7 +129,7 @@ fn what_nobody_fetched_and_what_came_damaged_is_missing_and_counted() {
 fn a_consumer_that_stops_reading_loses_nothing_unseen() {
     let Bench { clock, bridge, .. } = bench(RawFrames, virtual_adapter("rpm=60"));
     let stream = Stream::spawn(bridge, 4_000, clock, Arc::new(|| ())).unwrap();
-    // Virtual time runs as fast as the thread does.
+    // Virtual time runs as fast as the thread.
     let begun = std::time::Instant::now();
     while stream.lost() < 100_000 {
         assert!(begun.elapsed() < Duration::from_secs(20));
@@ -143,15 +143,15 @@ fn a_consumer_that_stops_reading_loses_nothing_unseen() {
     assert!(stream.take_error().is_none());
 }
 
-/// An adapter that answers as it is told, and sends what it is told when a stream begins.
+/// Adapter with scripted replies, and scripted data when a stream begins.
 struct Puppet {
     capabilities: Capabilities,
-    /// What it gives too much when it switches a supply on, in millivolts.
+    /// Millivolts by which its supply is too high when it is switched on.
     too_high: u16,
     refused: Vec<(Operation, ErrorCode)>,
     /// Replies that get lost, by their operation, once each.
     swallowed: Vec<Operation>,
-    /// What comes when a stream begins.
+    /// Data sent when a stream begins.
     data: Vec<Message>,
     heard: Arc<Mutex<Vec<Request>>>,
     receiver: Receiver,
@@ -254,7 +254,7 @@ fn parts_of_the_full_scale_become_volts_and_gaps_stay_gaps() {
     let expected = [1.25, -1.250_038_148_137_455_5, 0.0, 0.625_019_074_068_727_7];
     let volts = [&first.samples.sine_v[..], &first.samples.cosine_v[..]].concat();
     assert!(volts.iter().zip(expected).all(|(volts, expected)| near(*volts, expected)), "{volts:?}");
-    // 50 kHz, which is as fast as it can: 20 µs.
+    // 50 kHz, its maximum: 20 µs.
     assert_eq!((first.first, first.lost, first.period_ns), (0, 0, 20_000));
     assert_eq!((second.first, second.lost), (12, 10));
     assert_eq!(second.time.nanoseconds_since(first.time), 240_000);
@@ -268,7 +268,7 @@ fn parts_of_the_full_scale_become_volts_and_gaps_stay_gaps() {
     assert_eq!(*heard.lock().unwrap(), expected);
 }
 
-/// AFS60 with sine and cosine: 5 V, and no more than 5.5 V.
+/// AFS60 with sine and cosine: 5 V, and at most 5.5 V.
 #[test]
 fn a_supply_that_is_wished_is_switched_on_and_never_too_high() {
     for (too_high, expected) in [(400, Ok((5_400, 60))), (600, Err((5_000, 5_600, 5_500)))] {
@@ -356,7 +356,7 @@ fn a_stream_that_ends_or_begins_anew_by_itself_is_told() {
     assert_eq!(other.take(Duration::from_millis(100)).len(), 1, "what another stream has left is let go");
 }
 
-/// A wire that is unplugged after so many portions.
+/// Connection that is unplugged after this many portions.
 struct Unplugged(SimLink, u32);
 
 impl ByteLink for Unplugged {

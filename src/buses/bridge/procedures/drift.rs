@@ -1,6 +1,6 @@
-//! The drift of an adapter's clock against ours. A packet cannot have been sampled after its arrival: the one with the
-//! shortest transit shows the offset of the clocks, and another one some time later the drift. The offset is followed
-//! slowly, so that samples stay equidistant and no time goes backwards.
+//! The drift of an adapter's clock against the local one. A packet cannot have been sampled after its arrival: the one with
+//! the shortest transit shows the offset of the clocks, and a later one the drift. The offset is followed slowly, so that
+//! samples stay equidistant and no time goes backwards.
 
 use crate::analysis::Time;
 
@@ -9,26 +9,26 @@ use crate::analysis::Time;
 pub(super) struct Drift {
     /// Added to the adapter's time, in nanoseconds; `None` before the first packet.
     ahead_ns: Option<i128>,
-    /// The least that packets have told in this stretch, and in the one before.
+    /// The minimum offset of the packets in this section, and in the previous one.
     least: Option<(i128, Option<i128>)>,
-    /// When the stretch began, by the adapter's clock.
+    /// Start of the section, by the adapter's clock.
     since_ns: i128,
     /// The packet before, by the adapter's clock.
     before_ns: i128,
 }
 
-/// Among the packets of so long one was hardly under way.
+/// Length of a section: among the packets of this time one was hardly delayed.
 const STRETCH_NS: i128 = 10_000_000_000;
 /// Nanoseconds by which transit times over USB vary.
 const SLACK_NS: i128 = 2_000_000;
-/// One part of so many is made up for at most: more than oscillators differ by, so little that no speed looks another, and
-/// less than one of the 255 samples of a packet.
+/// Maximum rate of correction as one part of this number: more than the difference of oscillators, too little to affect a
+/// speed, and less than one of the 255 samples of a packet.
 const SLOWNESS: i128 = 4000;
 /// Nanoseconds beyond which a jump is not drift: a clock stood still, or was set.
 const JUMP_NS: i128 = 1_000_000_000;
 
 impl Drift {
-    /// Our time for `own_ns` of the adapter's, which cannot be later than `latest`.
+    /// Returns our time for `own_ns` of the adapter's, which cannot be later than `latest`.
     pub(super) fn time(&mut self, own_ns: i128, latest: Time) -> Time {
         let most = i128::from(latest.nanoseconds()) - own_ns;
         let lead = self.least_lead(own_ns, most);
@@ -46,7 +46,7 @@ impl Drift {
         Time::from_nanoseconds(i64::try_from(own_ns + ahead).unwrap_or(i64::MAX))
     }
 
-    /// The least of the stretch and of the one before.
+    /// Returns the least of the stretch and of the one before.
     fn least_lead(&mut self, own_ns: i128, most: i128) -> i128 {
         let fits = (0..=STRETCH_NS).contains(&(own_ns - self.since_ns));
         let (least, before) = match self.least {
@@ -69,12 +69,13 @@ mod tests {
     /// A hundred samples of 50 µs.
     const PACKET: i64 = 5 * MS;
 
-    /// Hours of packets, each under way for 0.3 ms to 6 ms, of an adapter whose clock runs at a rate to ours.
+    /// Simulates hours of packets, each delayed by 0.3 ms to 6 ms, of an adapter whose clock has this rate relative to the
+    /// local one.
     fn drift(parts_per_million: i64, hours: i64) {
         let (mut drift, mut before) = (Drift::default(), None);
         let mut random = 1_u64;
         for packet in 0..hours * 3_600 * 200 {
-            // Sampled at this time of ours; the adapter's clock was started at another.
+            // Sampled at this local time; the adapter's clock was started at another.
             let sampled = packet * PACKET;
             let own = i128::from(sampled + sampled / 1_000_000 * parts_per_million) + 77_000_000_000;
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -99,10 +100,10 @@ mod tests {
         let at = |ms: i64| Time::from_nanoseconds(ms * MS);
         assert_eq!(drift.time(0, at(500)), at(500));
         assert_eq!(drift.time(5_000_000, at(506)), at(505), "it was under way for longer");
-        // Our machine slept for an hour, and its clock with it.
+        // The computer slept for an hour, and its clock with it.
         let hour = 3_600_000;
         assert_eq!(drift.time(i128::from((hour + 10) * MS), at(510)), at(510));
-        // The adapter stood still for 13.5 s: it may be late packets, until two stretches have told the same.
+        // The adapter stood still for 13.5 s: this could be late packets, until two sections have shown the same.
         for (own, came, expected) in [(20, 520, 520), (25_000, 39_000, 25_500), (36_000, 50_000, 50_000)] {
             assert_eq!(drift.time(i128::from((hour + own) * MS), at(came)), at(expected), "{own}");
         }

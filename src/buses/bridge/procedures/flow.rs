@@ -1,5 +1,5 @@
-//! The data that an adapter streams: the samples of one stream in order, and how many are missing before them
-//! (reference "bridge", 3), in our time (`drift`).
+//! The data that an adapter streams: the samples of one stream in order, and the number of missing ones before them
+//! (reference "bridge", 3), in local time (`drift`).
 
 use std::time::Duration;
 
@@ -10,23 +10,23 @@ use crate::buses::bridge::protocol::{Continuity, Data, Gap, Message, Packet, Rep
 use crate::link::line::LineError;
 use crate::units::Moment;
 
-/// The kind of stream. Its clock and sampling have been configured before.
+/// Kind of stream. Its clock and sampling have been configured before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Streamed {
-    /// Words of SSI, so many microseconds apart.
+    /// Words of SSI, with this interval in microseconds.
     Ssi { period_us: u32 },
-    /// Frames of BiSS, so many microseconds apart.
+    /// Frames of BiSS, with this interval in microseconds.
     Biss { period_us: u32 },
-    /// Sine and cosine, as far apart as they are sampled: nanoseconds.
+    /// Sine and cosine, with the interval of sampling in nanoseconds.
     Analog { period_ns: i64 },
 }
 
 /// Samples of a stream that follow each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Portion {
-    /// Number of the first, counted from the start of the stream; what is missing counts.
+    /// Number of the first sample, counted from the start of the stream, including missing ones.
     pub first: u64,
-    /// When it was taken, by our clock.
+    /// Time of the first sample, by the local clock.
     pub time: Time,
     /// Nanoseconds from one to the next.
     pub period_ns: i64,
@@ -46,7 +46,7 @@ pub(crate) struct Flow {
     next: u64,
     /// Samples that are missing before the next.
     missing: u64,
-    /// No sample is from before this.
+    /// No sample is earlier than this.
     not_before: Time,
     heard_at: Moment,
     /// The last sample.
@@ -89,7 +89,7 @@ impl Flow {
     /// Starts a stream, whose samples are later than `after`.
     ///
     /// # Errors
-    /// See [`AdapterError`]; one that is refused as busy runs already.
+    /// See [`AdapterError`]; a request refused as busy means that it already runs.
     pub(crate) fn begin(
         adapter: &mut Adapter<'_, '_>,
         streamed: Streamed,
@@ -99,7 +99,7 @@ impl Flow {
         let begun_at = Time::from(adapter.line.now());
         let answered = match adapter.ask_once(&request)? {
             Some(answered) => answered,
-            // It may run for all that: who asks twice would be told that it is busy.
+            // It may be running regardless: a second request would be refused as busy.
             None => {
                 adapter.ask(&streamed.stop())?;
                 adapter.ask(&request)?
@@ -139,10 +139,11 @@ impl Flow {
         self.period_ns
     }
 
-    /// The next samples; `None` where none have come by `until`.
+    /// Returns the next samples; `None` if none have arrived by `until`.
     ///
     /// # Errors
-    /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], the wire, or the user's wish.
+    /// [`AdapterError::Mute`], [`AdapterError::Restarted`], [`AdapterError::Data`], errors of the connection, or
+    /// cancellation.
     pub(crate) fn next(&mut self, adapter: &mut Adapter<'_, '_>, until: Moment) -> Result<Option<Portion>, Failure> {
         let mut bytes = Vec::new();
         loop {
@@ -157,7 +158,7 @@ impl Flow {
                 }
                 continue;
             }
-            // Looks at least once, and before it says that nothing comes: we may have slept ourselves.
+            // Reads at least once before it reports that nothing arrives: this computer may have slept.
             bytes.clear();
             adapter.line.receive(until.max(now), &mut bytes).map_err(LineError::Link)?;
             if !bytes.is_empty() {
@@ -170,7 +171,7 @@ impl Flow {
         }
     }
 
-    /// Ends the stream at the adapter. What is still on the way is let go.
+    /// Ends the stream at the adapter. Data still in transit are dropped.
     ///
     /// # Errors
     /// See [`AdapterError`].
@@ -183,7 +184,7 @@ impl Flow {
         SILENT + period.saturating_mul(SILENT_SAMPLES)
     }
 
-    /// The samples of a packet, where it is one of this stream.
+    /// Returns the samples of a packet, if it belongs to this stream.
     fn take(&mut self, packet: &Packet, now: Moment) -> Result<Option<Portion>, AdapterError> {
         let data = match Message::parse(packet) {
             Ok(Message::Data(data)) if self.streamed.brings(&data) => data,
@@ -217,12 +218,12 @@ impl Flow {
             Data::Biss(data) => data.t0_us,
             Data::Analog(data) => data.t0_us,
         };
-        // Microseconds since the adapter started may be more than nanoseconds can be counted.
+        // Microseconds since the adapter started may exceed the range of nanoseconds.
         let own = i128::from(t0_us) * 1000;
         let lasts = self.period_ns.saturating_mul(i64::try_from(count).unwrap_or(i64::MAX) - 1);
         let latest = Time::from(now).plus(lasts.saturating_neg()).max(self.not_before);
         let estimate = self.drift.time(own, latest);
-        // An adapter may count its samples well and its time badly.
+        // An adapter may count its samples correctly and its time badly.
         let time = self.last.map_or(estimate, |last| estimate.max(last.plus(1)));
         self.last = Some(time.plus(lasts));
         time

@@ -1,6 +1,6 @@
-//! The host's side of the open adapter, whatever bus is behind it (reference "bridge"): a request, the reply with the same
-//! sequence number, and the request once more where none comes. What streams bring is taken by `flow`; between a request
-//! and its reply it is let go.
+//! The host's side of the open adapter, for any bus behind it (reference "bridge"): a request, the reply with the same
+//! sequence number, and one repetition if none arrives. Stream data are handled by `flow`; between a request and its reply
+//! they are dropped.
 
 mod drift;
 pub(crate) mod flow;
@@ -27,7 +27,7 @@ pub use tap::{StreamRequest, Streaming, Tap, TapError};
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
 pub(crate) const BISS_TIME_OUT_US: u16 = 20;
 
-/// Clocks that can be asked for; an adapter takes the nearest that it has.
+/// Clocks that can be requested; an adapter uses the nearest one that it supports.
 pub(crate) const CLOCK: Whole<u32> = Whole(Quantity::Hertz, 80_000..=10_000_000);
 
 /// Data that continues for this long after the reply time, be it noise or a stream, contains no reply.
@@ -47,10 +47,10 @@ pub struct AdapterState {
 /// Why an adapter gives no usable reply.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AdapterError {
-    /// Nothing comes, asked twice.
+    /// No reply to two requests.
     #[error("the adapter does not answer")]
     Silent,
-    /// It speaks another version of the protocol.
+    /// It uses another version of the protocol.
     #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
     Version {
         /// This program's.
@@ -58,41 +58,41 @@ pub enum AdapterError {
         /// The adapter's.
         got: u8,
     },
-    /// It has not what this needs.
+    /// It lacks the required capability.
     #[error("the adapter {name} does not support BiSS")]
     NoBiss {
         /// Name of the adapter.
         name: String,
     },
-    /// It has not what this needs.
+    /// It lacks the required capability.
     #[error("the adapter {name} does not support SSI")]
     NoSsi {
         /// Name of the adapter.
         name: String,
     },
-    /// It has not what this needs.
+    /// It lacks the required capability.
     #[error("the adapter {name} cannot sample analogue signals")]
     NoAnalog {
         /// Name of the adapter.
         name: String,
     },
-    /// It has not what this needs.
+    /// It lacks the required capability.
     #[error("the adapter {name} cannot supply an encoder")]
     NoSupply {
         /// Name of the adapter.
         name: String,
     },
-    /// It gives more than the encoder stands; it was told to switch that off.
+    /// It supplies more than the encoder tolerates; it was told to switch that off.
     #[error("the adapter supplied {measured} mV instead of {given} mV; the encoder tolerates {greatest} mV")]
     Overvoltage {
         /// Millivolts that were asked for.
         given: u16,
-        /// Millivolts that it has measured.
+        /// Millivolts measured by it.
         measured: u16,
-        /// Millivolts that the encoder stands.
+        /// Millivolts that the encoder tolerates.
         greatest: u16,
     },
-    /// A stream that ran brings nothing any more.
+    /// A running stream has stopped sending.
     #[error("the adapter no longer sends data")]
     Mute,
     /// The sample numbers of a stream started again.
@@ -107,17 +107,17 @@ pub enum AdapterError {
         /// The requested operation.
         operation: Operation,
         code: ErrorCode,
-        /// In its own words.
+        /// The text of the refusal.
         text: String,
     },
-    /// Its reply is none of this version.
+    /// Its reply is not of this version.
     #[error("the reply of the adapter to operation 0x{:02X} cannot be decoded: {cause}", operation.byte())]
     Reply {
         /// The requested operation.
         operation: Operation,
         cause: BodyError,
     },
-    /// It answers another question.
+    /// It replies to another request.
     #[error("the adapter answers operation 0x{:02X} with operation 0x{:02X}", requested.byte(), got.byte())]
     Other {
         requested: Operation,
@@ -181,22 +181,22 @@ impl AdapterState {
         self.power.found
     }
 
-    /// The encoder had power before the session, or had none.
+    /// Sets whether the encoder had power before the session.
     pub(crate) const fn find_supplied(&mut self, is_supplied: bool) {
         self.power.found = Some(is_supplied);
     }
 
-    /// The supply has to be switched off at the end of the session.
+    /// Returns whether the supply has to be switched off at the end of the session.
     pub(crate) fn supply_goes_off(&self) -> bool {
         self.power.goes_off()
     }
 
-    /// Anything at all has come from it, be it damaged.
+    /// Returns whether anything has ever arrived from it, even damaged.
     pub(crate) const fn has_spoken(&self) -> bool {
         self.has_spoken
     }
 
-    /// The moment of our clock in which the adapter's stood at `t_us`, with the reply that told so.
+    /// Returns the local time at which the adapter's clock was at `t_us`, by the reply with this time.
     pub(crate) fn moment_of(&mut self, t_us: u64, answered: &TimedReply) -> Moment {
         self.clocks.moment_of(t_us, answered.sent_at, answered.received_at)
     }
@@ -210,7 +210,7 @@ pub(crate) struct Adapter<'m, 'a> {
 }
 
 impl Adapter<'_, '_> {
-    /// Asks who is there, once a session: HELLO ends streams. It does not switch the supply.
+    /// Identifies the adapter once per session: HELLO ends streams. It does not switch the supply.
     ///
     /// # Errors
     /// [`AdapterError::Version`] among others.
@@ -221,7 +221,7 @@ impl Adapter<'_, '_> {
             let Reply::Hello(hello) = answered.reply else {
                 return Err(AdapterError::other(Operation::Hello, &answered.reply).into());
             };
-            // Adapters that cannot tell have this bit clear.
+            // Adapters that do not report it have this bit clear.
             if self.adapter.power.found.is_none() && hello.capabilities.has(Capabilities::SUPPLIED) {
                 self.adapter.power.found = Some(true);
             }
@@ -230,8 +230,8 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Switches the encoder's supply on; gives back the millivolts and milliamperes that it measures. More than the encoder
-    /// stands is switched off again.
+    /// Switches the encoder's supply on; returns the measured millivolts and milliamperes. If the voltage is more than the
+    /// encoder tolerates, it is switched off again.
     ///
     /// # Errors
     /// [`AdapterError::NoSupply`], [`AdapterError::Overvoltage`] among others.
@@ -240,7 +240,7 @@ impl Adapter<'_, '_> {
             return Err(AdapterError::NoSupply { name: hello.name.clone() }.into());
         }
         let SupplyVoltage { given, greatest, .. } = voltage;
-        // Also where its reply is lost.
+        // Even if its reply is lost.
         self.adapter.power.given = true;
         let answered = self.ask(&Request::Supply { on: true, millivolt: given })?;
         let Reply::Supply { millivolt: measured, milliampere, .. } = answered.reply else {
@@ -253,7 +253,7 @@ impl Adapter<'_, '_> {
         Ok((measured, milliampere))
     }
 
-    /// Switches the encoder's supply off at the end of a session, where it is not to stay on.
+    /// Switches the encoder's supply off at the end of a session, unless it is to stay on.
     ///
     /// # Errors
     /// See [`AdapterError`].
@@ -267,7 +267,7 @@ impl Adapter<'_, '_> {
         Ok(())
     }
 
-    /// Asks; once more where no reply comes. Only for what may be done twice.
+    /// Sends a request; once more if no reply arrives. Only for requests that may be repeated.
     ///
     /// # Errors
     /// See [`AdapterError`].
@@ -284,7 +284,7 @@ impl Adapter<'_, '_> {
         Err(AdapterError::Silent.into())
     }
 
-    /// Asks once; `None` where no reply comes.
+    /// Sends a request once; `None` if no reply arrives.
     ///
     /// # Errors
     /// See [`AdapterError`].
@@ -334,7 +334,7 @@ impl Adapter<'_, '_> {
         }
     }
 
-    /// The reply in a packet, where it is the one to this request: late ones have another sequence number.
+    /// Returns the reply in a packet, if it belongs to this request: late ones have another sequence number.
     fn judge(&mut self, request: &Request, seq: u8, packet: &Packet) -> Result<Option<Reply>, AdapterError> {
         let operation = request.operation();
         let parsed = Message::parse(packet);
@@ -354,8 +354,8 @@ impl Adapter<'_, '_> {
     }
 }
 
-/// The offset of the adapter's clock behind ours, in nanoseconds, between these two bounds: an adapter samples after
-/// the request left and before the reply arrived.
+/// Offset of the adapter's clock from the local one, in nanoseconds, between these two bounds: an adapter samples after the
+/// request was sent and before the reply arrived.
 #[derive(Clone, Copy, Debug, Default)]
 struct Clocks {
     bounds: Option<(i128, i128)>,
@@ -368,7 +368,7 @@ impl Clocks {
         let (least, most) = (nanoseconds(sent_at) - own, nanoseconds(received_at) - own);
         let narrowed =
             self.bounds.map(|(low, high)| (low.max(least), high.min(most))).filter(|(low, high)| low <= high);
-        // Clocks drift and adapters restart: then the last exchange counts alone.
+        // Clocks drift and adapters restart: then only the last exchange counts.
         let (low, high) = narrowed.unwrap_or((least, most));
         self.bounds = Some((low, high));
         let moment = u64::try_from(own + (low + high) / 2).unwrap_or(0);
@@ -388,7 +388,7 @@ mod tests {
     #[test]
     fn the_adapters_clock_is_narrowed_down_and_found_again() {
         let mut clocks = Clocks::default();
-        // Ours is 1000 µs ahead. Asked at 2000, sampled at 1100 of the adapter's, answered at 2400.
+        // The local clock is 1000 µs ahead. Request at 2000, sampled at 1100 of the adapter's, reply at 2400.
         assert_eq!(clocks.moment_of(1100, at(2000), at(2400)), at(2200));
         // 900…1300 so far; now 995…1395: 995…1300.
         assert_eq!(clocks.moment_of(2005, at(3000), at(3400)), at(2005) + Duration::from_nanos(1_147_500));

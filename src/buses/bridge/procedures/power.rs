@@ -1,20 +1,20 @@
-//! The encoder's supply, where an adapter switches it: how it was found when the session began, and how it is left at its end.
+//! The encoder's supply, if an adapter switches it: its state at the start of the session, and at its end.
 
 use crate::parameter::Words;
 
 /// The state of the supply at the end of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SupplyAfter {
-    /// As it was found: what this session switched on goes off.
+    /// As found: a supply switched on by this session is switched off.
     #[default]
     AsFound,
     On,
-    /// Off, also where it was on before.
+    /// Off, even if it was on before.
     Off,
 }
 
 impl SupplyAfter {
-    /// The parameter of a link whose session leaves the supply on, with its value.
+    /// Link parameter with the value that leaves the supply on after the session.
     pub const LEFT_ON: (&str, &str) = ("leave-supply", "on");
     /// The values of the parameter.
     pub const WORDS: Words<SupplyAfter> =
@@ -26,7 +26,7 @@ impl SupplyAfter {
 pub(super) struct Power {
     /// The user's choice.
     pub(super) after: SupplyAfter,
-    /// The encoder had power before the session; `None` where nothing has told.
+    /// The encoder had power before the session; `None` if it is not known.
     pub(super) found: Option<bool>,
     /// This session has switched it on.
     pub(super) given: bool,
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
     use crate::parameter::Values;
 
-    /// Issue 22.16: off, unless it was on before or something else was chosen.
+    /// Issue 22.16: off, unless it was on before or something else was selected.
     #[test]
     fn the_supply_is_left_as_it_was_found_or_as_it_was_chosen() {
         use SupplyAfter::{AsFound, Off, On};

@@ -1,4 +1,4 @@
-//! An adapter that is asked for nothing but a stream: who it is, whether it can, how it is set, and then what it sends.
+//! An adapter used only for a stream: its identity, its capabilities, its configuration, and then its data.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use crate::link::line::{LineError, LineState, SerialLine};
 use crate::link::{Ctx, LinkError};
 use crate::units::{Moment, SupplyVoltage};
 
-/// A stream and how its signals are taken.
+/// Stream and how its signals are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StreamRequest {
     /// Frames of BiSS.
@@ -24,12 +24,12 @@ pub enum StreamRequest {
     },
     /// Sine and cosine.
     Analog {
-        /// Samples a second.
+        /// Samples per second.
         sample_hz: u32,
     },
 }
 
-/// Until the signals of an encoder mean something: HIPERFACE, figure 38, up to 900 ms.
+/// Time until the signals of an encoder are valid: HIPERFACE, figure 38, up to 900 ms.
 const POWER_UP: Duration = Duration::from_secs(1);
 
 /// The streaming adapter and its actual setting.
@@ -39,16 +39,16 @@ pub struct Streaming {
     pub hello: Hello,
     /// Nanoseconds from one sample to the next.
     pub period_ns: i64,
-    /// Of sine and cosine: what a value of 32 767 stands for; else 0.
+    /// For sine and cosine: the voltage of a value of 32 767; otherwise 0.
     pub full_scale_microvolt: u32,
-    /// Millivolts and milliamperes that the adapter supplies the encoder with; `None`: it does not.
+    /// Millivolts and milliamperes with which the adapter supplies the encoder; `None`: it does not.
     pub supplied: Option<(u16, u16)>,
 }
 
 /// Why there is no stream, or no longer.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TapError {
-    /// The user wished it.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// The wire.
@@ -79,16 +79,17 @@ impl From<Failure> for TapError {
 }
 
 impl Tap {
-    /// Creates a tap on an unidentified adapter; replies may arrive later than the protocol says by this margin.
+    /// Creates a tap on an unidentified adapter; replies may arrive later than the protocol specifies by this margin.
     pub fn new(margin: Duration) -> Self {
         Tap { line: LineState::new(margin), adapter: AdapterState::default(), flow: None }
     }
 
-    /// Asks who is there, switches the encoder's supply on where that is wished, sets the adapter and starts the stream.
+    /// Identifies the adapter, switches the encoder's supply on if requested, configures it and starts the stream.
     ///
     /// # Errors
     /// [`AdapterError::Version`], [`NoSsi`](AdapterError::NoSsi), [`NoBiss`](AdapterError::NoBiss),
-    /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), what it refuses, or the wire.
+    /// [`NoAnalog`](AdapterError::NoAnalog) or [`NoSupply`](AdapterError::NoSupply), a refusal, or errors of the
+    /// connection.
     pub fn begin(
         &mut self,
         ctx: Ctx<'_>,
@@ -130,10 +131,10 @@ impl Tap {
         Ok(Streaming { hello, period_ns, full_scale_microvolt, supplied })
     }
 
-    /// The next samples; `None` where none have come by `until`, or nothing streams.
+    /// Returns the next samples; `None` if none have arrived by `until`, or nothing streams.
     ///
     /// # Errors
-    /// When there will be no more.
+    /// Why the stream has ended.
     pub fn next(&mut self, ctx: Ctx<'_>, until: Moment) -> Result<Option<Portion>, TapError> {
         let Some(flow) = &mut self.flow else { return Ok(None) };
         let mut line = SerialLine::new(ctx);
@@ -141,10 +142,10 @@ impl Tap {
         Ok(flow.next(&mut adapter, until)?)
     }
 
-    /// Ends the stream at the adapter, also where an end is wished, and leaves the encoder's supply as it was found.
+    /// Ends the stream at the adapter, even after cancellation, and leaves the encoder's supply as it was found.
     ///
     /// # Errors
-    /// The adapter or the wire.
+    /// Errors of the adapter or the connection.
     pub fn end(&mut self, ctx: Ctx<'_>) -> Result<(), TapError> {
         let mut line = SerialLine::new(ctx);
         line.shield(true);
@@ -172,7 +173,7 @@ impl StreamRequest {
     }
 }
 
-/// Rounded to whole nanoseconds.
+/// Rounds to whole nanoseconds.
 fn period_ns(sample_hz: u32) -> i64 {
     let hz = i64::from(sample_hz.max(1));
     (1_000_000_000 + hz / 2) / hz

@@ -7,7 +7,7 @@ const BLOCK: usize = 254;
 /// Why bytes are not COBS-encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CobsError {
-    /// 00 ends a packet and never stands within one.
+    /// 00 ends a packet and never occurs within one.
     #[error("00 stands within the packet, at byte {0}")]
     Zero(usize),
     /// A code byte asks for more bytes than there are.
@@ -18,11 +18,11 @@ pub enum CobsError {
 /// Stuffs bytes, without the 00 that ends a packet.
 pub fn encode(bytes: &[u8]) -> Vec<u8> {
     let mut stuffed = Vec::with_capacity(bytes.len() + bytes.len() / BLOCK + 1);
-    // A last block of full length needs no empty one behind it.
+    // A last block of full length needs no empty one after it.
     let mut open = true;
     for (at, run) in bytes.split(|byte| *byte == 0).enumerate() {
         if at > 0 && !open {
-            // The 00 before this run follows a full block: an empty block stands for it.
+            // The 00 before this run follows a full block: an empty block represents it.
             stuffed.push(1);
         }
         open = true;

@@ -20,7 +20,7 @@ pub enum Data {
 pub struct SsiData {
     /// Number of the first, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// When the first was taken, microseconds of the adapter's clock.
+    /// Time of the first, in microseconds of the adapter's clock.
     pub t0_us: u64,
     /// Microseconds from one to the next.
     pub period_us: u32,
@@ -37,7 +37,7 @@ pub struct SsiData {
 pub struct BissData {
     /// Number of the first, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// When the first was taken, microseconds of the adapter's clock.
+    /// Time of the first, in microseconds of the adapter's clock.
     pub t0_us: u64,
     /// Microseconds from one to the next.
     pub period_us: u32,
@@ -49,12 +49,12 @@ pub struct BissData {
     pub values: Vec<(BissStatus, u64)>,
 }
 
-/// Analogue samples, as far apart as their configuration says.
+/// Analogue samples, with the interval of their configuration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AnalogData {
     /// Number of the first, counted from the start of the stream, modulo 2³².
     pub first_index: u32,
-    /// When the first was taken, microseconds of the adapter's clock.
+    /// Time of the first, in microseconds of the adapter's clock.
     pub t0_us: u64,
     /// Samples that the adapter has lost since its last packet.
     pub lost: u16,
@@ -67,7 +67,7 @@ impl Data {
     const BISS: u8 = 0xA5;
     const ANALOG: u8 = 0xB2;
 
-    /// Number of the first sample, how many there are, and how many the adapter has lost before them.
+    /// Returns the number of the first sample, how many there are, and how many the adapter has lost before them.
     pub const fn extent(&self) -> (u32, usize, u16) {
         match self {
             Data::Ssi(data) => (data.first_index, data.values.len(), data.lost),

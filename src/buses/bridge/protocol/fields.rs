@@ -11,7 +11,7 @@ pub enum BodyError {
         /// Bytes there were.
         got: usize,
     },
-    /// Not an operation of this version.
+    /// A value that its field cannot have.
     #[error("0x{0:02X} is not an operation")]
     Operation(u8),
     /// A value that its field cannot have.
@@ -30,7 +30,7 @@ pub enum BodyError {
         /// The operation.
         op: u8,
     },
-    /// The adapter speaks another version of the protocol.
+    /// The adapter uses another version of the protocol.
     #[error("the adapter uses version {got} of the bridge protocol, this program version {expected}")]
     Version {
         /// This program's.
@@ -72,7 +72,7 @@ impl<'a> Fields<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    /// 0 or 1.
+    /// Reads 0 or 1.
     pub(super) fn switch(&mut self, field: &'static str) -> Result<bool, BodyError> {
         match self.u8()? {
             0 => Ok(false),
@@ -81,7 +81,7 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// A number of `width` bytes, at most eight.
+    /// Returns a number of `width` bytes, at most eight.
     pub(super) fn wide(&mut self, width: u8) -> Result<u64, BodyError> {
         let bytes = self.bytes(width.into())?;
         Ok(bytes.iter().rev().fold(0, |number, byte| number << 8 | u64::from(*byte)))
@@ -121,7 +121,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// Appends a text of at most 255 bytes with its length; what is longer is cut between two characters.
+/// Appends a text of at most 255 bytes with its length; a longer one is truncated between two characters.
 pub(super) fn push_text(body: &mut Vec<u8>, text: &str) {
     let end = (0..=text.len().min(255)).rev().find(|end| text.is_char_boundary(*end)).unwrap_or(0);
     // At most 255.

@@ -29,7 +29,7 @@ pub use receiver::Receiver;
 pub use reply::{BissStatus, Capabilities, ErrorCode, Hello, Message, Reply};
 pub use request::{Operation, Request, SsiFlags};
 
-/// The version of the protocol that this program speaks.
+/// Version of the protocol used by this program.
 pub const VERSION: u8 = 1;
 /// An unanswered request is repeated once after this, and given up after as much again.
 pub const REPEAT_AFTER: Duration = Duration::from_millis(200);

@@ -8,7 +8,7 @@ pub const MAX_BODY: usize = 512;
 /// A packet whose checksum was right.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Packet {
-    /// Chosen by the host and repeated in the reply; what comes unasked has a count of its own.
+    /// Chosen by the host and repeated in the reply; unsolicited packets have their own count.
     pub seq: u8,
     /// The operation; in a reply its bit 7 is set.
     pub op: u8,
@@ -41,7 +41,7 @@ impl Packet {
     /// A stuffed packet never has more.
     pub(super) const MAX_STUFFED: usize = MAX_BODY + Self::OVERHEAD + (MAX_BODY + Self::OVERHEAD) / 254 + 1;
 
-    /// Reads what stood between two 00.
+    /// Parses the bytes between two 00.
     ///
     /// # Errors
     /// [`PacketError`].
@@ -65,7 +65,7 @@ impl Packet {
         Ok(Packet { seq, op, body: bytes })
     }
 
-    /// The stuffed bytes and the 00 that ends them.
+    /// Returns the stuffed bytes and the 00 that ends them.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.body.len() + Self::OVERHEAD);
         bytes.extend([self.seq, self.op]);
@@ -77,7 +77,7 @@ impl Packet {
     }
 }
 
-/// CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1 from FFFFh on, the highest bit first.
+/// Returns CRC-16/IBM-3740: x¹⁶ + x¹² + x⁵ + 1 from FFFFh on, highest bit first.
 pub fn crc16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc: u16, byte| {
         let [high, _] = crc.to_be_bytes();

@@ -1,4 +1,4 @@
-//! Packets out of a stream of bytes. What is broken is dropped and counted (reference 1).
+//! Packets from a stream of bytes. Damaged ones are dropped and counted (reference 1).
 
 use super::packet::{Packet, PacketError};
 
@@ -8,20 +8,20 @@ pub struct Receiver {
     bytes: Vec<u8>,
     /// Start of the search for the next 00.
     searched: usize,
-    /// The packet under way is too long to be one: its bytes are let go until it ends.
+    /// The present packet is too long: its bytes are dropped until it ends.
     overlong: bool,
     dropped: u64,
-    /// The broken packet that was dropped last, until it is taken.
+    /// The damaged packet dropped last, until it is taken.
     broken: Option<Vec<u8>>,
 }
 
 impl Receiver {
-    /// Bytes that have come.
+    /// Takes the received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
 
-    /// The next whole packet.
+    /// Returns the next whole packet.
     pub fn next_packet(&mut self) -> Option<Packet> {
         loop {
             let behind = self.bytes.get(self.searched..).unwrap_or_default();
@@ -53,12 +53,12 @@ impl Receiver {
         }
     }
 
-    /// Takes the bytes of the broken packet that was dropped last; `None` if there was none since.
+    /// Takes the bytes of the damaged packet dropped last; `None` if there was none since.
     pub const fn take_broken(&mut self) -> Option<Vec<u8>> {
         self.broken.take()
     }
 
-    /// Broken packets so far.
+    /// Returns the number of broken packets so far.
     pub const fn dropped(&self) -> u64 {
         self.dropped
     }

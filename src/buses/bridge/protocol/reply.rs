@@ -17,7 +17,7 @@ pub enum Message {
         op: u8,
         /// The error code.
         code: ErrorCode,
-        /// In words, for a person.
+        /// The message as text.
         text: String,
     },
     /// Data of a stream.
@@ -76,7 +76,7 @@ pub enum Reply {
     },
     /// A register was written.
     BissRegisterWrite {
-        /// Its value as the encoder gave it back.
+        /// Its value as returned by the encoder.
         value: u8,
     },
     /// BiSS frames will come.
@@ -86,7 +86,7 @@ pub enum Reply {
     },
     /// The actual sampling of analogue signals.
     AnalogConfig {
-        /// Samples a second.
+        /// Samples per second.
         sample_hz: u32,
         /// Full scale: the voltage of a value of 32 767.
         full_scale_microvolt: u32,
@@ -100,12 +100,12 @@ pub enum Reply {
     },
     /// The actual setting of the serial line.
     UartConfig {
-        /// Bits a second.
+        /// Bits per second.
         baud: u32,
     },
     /// Bytes received on the serial line.
     UartTransfer {
-        /// When the reply's first start bit began, by the clock of the analogue samples.
+        /// Start of the reply's first start bit, by the clock of the analogue samples.
         t_us: u64,
         /// Bytes received.
         rx: Vec<u8>,
@@ -119,7 +119,7 @@ pub struct Hello {
     pub capabilities: Capabilities,
     /// Fastest clock in hertz.
     pub max_clock_hz: u32,
-    /// Most samples a second.
+    /// Most samples per second.
     pub max_sample_hz: u32,
     /// The name.
     pub name: String,
@@ -129,11 +129,11 @@ pub struct Hello {
     pub firmware: String,
 }
 
-/// The capabilities of an adapter; unknown bits are kept.
+/// Capabilities of an adapter; unknown bits are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities(u32);
 
-/// The status of reading a BiSS frame; an unknown status is kept.
+/// Status of reading a BiSS frame; an unknown status is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct BissStatus(u8);
 
@@ -154,25 +154,25 @@ impl Capabilities {
     pub const UART: Capabilities = Capabilities(1 << 4);
     /// A supply that can be switched.
     pub const SUPPLY: Capabilities = Capabilities(1 << 5);
-    /// No ability but a state: the encoder's supply is on. An adapter that does not tell has this bit clear.
+    /// A state, not a capability: the encoder's supply is on. An adapter that does not report it has this bit clear.
     pub const SUPPLIED: Capabilities = Capabilities(1 << 6);
 
-    /// Any word is a set of capabilities.
+    /// Creates it: any word is a set of capabilities.
     pub const fn new(word: u32) -> Self {
         Capabilities(word)
     }
 
-    /// All bits.
+    /// Returns all bits.
     pub const fn word(self) -> u32 {
         self.0
     }
 
-    /// All of these are among them.
+    /// Returns whether all of these are included.
     pub const fn has(self, others: Capabilities) -> bool {
         self.0 & others.0 == others.0
     }
 
-    /// These and those.
+    /// Returns the union of both.
     #[must_use]
     pub const fn and(self, others: Capabilities) -> Self {
         Capabilities(self.0 | others.0)
@@ -180,7 +180,7 @@ impl Capabilities {
 }
 
 impl BissStatus {
-    /// There is a frame.
+    /// A frame was read.
     pub const OK: BissStatus = BissStatus(0);
     /// No encoder acknowledged.
     pub const NO_ACKNOWLEDGE: BissStatus = BissStatus(1);
@@ -189,12 +189,12 @@ impl BissStatus {
     /// The data line stays at 1.
     pub const STUCK_HIGH: BissStatus = BissStatus(3);
 
-    /// Any byte is a status.
+    /// Creates it: any byte is a status.
     pub const fn new(byte: u8) -> Self {
         BissStatus(byte)
     }
 
-    /// Its byte.
+    /// Returns its byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -209,17 +209,17 @@ impl ErrorCode {
     pub const BUSY: ErrorCode = ErrorCode(3);
     /// The encoder does not answer.
     pub const NO_ANSWER: ErrorCode = ErrorCode(4);
-    /// The encoder answered wrongly: a CRC of the control frame.
+    /// The encoder replied wrongly: a CRC of the control frame.
     pub const WRONG_ANSWER: ErrorCode = ErrorCode(5);
     /// The adapter was too slow.
     pub const OVERRUN: ErrorCode = ErrorCode(6);
 
-    /// Any byte is a code.
+    /// Creates it: any byte is a code.
     pub const fn new(byte: u8) -> Self {
         ErrorCode(byte)
     }
 
-    /// Its byte.
+    /// Returns its byte.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -229,11 +229,11 @@ impl Message {
     /// The operation of a refusal.
     const ERROR: u8 = 0xFF;
 
-    /// Reads what an adapter sent.
+    /// Parses a packet from an adapter.
     ///
     /// # Errors
-    /// [`BodyError`] where the operation is unknown or its body does not fit; [`BodyError::Version`] for a HELLO of
-    /// another version, whatever else stands in it.
+    /// [`BodyError`] if the operation is unknown or its body does not fit; [`BodyError::Version`] for a HELLO of another
+    /// version, whatever else it contains.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         if packet.op == Self::ERROR {
             let mut fields = Fields::new(packet.op, &packet.body);
@@ -246,7 +246,7 @@ impl Message {
         Reply::parse(packet).map(Message::Reply)
     }
 
-    /// The packet for the host.
+    /// Returns the packet for the host.
     pub fn emit(&self, seq: u8) -> Packet {
         match self {
             Message::Reply(reply) => reply.emit(seq),

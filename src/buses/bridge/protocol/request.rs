@@ -42,11 +42,11 @@ pub enum Operation {
 pub enum Request {
     /// Requests the identity.
     Hello,
-    /// The encoder's supply. HELLO leaves it as it is.
+    /// The encoder's supply. HELLO does not change it.
     Supply {
         /// On or off.
         on: bool,
-        /// Its voltage. Only one that the encoder's description allows may be asked for.
+        /// Its voltage. Only one allowed by the encoder's description may be requested.
         millivolt: u16,
     },
     /// Configures the clock of SSI.
@@ -57,14 +57,14 @@ pub enum Request {
         clock_hz: u32,
         /// Pause between two words in microseconds.
         pause_us: u16,
-        /// When the data line is looked at.
+        /// When the data line is sampled.
         flags: SsiFlags,
     },
     /// One SSI word.
     SsiRead,
     /// SSI words without being asked.
     SsiStream {
-        /// Microseconds from one to the next; 0 ends it.
+        /// Interval in microseconds; 0 ends the stream.
         period_us: u32,
     },
     /// Configures the clock of BiSS.
@@ -93,17 +93,17 @@ pub enum Request {
         slave: u8,
         /// 00h…7Fh.
         address: u8,
-        /// Its value from now on.
+        /// Its new value.
         value: u8,
     },
     /// BiSS frames without being asked.
     BissStream {
-        /// Microseconds from one to the next; 0 ends it.
+        /// Interval in microseconds; 0 ends the stream.
         period_us: u32,
     },
     /// Configures the sampling of analogue signals.
     AnalogConfig {
-        /// Samples a second.
+        /// Samples per second.
         sample_hz: u32,
     },
     /// Analogue samples without being asked.
@@ -113,11 +113,11 @@ pub enum Request {
     },
     /// Configures the serial line.
     UartConfig {
-        /// Bits a second.
+        /// Bits per second.
         baud: u32,
         /// 0 none, 1 odd, 2 even; others are kept.
         parity: u8,
-        /// Microseconds until the line may be driven the other way.
+        /// Microseconds until the line may be driven in the other direction.
         turnaround_us: u16,
     },
     /// Bytes out and in on the serial line.
@@ -131,7 +131,7 @@ pub enum Request {
     },
 }
 
-/// When the data line of SSI is looked at; bits that this version does not know are kept.
+/// When the data line of SSI is sampled; unknown bits are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SsiFlags(u8);
 
@@ -139,17 +139,17 @@ impl SsiFlags {
     /// Bit 0: at the clock's falling edge, as usual.
     pub const FALLING_EDGE: SsiFlags = SsiFlags(0x01);
 
-    /// Any byte is a set of flags.
+    /// Creates it: any byte is a set of flags.
     pub const fn new(byte: u8) -> Self {
         SsiFlags(byte)
     }
 
-    /// All eight bits.
+    /// Returns all eight bits.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// The data line is looked at at the clock's falling edge.
+    /// Returns whether the data line is sampled at the clock's falling edge.
     pub const fn falling_edge(self) -> bool {
         self.0 & Self::FALLING_EDGE.0 != 0
     }
@@ -177,7 +177,7 @@ impl Operation {
     /// Set in the operation of a reply.
     pub const REPLY_BIT: u8 = 0x80;
 
-    /// Its number in a request.
+    /// Returns its number in a request.
     pub const fn byte(self) -> u8 {
         self as u8
     }
@@ -209,7 +209,7 @@ impl Request {
         }
     }
 
-    /// The packet for the adapter.
+    /// Returns the packet for the adapter.
     pub fn emit(&self, seq: u8) -> Packet {
         let mut body = Vec::new();
         match self {
@@ -253,7 +253,7 @@ impl Request {
     /// Reads the request in a packet.
     ///
     /// # Errors
-    /// [`BodyError`] where the operation is unknown or its body does not fit.
+    /// [`BodyError`] if the operation is unknown or its body does not fit.
     pub fn parse(packet: &Packet) -> Result<Self, BodyError> {
         let operation = Operation::from_byte(packet.op).ok_or(BodyError::Operation(packet.op))?;
         let mut fields = Fields::new(packet.op, &packet.body);

@@ -1,5 +1,5 @@
-//! Every operation and stream as literal bytes. The reference has no example; these were put together with a few lines
-//! of Python: `struct.pack` for the bodies, a bit-by-bit CRC, COBS block by block.
+//! Every operation and stream as literal bytes. The reference has no example; these were composed with a few lines of
+//! Python: `struct.pack` for the bodies, a bit-by-bit CRC, COBS block by block.
 
 use proptest::prelude::*;
 
@@ -133,7 +133,7 @@ fn messages() -> Vec<(u8, Message, &'static str)> {
     ]
 }
 
-/// The packet in bytes that end with 00.
+/// Returns the packet in bytes that end with 00.
 fn packet(bytes: &[u8]) -> Result<Packet, PacketError> {
     assert_eq!(bytes.last(), Some(&0));
     Packet::parse(&bytes[..bytes.len() - 1])
@@ -176,7 +176,7 @@ fn every_flipped_bit_is_found() {
     }
 }
 
-/// A body that lost its end, or got another byte, is refused, except where the rest is data of any length.
+/// A body that lost its end, or got another byte, is refused, unless the rest is data of any length.
 #[test]
 fn every_cut_body_is_refused() {
     for (seq, request, _) in requests() {

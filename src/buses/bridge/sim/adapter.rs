@@ -1,6 +1,7 @@
-//! The adapter: requests in, replies and streams out, byte for byte, with its faults. Chosen here, where the reference
-//! says nothing: a reply comes a quarter of a millisecond after its request, one that needs a control frame after the 47
-//! cycles of that; HELLO ends all streams and leaves the supply as it is; SSI and BiSS share their wires, so that a stream of one keeps both busy.
+//! The adapter: requests in, replies and streams out, byte by byte, with its faults. Chosen here, where the reference says
+//! nothing: a reply is sent a quarter of a millisecond after its request, one that needs a control frame after the 47
+//! cycles of that; HELLO ends all streams and does not change the supply; SSI and BiSS share their wires, so a stream of
+//! one keeps both busy.
 
 use std::any::Any;
 use std::time::Duration;
@@ -21,7 +22,7 @@ use crate::sim::sine_cosine::{Checked, Quantity, Settings};
 use crate::sim::{ByteDevice, Faults, Motor};
 use crate::units::{CharacterFormat, Moment};
 
-/// The adapter with what hangs on it, seen from the host.
+/// Adapter with its attached devices, as seen from the host.
 #[derive(Clone)]
 pub struct Adapter {
     bus: Bus,
@@ -39,7 +40,7 @@ pub struct Adapter {
     requests: u32,
     pushed: u8,
     now: Moment,
-    /// The last reply is on its way until then.
+    /// The last reply is in transit until then.
     replied: Moment,
     /// Bytes by the moment in which they have arrived.
     to_host: Queue<Vec<u8>>,
@@ -59,13 +60,13 @@ impl Adapter {
     const MAX_SAMPLE_HZ: u32 = 1_000_000;
     const LATENCY: Duration = Duration::from_micros(250);
     const CONTROL_CYCLES: u32 = 47;
-    /// Replies that wait to be sent: the memory of a small controller. Requests beyond are lost.
+    /// Maximum number of waiting replies: the memory of a small controller. Further requests are lost.
     const WAITING: usize = 16;
     /// The encoder's supply (manual, chapter 2).
     const SUPPLY: std::ops::RangeInclusive<u16> = 4_750..=15_000;
     const SUPPLY_MILLIWATT: u32 = 300;
 
-    /// The virtual adapter as `config` wants it, with these devices; of several at one connector the last.
+    /// Creates the virtual adapter from `config`, with these devices; of several at one connector the last is used.
     pub(super) fn new(config: &Config, shared: &Shared, shaft: &Shaft, attached: Vec<Attached>) -> Self {
         let mut adapter = Adapter {
             bus: Bus::new(config, shared, shaft),
@@ -103,13 +104,13 @@ impl Adapter {
         adapter
     }
 
-    /// The device on BiSS, where it is such a one: to look into it, to warm it or to give it errors.
+    /// Returns the device on BiSS, if it is of this type: to read it, to heat it or to set its errors.
     pub fn device<T: BissDevice>(&self) -> Option<&T> {
         let device: &dyn Any = &**self.bus.biss.as_ref()?;
         device.downcast_ref()
     }
 
-    /// The same, to change it.
+    /// Returns the same, to change it.
     pub fn device_mut<T: BissDevice>(&mut self) -> Option<&mut T> {
         let device: &mut dyn Any = &mut **self.bus.biss.as_mut()?;
         device.downcast_mut()
@@ -191,7 +192,7 @@ impl Adapter {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
-            // It does nothing any more: what streams has ended, too.
+            // It does nothing any more: streams have ended, too.
             (self.clocked, self.sampled) = (None, None);
             return;
         }
@@ -369,14 +370,14 @@ impl Adapter {
                 return Err(SILENT);
             }
             if accepted && !device.answers(now) {
-                // It has given the value back before it restarted or began to calibrate.
+                // It has returned the value before it restarted or began to calibrate.
                 return Ok(value);
             }
         }
         device.read_register(now, address).ok_or((ErrorCode::NO_ANSWER, "the encoder refuses the register"))
     }
 
-    /// Starts or ends a stream and gives its period.
+    /// Starts or ends a stream and returns its period.
     fn stream(&mut self, kind: Kind, period_us: u32, least_us: u32, bits: u8) -> u32 {
         if period_us == 0 {
             self.clocked = self.clocked.take().filter(|stream| stream.kind != kind);

@@ -1,18 +1,19 @@
-//! Devices attached to the adapter: on its clocked buses and its serial line. The adapter does not know which ones
-//! exist; each reads its own settings of a `sim:` link.
+//! Devices attached to the adapter: on its clocked buses and its serial line. The adapter does not know which ones exist;
+//! each parses its own settings of a `sim:` link.
 
 use std::any::Any;
 
 use crate::sim::{ByteDevice, ConfigError, Faults, Motor};
 use crate::units::Moment;
 
-/// A position and registers on BiSS. Its motor turns the shaft that all encoders at an adapter share, and its supply is
+/// Position and registers on BiSS. Its motor turns the shaft shared by all encoders at an adapter, and its supply is
 /// theirs.
 pub trait BissDevice: Any + Send {
     /// Returns another device like it.
     fn another(&self) -> Box<dyn BissDevice>;
 
-    /// The bits behind the control bit of the frame taken at a moment, and how many; `None` while it does not acknowledge.
+    /// Returns the bits after the control bit of the frame taken at a moment, and their number; `None` while it does not
+    /// acknowledge.
     fn frame(&mut self, at: Moment) -> Option<(u64, u8)>;
 
     /// Returns the position of its shaft in steps, and the steps per revolution; `None` without power.
@@ -30,7 +31,7 @@ pub trait BissDevice: Any + Send {
     /// Removes the supply.
     fn disconnect(&mut self);
 
-    /// Gives the supply back to a device that has lost it.
+    /// Restores the supply of a device that has lost it.
     fn connect(&mut self, now: Moment);
 
     /// Returns whether it has power; it may still be starting.
@@ -39,22 +40,22 @@ pub trait BissDevice: Any + Send {
     /// Returns whether its registers can be read at `now`.
     fn answers(&mut self, now: Moment) -> bool;
 
-    /// A control frame can have this address.
+    /// Returns whether a control frame can have this address.
     fn has_address(&self, address: u8) -> bool;
 
-    /// A register's value at `now`; `None`: it refuses.
+    /// Reads a register at `now`; `None`: it refuses.
     fn read_register(&mut self, now: Moment, address: u8) -> Option<u8>;
 
-    /// Writes a register at `now`; `false`: it refuses, and nothing has changed.
+    /// Writes a register at `now`; returns `false` if it refuses, with nothing changed.
     fn write_register(&mut self, now: Moment, address: u8, value: u8) -> bool;
 }
 
-/// An encoder whose words are clocked out of it.
+/// Encoder whose words are clocked out.
 pub trait SsiDevice: Send {
     /// Returns another device like it.
     fn another(&self) -> Box<dyn SsiDevice>;
 
-    /// The word taken at a moment and how many bits it has, with its shaft at a place of so many a revolution.
+    /// Returns the word taken at a moment and its number of bits, with its shaft at a position of so many per revolution.
     fn word(&mut self, at: Moment, place: (u64, u64)) -> (u64, u8);
 }
 
@@ -87,22 +88,22 @@ impl Clone for Box<dyn SerialDevice> {
 
 /// A device that hangs on an adapter, by the connector.
 pub enum Attached {
-    /// On BiSS.
+    /// Device on BiSS.
     Biss(Box<dyn BissDevice>),
-    /// On SSI.
+    /// Device on SSI.
     Ssi(Box<dyn SsiDevice>),
-    /// At the serial line.
+    /// Device at the serial line.
     Serial(Box<dyn SerialDevice>),
 }
 
 /// A kind of device that can hang on an adapter.
 pub trait Attachable: Sync {
-    /// The settings of a `sim:` link that are its own.
+    /// Returns its own settings of a `sim:` link.
     fn keys(&self) -> &'static [&'static str];
 
-    /// The device as these settings say, all of which are its own; `None` where they say that there is none.
+    /// Returns the device with these settings, all of which are its own; `None` if they request none.
     ///
     /// # Errors
-    /// With a sentence that names the key and what is allowed.
+    /// A sentence that names the key and the allowed values.
     fn attached(&self, pairs: &[(String, String)]) -> Result<Option<Attached>, ConfigError>;
 }

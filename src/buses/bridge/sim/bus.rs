@@ -1,5 +1,5 @@
-//! The bits of one frame of BiSS or SSI, as the adapter clocks them out of the encoder, whatever their meaning. Damaged
-//! wires and noise are applied here.
+//! The bits of one frame of BiSS or SSI, as clocked out of the encoder by the adapter, independent of their meaning.
+//! Damaged wires and noise are applied here.
 
 use fastrand::Rng;
 
@@ -52,7 +52,7 @@ impl Bus {
         self.follow_motor(now);
     }
 
-    /// A shaft of the adapter's own turns as its motor does from `now` on; a device follows when it is asked.
+    /// Turns the adapter's own shaft with its motor from `now` on; a device follows at its next access.
     pub(super) fn follow_motor(&mut self, now: Moment) {
         self.shaft.follow(now);
     }
@@ -65,14 +65,14 @@ impl Bus {
         }
     }
 
-    /// The device whose registers can be asked at `now`.
+    /// Returns the device whose registers can be read at `now`.
     pub(super) fn answering(&mut self, now: Moment) -> Option<&mut Box<dyn BissDevice>> {
         let is_good = self.line == EncoderWiring::Good;
         self.biss.as_mut().filter(|_| is_good)?.answers(now).then_some(())?;
         self.biss.as_mut()
     }
 
-    /// `bits` bits behind the control bit of a BiSS frame taken at a moment.
+    /// Returns `bits` bits after the control bit of a BiSS frame taken at a moment.
     pub(super) fn frame(&mut self, at: Moment, bits: u8) -> (BissStatus, u64) {
         match (self.line, self.biss.as_mut().and_then(|device| device.frame(at))) {
             (EncoderWiring::Low, _) => (BissStatus::STUCK_LOW, 0),
@@ -84,7 +84,7 @@ impl Bus {
         }
     }
 
-    /// The first `bits` bits of an SSI word taken at a moment.
+    /// Returns the first `bits` bits of an SSI word taken at a moment.
     pub(super) fn word(&mut self, at: Moment, bits: u8) -> u64 {
         // Without power neither encoder sends.
         let place = self.place(at);
@@ -104,7 +104,7 @@ impl Bus {
     }
 }
 
-/// `wanted` bits of a frame of `bits` bits, the first first; behind its end the line is low.
+/// Returns `wanted` bits of a frame of `bits` bits, in the order of transmission; after its end the line is low.
 fn clocked(frame: u64, bits: u8, wanted: u8) -> u64 {
     let shifted =
         if wanted >= bits { frame.checked_shl((wanted - bits).into()) } else { Some(frame >> (bits - wanted)) };

@@ -20,7 +20,7 @@ pub(super) struct BissSetting {
 }
 
 impl BissSetting {
-    /// Acknowledge, start and control bit, frame, time-out.
+    /// Returns the duration of acknowledge, start and control bit, frame, time-out.
     pub(super) fn frame(self) -> Duration {
         let clocks = u64::from(self.bits) + 2;
         let clocked = Duration::from_nanos((clocks * 1_000_000_000).div_ceil(self.clock_hz.max(1).into()));
@@ -38,20 +38,20 @@ pub(super) struct SsiSetting {
 }
 
 impl SsiSetting {
-    /// The clocks of a word.
+    /// Returns the duration of the clocks of a word.
     pub(super) fn burst(self) -> Duration {
         let nanoseconds = u64::from(self.clocks) * 1_000_000_000;
         Duration::from_nanos(nanoseconds.div_ceil(self.clock_hz.max(1).into()))
     }
 
-    /// Word and pause: no word comes sooner after another, in whole microseconds.
+    /// Returns the minimum period in whole microseconds: word and pause.
     pub(super) fn least_period_us(self) -> u32 {
         let microseconds = self.burst().as_nanos().div_ceil(1000);
         u32::try_from(microseconds).unwrap_or(u32::MAX).saturating_add(self.pause_us.into())
     }
 }
 
-/// The fastest clock that the adapter has and that is not above the one asked for; `None` below its slowest.
+/// Returns the fastest available clock not above the requested one; `None` below the slowest.
 pub(super) fn actual_clock(clock_hz: u32) -> Option<u32> {
     let wanted = clock_hz.min(MAX_CLOCK_HZ);
     (wanted >= MIN_CLOCK_HZ).then(|| CRYSTAL_HZ / CRYSTAL_HZ.div_ceil(wanted))

@@ -1,4 +1,4 @@
-//! The settings of a virtual adapter, as the query of a `sim:` link gives them: its own. What hangs on it has others.
+//! The adapter's own settings in the query of a `sim:` link. Attached devices have others.
 
 use crate::buses::bridge::protocol::VERSION;
 use crate::expected::Quantity;
@@ -7,7 +7,7 @@ use crate::parameters;
 use crate::sim::{ConfigError, FAULTS, Faults, RPM, SEED};
 
 parameters! {
-    /// The settings of a virtual adapter. By default it has no faults, and the encoder's supply is external.
+    /// Settings of a virtual adapter. By default it has no faults, and the encoder's supply is external.
     pub(super) struct Config: ConfigError {
         /// The wires to the encoder.
         pub(super) line: EncoderWiring = EncoderWiring::Good,
@@ -16,7 +16,7 @@ parameters! {
         pub(super) noise: f64 = 0.0, "noise" => Decimal(Quantity::DamagedFrames, 0.0..=1.0);
         /// The adapter switches the encoder's supply.
         pub(super) switched_supply: bool = false, "supply" => Words(&[("external", false), ("switched", true)]);
-        /// Of the bridge protocol, as the adapter says.
+        /// Version of the bridge protocol as reported by the adapter.
         pub(super) version: u8 = VERSION, "version" => Whole(Quantity::Version, 0..=255);
     }
 }
@@ -30,7 +30,7 @@ parameters! {
 }
 
 parameters! {
-    /// The shaft, where no device on it has this setting.
+    /// The shaft, if no attached device has this setting.
     pub(super) struct Shaft: ConfigError {
         pub(super) rpm: f64 = 0.0, "rpm" => RPM, "connect.rpm";
     }

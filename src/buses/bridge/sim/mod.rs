@@ -1,6 +1,6 @@
-//! A virtual adapter that speaks the bridge protocol (the project's own reference, `protocol/bridge.md`), with a
-//! sine/cosine encoder behind it on the shaft of what hangs on its buses and its serial line. Without anything at the
-//! serial line that is refused as not supported.
+//! A virtual adapter with the bridge protocol (the project's own reference, `protocol/bridge.md`), with a sine/cosine
+//! encoder on the shaft of the devices on its buses and its serial line. Without a device at the serial line, that is
+//! refused as not supported.
 //!
 //! | file | what it is |
 //! |---|---|

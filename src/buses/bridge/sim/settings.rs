@@ -1,4 +1,4 @@
-//! A virtual adapter with what hangs on it, as the query of a `sim:` link gives both.
+//! A virtual adapter with its attached devices, as in the query of a `sim:` link.
 
 use super::adapter::Adapter;
 use super::attached::{Attachable, Attached};
@@ -6,8 +6,8 @@ use super::config::{Config, Shaft, Shared};
 use crate::parameter::{Entry, Parameters};
 use crate::sim::{ConfigError, VirtualDevice};
 
-/// The settings of an adapter with these devices: the adapter's and those of the devices with a few, by the alphabet, then
-/// those of the last device.
+/// Returns the settings of an adapter with these devices: the adapter's and those of the devices with few, alphabetically,
+/// then those of the last device.
 pub fn keys(devices: &[&dyn Attachable]) -> Vec<&'static str> {
     let (last, others) = devices.split_last().map_or((None, devices), |(last, others)| (Some(last), others));
     let mut keys = Config::KEYS.to_vec();
@@ -31,11 +31,11 @@ fn turns_itself(devices: &[&dyn Attachable]) -> bool {
 }
 
 impl Adapter {
-    /// The adapter with these devices, as keys and values say, already percent-decoded. Of a key given twice the last
-    /// counts.
+    /// Creates the adapter with these devices from keys and values, already percent-decoded. Of a key given twice the last
+    /// one counts.
     ///
     /// # Errors
-    /// With a sentence that names the key and what is allowed.
+    /// A sentence that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)], devices: &[&dyn Attachable]) -> Result<Self, ConfigError> {
         let known = keys(devices);
         if let Some((key, _)) = pairs.iter().find(|(key, _)| !known.contains(&key.as_str())) {

@@ -1,13 +1,13 @@
-//! The shaft of an adapter where nothing hangs on BiSS: its place as an exact function of time.
+//! The shaft of an adapter without a device on BiSS: its position as an exact function of time.
 
 use crate::sim::Motor;
 use crate::units::Moment;
 
-/// A shaft with its motor. A copy gets a motor of its own.
+/// Shaft with its motor. A copy gets a motor of its own.
 #[derive(Debug)]
 pub(super) struct Shaft {
     motor: Motor,
-    /// As the motor has turned since then.
+    /// Speed of the motor since then.
     rpm: f64,
     since: Moment,
     /// Revolutions from its zero at that moment.
@@ -23,7 +23,7 @@ impl Clone for Shaft {
 impl Shaft {
     /// Steps of a revolution.
     const PER_TURN: u64 = 1 << 25;
-    /// It begins again behind so many revolutions.
+    /// Number of revolutions after which it wraps.
     const TURNS: f64 = 65_536.0;
 
     /// Creates a shaft at its zero that turns at a speed.
@@ -35,7 +35,7 @@ impl Shaft {
         &self.motor
     }
 
-    /// Turns as its motor does from `now` on.
+    /// Turns with its motor from `now` on.
     pub(super) fn follow(&mut self, now: Moment) {
         let rpm = self.motor.rpm();
         if rpm != self.rpm {
@@ -67,7 +67,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// 60 rpm: a revolution of 2^25 steps a second; 65 536 revolutions in all.
+    /// 60 rpm: a revolution of 2^25 steps per second; 65 536 revolutions in all.
     #[test]
     fn a_turning_shaft_is_where_it_must_be() {
         let mut shaft = Shaft::turning(60.0);

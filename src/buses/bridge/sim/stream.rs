@@ -1,5 +1,5 @@
-//! Samples at equal distances, in packets of five milliseconds or as many as fit. What the host does not fetch for more
-//! than a second is lost, and told.
+//! Samples at equal intervals, in packets of five milliseconds or as many as fit. Samples that the host does not fetch for
+//! more than a second are lost, which is reported.
 
 use std::time::Duration;
 
@@ -52,7 +52,7 @@ impl Pace {
         self.moment(self.first + self.capacity - 1)
     }
 
-    /// Gives up what is older than the backlog.
+    /// Drops samples older than the backlog.
     fn skip(&mut self, to: Moment) {
         let behind = to.since(self.due());
         if behind > BACKLOG {
@@ -64,7 +64,7 @@ impl Pace {
         }
     }
 
-    /// Number of the first sample, when it is taken, samples lost before it; then it is the next packet's turn.
+    /// Returns the number of the first sample, its time, and the samples lost before it; advances to the next packet.
     fn next(&mut self) -> (u32, u64, u16) {
         let first = (self.first % (1 << 32)) as u32;
         let t0_us = u64::try_from(self.moment(self.first).since_start().as_micros()).unwrap_or(u64::MAX);
@@ -88,7 +88,7 @@ pub(super) struct Clocked {
 impl Clocked {
     const HEAD: usize = 20;
 
-    /// `bits` of each value.
+    /// Creates `bits` of each value.
     pub(super) fn new(kind: Kind, start: Moment, period: Duration, bits: u8) -> Self {
         let width = bits.div_ceil(8).clamp(1, 8);
         let size = usize::from(width) + usize::from(kind == Kind::Biss);
@@ -161,14 +161,14 @@ impl Analog {
         self.source.change(u64::try_from(index).unwrap_or(u64::MAX), settings);
     }
 
-    /// The packets that are complete at a moment, each with its own. An encoder without supply has no signals.
+    /// Returns the packets that are complete at a moment, each with its own. An encoder without supply has no signals.
     pub(super) fn run(&mut self, to: Moment, is_supplied: bool) -> Vec<(Moment, Data)> {
         let mut packets = Vec::new();
         self.pace.skip(to);
         while self.pace.due() <= to {
             let at = self.pace.due();
             let count = usize::try_from(self.pace.capacity).unwrap_or(0);
-            // Changes that are forgotten leave an empty packet: the gap is seen.
+            // Changes that are forgotten leave an empty packet: the gap is visible.
             let samples = self.source.samples(self.pace.first, count).map_or(Vec::new(), |wires| {
                 wires
                     .sine_v()
@@ -184,8 +184,8 @@ impl Analog {
     }
 }
 
-/// Parts of the full scale; what is beyond it stays at its end.
+/// Returns parts of the full scale; values beyond it are clamped.
 fn raw(volts: f64) -> i16 {
-    // Saturates, as the converter does.
+    // Saturates like the converter.
     (volts * 1e6 / f64::from(Analog::FULL_SCALE_MICROVOLT) * 32_767.0).round() as i16
 }

@@ -1,5 +1,4 @@
-//! The adapter's serial line with what is at its end. Chosen here: the time-out counts from the end
-//! of what is sent.
+//! The adapter's serial line with its device. Chosen here: the time-out counts from the end of sending.
 
 use std::time::Duration;
 
@@ -7,7 +6,7 @@ use super::attached::SerialDevice;
 use crate::buses::bridge::protocol::MAX_BODY;
 use crate::units::{Baud, CharacterFormat, Moment, Parity};
 
-/// The line, as it is set.
+/// Line with its settings.
 #[derive(Clone)]
 pub(super) struct Uart {
     line: Box<dyn SerialDevice>,
@@ -16,7 +15,7 @@ pub(super) struct Uart {
 
 /// The result of a transfer.
 pub(super) struct Transfer {
-    /// When the first start bit began; without a reply the end of the wait.
+    /// Start of the first start bit; without a reply the end of the wait.
     pub(super) start: Moment,
     pub(super) rx: Vec<u8>,
     /// When the adapter has stopped waiting.
@@ -24,7 +23,7 @@ pub(super) struct Transfer {
 }
 
 impl Uart {
-    /// Bytes that fit into a reply beside its time.
+    /// Bytes that fit into a reply in addition to its time.
     const MAX_RX: usize = MAX_BODY - 8;
 
     pub(super) fn new(line: Box<dyn SerialDevice>) -> Self {
@@ -50,7 +49,8 @@ impl Uart {
         true
     }
 
-    /// Bytes out and in; `None` before the line is set. The line is ahead of the adapter's time until its reply.
+    /// Sends and receives bytes; `None` before the line is configured. The line is ahead of the adapter's time until its
+    /// reply.
     pub(super) fn transfer(&mut self, now: Moment, timeout: Duration, idle: Duration, tx: &[u8]) -> Option<Transfer> {
         let character = self.format?.character_time();
         self.line.poll(now);

@@ -1,11 +1,11 @@
-//! Errors of an adapter in words, for any bus behind it.
+//! Texts of an adapter's errors, for any bus behind it.
 
 use crate::app::Text;
 use crate::buses::bridge::procedures::AdapterError;
 use crate::buses::bridge::protocol::{BodyError, ErrorCode, Operation};
 use crate::buses::bridge::state::TEXTS;
 
-/// An adapter that does not answer, or not with what was asked for.
+/// Returns the text for an adapter that does not reply, or not as requested.
 pub fn adapter(error: &AdapterError) -> Text {
     match error {
         AdapterError::Silent => TEXTS.text("adapter.silent"),

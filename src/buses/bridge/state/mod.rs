@@ -1,4 +1,4 @@
-//! Messages and errors of an adapter in words, for any bus behind it.
+//! Texts of an adapter's messages and errors, for any bus behind it.
 
 mod error;
 mod texts;

@@ -1,17 +1,17 @@
-//! The traffic to an adapter in words, for any bus behind it.
+//! Texts of the traffic to an adapter, for any bus behind it.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
 use crate::buses::bridge::protocol::{Message, Packet, Reply, Request};
 use crate::buses::bridge::state::TEXTS;
 
-/// The packet in bytes as they pass over the line; `None`: they are none.
+/// Parses the packet in transmitted bytes; `None` if they are not one.
 pub fn packet(bytes: &[u8]) -> Option<Packet> {
     let stuffed = bytes.split(|byte| *byte == 0).find(|stuffed| !stuffed.is_empty())?;
     Packet::parse(stuffed).ok()
 }
 
-/// A packet that came from an adapter and is broken, or refuses; `None` for any other.
+/// Explains a received packet that is damaged or a refusal; `None` for any other.
 pub fn received(bytes: &[u8]) -> Option<Explained> {
     let Some(packet) = packet(bytes) else { return Some(Explained::broken(TEXTS.text("trace.no_packet"))) };
     match Message::parse(&packet) {

@@ -1,5 +1,4 @@
-//! `decode ethernet-ip`: frames, cyclic packets and CIP messages in words, offline. Which of them bytes are is found by what
-//! fits.
+//! `decode ethernet-ip`: explains frames, cyclic packets and CIP messages, offline. Their kind is determined by trying.
 
 mod cip;
 
@@ -26,11 +25,11 @@ pub(crate) struct DecodedBytes {
 /// Returns the name of an attribute of a class and its value, or why there is none.
 pub(crate) type AttributeWords = fn(u16, u16, &[u8]) -> Option<(String, std::result::Result<String, String>)>;
 
-/// Whose packets they are.
+/// Device of the packets.
 #[derive(Clone, Copy)]
 pub(crate) enum Device {
     Any,
-    /// One that has no services of its own, and whose attributes are told by more than their numbers.
+    /// A device without services of its own, whose attributes have known meanings.
     Known(AttributeWords),
 }
 
@@ -86,7 +85,7 @@ fn packet(kind: &str) -> Map<String, Json> {
     Map::from_iter([("packet".to_owned(), json!(kind))])
 }
 
-/// A cyclic packet. Whether there is a header is seen by the length: process data are whole words of 32 bits.
+/// Explains a cyclic packet. The length shows whether there is a header: process data are whole words of 32 bits.
 fn cyclic(bytes: &[u8]) -> Option<DecodedBytes> {
     let plain = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok()?;
     let with = IoPacket::parse(bytes, RealTimeFormat::Header).ok().filter(|packet| {

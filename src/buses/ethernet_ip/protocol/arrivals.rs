@@ -11,7 +11,7 @@ pub struct Arrivals {
 /// The verdict on a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arrival {
-    /// Its data count.
+    /// With its data count.
     New {
         /// Packets before it that have not come (they may still, and are stale then).
         missing: u32,
@@ -21,7 +21,7 @@ pub enum Arrival {
 }
 
 impl Arrivals {
-    /// A packet with this sequence number. Numbers wrap: newer is what lies less than half of them ahead.
+    /// Takes the sequence number of a packet. Numbers wrap: a newer one is less than half of them ahead.
     pub fn take(&mut self, sequence: u32) -> Arrival {
         let ahead = match self.newest {
             None => 1,
@@ -73,7 +73,7 @@ mod tests {
     }
 
     proptest! {
-        /// However packets come, what counts never goes back.
+        /// In any order of packets, the sequence of accepted ones never goes back.
         #[test]
         fn what_counts_only_goes_ahead(start: u32, order in proptest::collection::vec(0u32..1000, 1..200)) {
             let mut arrivals = Arrivals::default();

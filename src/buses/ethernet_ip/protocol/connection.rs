@@ -1,19 +1,19 @@
-//! The numbers with which a connection is asked for, field by field (reference 7; bits as ODVA has them, `P`).
+//! The fields with which a connection is requested (reference 7; bits as by ODVA, `P`).
 
 use std::time::Duration;
 
-/// 16 bits that say what goes one way. Bits that are not known are kept.
+/// 16 bits that describe one direction. Unknown bits are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NetworkParameters(u16);
 
 /// Bits 14 and 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum NetworkType {
-    /// 0: nothing goes this way.
+    /// 0: no data in this direction.
     Null,
-    /// 1: to all who listen.
+    /// 1: to all listeners.
     Multicast,
-    /// 2: to the other alone.
+    /// 2: to the other side only.
     PointToPoint,
     /// 3: reserved.
     Reserved,
@@ -26,13 +26,13 @@ pub enum NetworkPriority {
     Low,
     /// 1.
     High,
-    /// 2: what cyclic data have.
+    /// 2: used for cyclic data.
     Scheduled,
     /// 3.
     Urgent,
 }
 
-/// The byte that says when data are sent, and who does.
+/// Byte that defines when data are sent, and by which side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Transport(u8);
 
@@ -41,19 +41,19 @@ pub struct Transport(u8);
 pub enum Trigger {
     /// 0: at an interval.
     Cyclic,
-    /// 1: when something has changed.
+    /// 1: on a change.
     ChangeOfState,
-    /// 2: when the application says so.
+    /// 2: on request of the application.
     Application,
     /// Another number.
     Unknown(u8),
 }
 
-/// After how many intervals without data a connection has ended: 4 · 2ⁿ.
+/// Number of intervals without data after which a connection ends: 4 · 2ⁿ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ConnectionTimeout(u8);
 
-/// The time-out of a request: two bytes, priority with the length of a tick, and ticks.
+/// Time-out of a request: two bytes, priority with the length of a tick, and ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RequestTimeout {
     /// Bits 3 to 0: a tick is 2ⁿ milliseconds; the others are kept.
@@ -118,24 +118,24 @@ impl NetworkParameters {
         }
     }
 
-    /// Bytes, with sequence count and run/idle header.
+    /// Returns the number of bytes, with sequence count and run/idle header.
     pub const fn size(self) -> u16 {
         self.0 & SIZE
     }
 
-    /// Less may come than the size says.
+    /// Returns whether less data than the size may be sent.
     pub const fn is_variable(self) -> bool {
         self.0 & VARIABLE != 0
     }
 
-    /// Several masters may own the outputs.
+    /// Returns whether several masters may own the outputs.
     pub const fn redundant_owner(self) -> bool {
         self.0 & OWNER != 0
     }
 }
 
 impl Transport {
-    /// Class 1, at an interval, as a client: what cyclic data have.
+    /// Class 1, cyclic, as a client: used for cyclic data.
     pub const CYCLIC: Transport = Transport(0x01);
 
     /// Parses the byte.
@@ -148,7 +148,7 @@ impl Transport {
         self.0
     }
 
-    /// 1: data with a count and without an answer; 3: messages.
+    /// Returns 1: data with a count and without a reply; 3: messages.
     pub const fn class(self) -> u8 {
         self.0 & 0x0F
     }
@@ -183,7 +183,7 @@ impl ConnectionTimeout {
         self.0
     }
 
-    /// 4 to 512.
+    /// Returns 4 to 512.
     pub const fn intervals(self) -> u32 {
         4 << self.0
     }

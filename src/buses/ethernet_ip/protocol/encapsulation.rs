@@ -28,7 +28,7 @@ pub struct Frame {
 /// The content of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Body {
-    /// Nothing: a list that is asked for, the end of a session, a reply that says no.
+    /// Empty: a list request, the end of a session, a refusal.
     Empty,
     /// RegisterSession, both ways.
     Register {
@@ -43,12 +43,12 @@ pub enum Body {
     Data {
         /// 0: CIP.
         interface: u32,
-        /// Seconds; 0 where CIP has a time-out of its own.
+        /// Seconds; 0 if CIP has its own time-out.
         timeout_s: u16,
-        /// Whom it is for, and what.
+        /// Address and content.
         items: Items,
     },
-    /// Of a command that is not known.
+    /// Data of an unknown command.
     Other(Vec<u8>),
 }
 
@@ -82,12 +82,12 @@ impl Command {
     /// A message of an explicit connection.
     pub const SEND_UNIT_DATA: Command = Command(0x70);
 
-    /// Any number is a command.
+    /// Creates it: any number is a command.
     pub const fn new(number: u16) -> Self {
         Command(number)
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn number(self) -> u16 {
         self.0
     }
@@ -106,7 +106,7 @@ impl Frame {
     /// The version of the protocol.
     pub const VERSION: u16 = 1;
 
-    /// A request outside of any session.
+    /// Creates a request outside of any session.
     fn request(command: Command, context: [u8; 8], body: &Body) -> Self {
         Frame { command, session: 0, status: EncapsulationStatus::OK, context, options: 0, data: body.emit() }
     }
@@ -116,18 +116,18 @@ impl Frame {
         Frame::request(Command::LIST_IDENTITY, context, &Body::Empty)
     }
 
-    /// A session begins.
+    /// Creates the request that begins a session.
     pub fn register(context: [u8; 8]) -> Self {
         let body = Body::Register { version: Frame::VERSION, options: 0 };
         Frame::request(Command::REGISTER_SESSION, context, &body)
     }
 
-    /// A session ends. There is no reply.
+    /// Creates the frame that ends a session. There is no reply.
     pub fn unregister(session: u32) -> Self {
         Frame { session, ..Frame::request(Command::UNREGISTER_SESSION, [0; 8], &Body::Empty) }
     }
 
-    /// A CIP message in a session.
+    /// Creates a CIP message in a session.
     pub fn unconnected(session: u32, context: [u8; 8], message: Vec<u8>) -> Self {
         let items = Items(vec![Item::Null, Item::UnconnectedData(message)]);
         Frame {
@@ -136,12 +136,12 @@ impl Frame {
         }
     }
 
-    /// The reply to this frame, in its session.
+    /// Creates the reply to this frame, in its session.
     pub fn reply(&self, body: &Body) -> Self {
         Frame { status: EncapsulationStatus::OK, options: 0, data: body.emit(), ..self.clone() }
     }
 
-    /// The reply that says no.
+    /// Creates a refusing reply.
     pub fn refusal(&self, status: EncapsulationStatus) -> Self {
         Frame { status, options: 0, data: Vec::new(), ..self.clone() }
     }
@@ -153,7 +153,7 @@ impl Frame {
         self.command == request.command && self.context == request.context && session
     }
 
-    /// Bytes of the frame that begins like this; `None` where the header is not whole.
+    /// Returns the length of the frame that begins with these bytes; `None` if the header is incomplete.
     ///
     /// # Errors
     /// [`PacketError::Value`]: longer than any frame.
@@ -170,7 +170,7 @@ impl Frame {
     /// Reads a whole frame.
     ///
     /// # Errors
-    /// [`PacketError`] where the bytes are not one frame.
+    /// [`PacketError`] if the bytes are not one frame.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         Frame::length(bytes)?;
         let mut fields = Fields::new(WHAT, bytes);
@@ -184,7 +184,7 @@ impl Frame {
         fields.end(Frame { command, session, status, context, options, data })
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         let data = self.data.get(..Frame::MAX_DATA).unwrap_or(&self.data);
         let mut bytes = Vec::with_capacity(Frame::HEADER + data.len());
@@ -202,7 +202,7 @@ impl Frame {
     /// Parses the content.
     ///
     /// # Errors
-    /// [`PacketError`] where the data are not those of its command.
+    /// [`PacketError`] if the data do not belong to the command.
     pub fn body(&self) -> Result<Body, PacketError> {
         if self.data.is_empty() {
             return Ok(Body::Empty);
@@ -229,7 +229,7 @@ impl Frame {
 const WHAT: &str = "the encapsulation frame";
 
 impl Body {
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         match self {
             Body::Empty => Vec::new(),
@@ -245,7 +245,7 @@ impl Body {
         }
     }
 
-    /// The CIP message in it.
+    /// Returns the CIP message in it.
     pub fn message(&self) -> Option<&[u8]> {
         match self {
             Body::Data { items, .. } => items.unconnected_data(),

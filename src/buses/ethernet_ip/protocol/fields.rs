@@ -95,8 +95,8 @@ impl<'a> Fields<'a> {
     }
 }
 
-/// A text of a length that one byte holds: SHORT_STRING. Bytes that are no ASCII become question marks, both ways; what is
-/// longer than 255 is cut.
+/// Appends a text whose length fits into one byte: SHORT_STRING. Non-ASCII bytes become question marks, in both directions;
+/// a text longer than 255 is truncated.
 pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     let ascii: Vec<u8> = ascii(text).take(0xFF).collect();
     // At most 255.
@@ -104,12 +104,12 @@ pub(super) fn push_short_text(bytes: &mut Vec<u8>, text: &str) {
     bytes.extend(ascii);
 }
 
-/// The characters of a text as they are sent.
+/// Returns the characters of a text as they are sent.
 pub(super) fn ascii(text: &str) -> impl Iterator<Item = u8> {
     text.chars().map(|c| if c.is_ascii() { c as u8 } else { b'?' })
 }
 
-/// Characters as they came.
+/// Returns characters as received.
 pub(super) fn text(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| if byte.is_ascii() { char::from(*byte) } else { '?' }).collect()
 }

@@ -1,5 +1,5 @@
-//! ForwardOpen and ForwardClose: a cyclic connection begins and ends (reference 7). The target chooses the number of what
-//! comes to it, the originator of what comes back.
+//! ForwardOpen and ForwardClose: opening and closing a cyclic connection (reference 7). The target chooses the number of
+//! the packets to it, the originator of those from it.
 
 use std::time::Duration;
 
@@ -30,7 +30,7 @@ pub struct ForwardOpen {
     pub to_originator_id: u32,
     /// The originator and the connection.
     pub owner: Owner,
-    /// When it has ended without data.
+    /// Time without data after which it ends.
     pub connection_timeout: ConnectionTimeout,
     /// Microseconds between two packets to the target.
     pub to_target_interval_us: u32,
@@ -63,12 +63,12 @@ pub struct ForwardOpened {
     pub application: Vec<u16>,
 }
 
-/// A connection has not begun, or not ended; the reply's status says why.
+/// A connection was not opened, or not closed; the status of the reply tells why.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForwardRefused {
-    /// Whose connection it would be.
+    /// Owner of the connection.
     pub owner: Owner,
-    /// Words of the path that were left when it went wrong.
+    /// Words of the path that remained at the error.
     pub remaining_path_words: u8,
 }
 
@@ -115,10 +115,10 @@ impl ForwardOpen {
         self.connection_timeout.after(Duration::from_micros(self.to_target_interval_us.into()))
     }
 
-    /// Reads what follows the path of the request.
+    /// Parses the data after the path of the request.
     ///
     /// # Errors
-    /// [`PacketError`] where it is cut off, too long, or its time-out is a number that there is not.
+    /// [`PacketError`] if it is incomplete, too long, or its time-out is an invalid number.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("ForwardOpen", data);
         let timeout = RequestTimeout::take(&mut fields)?;
@@ -150,7 +150,7 @@ impl ForwardOpen {
         })
     }
 
-    /// The request.
+    /// Returns the request.
     pub fn request(&self) -> Request {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         data.extend([self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes));
@@ -170,7 +170,7 @@ impl ForwardOpened {
     /// Reads the data of the reply.
     ///
     /// # Errors
-    /// [`PacketError`] where they are cut off or too long.
+    /// [`PacketError`] if they are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the reply to ForwardOpen", data);
         let (to_target_id, to_originator_id) = (fields.u32()?, fields.u32()?);
@@ -187,7 +187,7 @@ impl ForwardOpened {
         })
     }
 
-    /// The data of the reply.
+    /// Returns the data of the reply.
     pub fn emit(&self) -> Vec<u8> {
         let mut data: Vec<u8> =
             [self.to_target_id, self.to_originator_id].into_iter().flat_map(u32::to_le_bytes).collect();
@@ -201,10 +201,10 @@ impl ForwardOpened {
 }
 
 impl ForwardRefused {
-    /// Reads the data of a reply that says no.
+    /// Parses the data of a refusing reply.
     ///
     /// # Errors
-    /// [`PacketError`] where they are cut off or too long; many devices send none.
+    /// [`PacketError`] if they are incomplete or too long; many devices send none.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the refusal of a connection", data);
         let owner = Owner::take(&mut fields)?;
@@ -214,7 +214,7 @@ impl ForwardRefused {
         fields.end(ForwardRefused { owner, remaining_path_words })
     }
 
-    /// The data of the reply.
+    /// Returns the data of the reply.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = Vec::new();
         self.owner.push_to(&mut data);
@@ -222,7 +222,7 @@ impl ForwardRefused {
         data
     }
 
-    /// The reply to `request` with an extended status.
+    /// Returns the reply to `request` with an extended status.
     pub fn reply(&self, request: &Request, extended: u16) -> Reply {
         Reply {
             extended: vec![extended],
@@ -233,10 +233,10 @@ impl ForwardRefused {
 }
 
 impl ForwardClose {
-    /// Reads what follows the path of the request.
+    /// Parses the data after the path of the request.
     ///
     /// # Errors
-    /// [`PacketError`] where it is cut off or too long.
+    /// [`PacketError`] if it is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("ForwardClose", data);
         let timeout = RequestTimeout::take(&mut fields)?;
@@ -248,7 +248,7 @@ impl ForwardClose {
         fields.end(ForwardClose { timeout, owner, path })
     }
 
-    /// The request.
+    /// Returns the request.
     pub fn request(&self) -> Request {
         let mut data = vec![self.timeout.priority_and_tick, self.timeout.ticks];
         self.owner.push_to(&mut data);
@@ -265,7 +265,7 @@ impl ForwardClosed {
     /// Reads the data of the reply.
     ///
     /// # Errors
-    /// [`PacketError`] where they are cut off or too long.
+    /// [`PacketError`] if they are incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the reply to ForwardClose", data);
         let owner = Owner::take(&mut fields)?;
@@ -273,7 +273,7 @@ impl ForwardClosed {
         fields.end(ForwardClosed { owner, application })
     }
 
-    /// The data of the reply.
+    /// Returns the data of the reply.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = Vec::new();
         self.owner.push_to(&mut data);

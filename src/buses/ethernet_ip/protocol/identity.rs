@@ -1,4 +1,4 @@
-//! The identity of a device: the identity object (class 1) and the item that answers ListIdentity (`P ODVA`).
+//! The identity of a device: the identity object (class 1) and the item of the ListIdentity reply (`P ODVA`).
 
 use super::fields::{Fields, PacketError, push_short_text, text};
 use super::items::SocketAddress;
@@ -6,13 +6,13 @@ use super::items::SocketAddress;
 /// The identity object, attributes 1 to 7.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
-    /// The maker, of ODVA's list. Halstrup-Walcher is 1010.
+    /// Vendor ID by ODVA's list. Halstrup-Walcher is 1010.
     pub vendor: u16,
     /// Device type.
     pub device_type: u16,
     /// Product code, assigned by the manufacturer.
     pub product_code: u16,
-    /// Of the device.
+    /// Revision of the device.
     pub revision: Revision,
     /// The device's state bit by bit.
     pub status: u16,
@@ -48,10 +48,10 @@ impl Identity {
     /// The class of the object.
     pub const CLASS: u16 = 0x01;
 
-    /// Reads what Get_Attributes_All has of it: attributes 1 to 7, and what a device puts behind them.
+    /// Parses its part of a Get_Attributes_All reply: attributes 1 to 7, and anything that a device appends.
     ///
     /// # Errors
-    /// [`PacketError`] where they are cut off.
+    /// [`PacketError`] if they are incomplete.
     pub fn parse_all(bytes: &[u8]) -> Result<Self, PacketError> {
         Identity::take(&mut Fields::new("the identity object", bytes))
     }
@@ -61,7 +61,7 @@ impl Identity {
         (1..=7).filter_map(|attribute| self.attribute(attribute)).flatten().collect()
     }
 
-    /// An attribute as Get_Attribute_Single has it; `None` for one that there is not.
+    /// Returns an attribute as in a Get_Attribute_Single reply; `None` if it does not exist.
     pub fn attribute(&self, number: u16) -> Option<Vec<u8>> {
         let bytes = match number {
             1 => self.vendor.to_le_bytes().to_vec(),

@@ -6,11 +6,11 @@ use super::items::{Item, Items};
 /// A packet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct IoPacket {
-    /// Of the connection, as its receiver has chosen it.
+    /// Connection number chosen by its receiver.
     pub connection: u32,
     /// Higher by one with every packet.
     pub sequence: u32,
-    /// Higher by one with new data (`U`: with every packet).
+    /// Incremented with new data (`U`: with every packet).
     pub count: u16,
     /// Before the data, in packets that have one.
     pub header: Option<RunIdle>,
@@ -27,14 +27,14 @@ pub enum RealTimeFormat {
     Modeless,
 }
 
-/// 32 bits before the data; those that are not known are kept.
+/// 32 bits before the data; unknown ones are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RunIdle(u32);
 
 impl RunIdle {
-    /// Bit 0 is set: the data count.
+    /// Bit 0 is set: the data are valid.
     pub const RUN: RunIdle = RunIdle(1);
-    /// Bit 0 is clear: the program at the other end does not run, and its data do not count.
+    /// Bit 0 is clear: the program of the sender does not run, and its data are not valid.
     pub const IDLE: RunIdle = RunIdle(0);
 
     /// Parses the word.
@@ -47,14 +47,14 @@ impl RunIdle {
         self.0
     }
 
-    /// The data count.
+    /// Returns whether the data count.
     pub const fn runs(self) -> bool {
         self.0 & 1 == 1
     }
 }
 
 impl IoPacket {
-    /// Bytes that a connection's size counts beside the data: the sequence count, and the header.
+    /// Returns the bytes that a connection's size includes besides the data: the sequence count, and the header.
     pub const fn overhead(format: RealTimeFormat) -> u16 {
         match format {
             RealTimeFormat::Header => 6,
@@ -62,10 +62,10 @@ impl IoPacket {
         }
     }
 
-    /// Reads a packet. Addresses of sockets may stand beside.
+    /// Parses a packet. It may also contain socket addresses.
     ///
     /// # Errors
-    /// [`PacketError`] where it is not a sequenced address and connected data, or something is cut off.
+    /// [`PacketError`] if it is not a sequenced address and connected data, or incomplete.
     pub fn parse(bytes: &[u8], format: RealTimeFormat) -> Result<Self, PacketError> {
         const WHAT: &str = "the cyclic packet";
         let items = Items::parse(bytes)?;
@@ -73,7 +73,7 @@ impl IoPacket {
             [Item::SequencedAddress { connection, sequence }, Item::ConnectedData(data), ..] => {
                 (*connection, *sequence, data)
             }
-            // No more than a packet of UDP holds.
+            // No more than fits into a UDP packet.
             other => return Err(PacketError::Value { what: WHAT, field: "list of items", got: other.len() as u32 }),
         };
         let mut fields = Fields::new(WHAT, data);
@@ -85,7 +85,7 @@ impl IoPacket {
         Ok(IoPacket { connection, sequence, count, header, data: fields.tail().to_vec() })
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut data = self.count.to_le_bytes().to_vec();
         data.extend(self.header.iter().flat_map(|header| header.0.to_le_bytes()));

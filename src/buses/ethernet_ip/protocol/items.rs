@@ -5,16 +5,16 @@ use core::net::Ipv4Addr;
 use super::fields::{Fields, PacketError};
 use super::identity::IdentityItem;
 
-/// A list of items. An address comes before the data that are for it.
+/// List of items. An address precedes its data.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Items(pub Vec<Item>);
 
-/// An item. Types that are not known are kept.
+/// Item. Unknown types are kept.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Item {
     /// 0000h: the address of an unconnected message.
     Null,
-    /// 000Ch: who is there.
+    /// 000Ch: the identity of a device.
     Identity(IdentityItem),
     /// 00A1h: the address of a message of an explicit connection.
     ConnectedAddress(u32),
@@ -22,22 +22,22 @@ pub enum Item {
     ConnectedData(Vec<u8>),
     /// 00B2h: a CIP message outside of any connection.
     UnconnectedData(Vec<u8>),
-    /// 8000h: where what goes from the originator to the target is to be sent.
+    /// 8000h: the address for data from the originator to the target.
     SocketToTarget(SocketAddress),
-    /// 8001h: where what goes from the target to the originator is to be sent.
+    /// 8001h: the address for data from the target to the originator.
     SocketToOriginator(SocketAddress),
     /// 8002h: the address of cyclic data.
     SequencedAddress {
-        /// Of the connection, as its receiver has chosen it.
+        /// Connection number chosen by its receiver.
         connection: u32,
-        /// Higher by one with every packet, also with one whose data are old.
+        /// Incremented with every packet, even if its data are old.
         sequence: u32,
     },
     /// Another type.
     Unknown {
         /// Its number.
         kind: u16,
-        /// As it came.
+        /// As received.
         data: Vec<u8>,
     },
 }
@@ -49,7 +49,7 @@ pub struct SocketAddress {
     pub family: u16,
     /// Its port.
     pub port: u16,
-    /// Its address; 0.0.0.0 for the one the frame comes from.
+    /// Its address; 0.0.0.0 for the sender of the frame.
     pub address: Ipv4Addr,
 }
 
@@ -66,7 +66,7 @@ impl Items {
     /// Reads a list that fills the bytes.
     ///
     /// # Errors
-    /// [`PacketError`] where an item is cut off, is not of its type's length, or bytes are left.
+    /// [`PacketError`] if an item is incomplete, does not have its type's length, or bytes remain.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the list of items", bytes);
         let count = fields.u16()?;
@@ -78,10 +78,10 @@ impl Items {
         fields.end(Items(items))
     }
 
-    /// Returns the bytes. An item is cut at 65535 bytes.
+    /// Returns the bytes. An item is truncated at 65535 bytes.
     pub fn emit(&self) -> Vec<u8> {
         let most = usize::from(u16::MAX);
-        // A frame holds fewer than that many.
+        // A frame has fewer than that many.
         let mut bytes = (self.0.len().min(most) as u16).to_le_bytes().to_vec();
         for item in self.0.iter().take(most) {
             let (kind, data) = item.emit();
@@ -93,7 +93,7 @@ impl Items {
         bytes
     }
 
-    /// The CIP message in it.
+    /// Returns the CIP message in it.
     pub fn unconnected_data(&self) -> Option<&[u8]> {
         self.0.iter().find_map(|item| match item {
             Item::UnconnectedData(data) => Some(data.as_slice()),
@@ -172,12 +172,12 @@ impl SocketAddress {
     pub const INTERNET: u16 = 2;
     pub(super) const LENGTH: usize = 16;
 
-    /// An address of IP, version 4.
+    /// Creates an address of IP, version 4.
     pub const fn new(address: Ipv4Addr, port: u16) -> Self {
         SocketAddress { family: SocketAddress::INTERNET, port, address }
     }
 
-    /// Reads 16 bytes; the last eight say nothing.
+    /// Parses 16 bytes; the last eight are ignored.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the socket address", bytes);
         let family = u16::from_be_bytes(fields.array()?);

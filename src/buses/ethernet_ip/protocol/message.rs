@@ -13,7 +13,7 @@ pub struct Service(u8);
 pub struct Request {
     /// The service.
     pub service: Service,
-    /// Of whom.
+    /// Path of the object.
     pub path: Path,
     /// Data of the service.
     pub data: Vec<u8>,
@@ -26,7 +26,7 @@ pub struct Reply {
     pub service: Service,
     /// The status.
     pub status: GeneralStatus,
-    /// Words that say more, as a service has them; up to 255.
+    /// Further words, defined by the service; up to 255.
     pub extended: Vec<u16>,
     /// Data of the reply.
     pub data: Vec<u8>,
@@ -64,9 +64,9 @@ pub fn class_name(class: u16) -> Option<&'static str> {
 }
 
 impl Service {
-    /// All attributes are read.
+    /// Reads all attributes.
     pub const GET_ALL: Service = Service(0x01);
-    /// All attributes are set.
+    /// Sets all attributes.
     pub const SET_ALL: Service = Service(0x02);
     /// Restarts the device.
     pub const RESET: Service = Service(0x05);
@@ -74,9 +74,9 @@ impl Service {
     pub const GET: Service = Service(0x0E);
     /// An attribute is set.
     pub const SET: Service = Service(0x10);
-    /// Of the connection manager: a connection ends.
+    /// Of the connection manager: closes a connection.
     pub const FORWARD_CLOSE: Service = Service(0x4E);
-    /// Of the connection manager: a connection begins.
+    /// Of the connection manager: opens a connection.
     pub const FORWARD_OPEN: Service = Service(0x54);
 
     const REPLY_BIT: u8 = 0x80;
@@ -86,7 +86,7 @@ impl Service {
         if code < Service::REPLY_BIT { Some(Service(code)) } else { None }
     }
 
-    /// Its number in a request.
+    /// Returns its number in a request.
     pub const fn code(self) -> u8 {
         self.0
     }
@@ -104,17 +104,17 @@ impl Request {
     /// The class of the connection manager.
     pub const CONNECTION_MANAGER: u16 = 0x06;
 
-    /// An attribute is read.
+    /// Creates the request to read an attribute.
     pub fn get(class: u16, instance: u16, attribute: u16) -> Self {
         Request { service: Service::GET, path: Path::attribute(class, instance, attribute), data: Vec::new() }
     }
 
-    /// An attribute is set.
+    /// Creates the request to set an attribute.
     pub fn set(class: u16, instance: u16, attribute: u16, data: Vec<u8>) -> Self {
         Request { service: Service::SET, path: Path::attribute(class, instance, attribute), data }
     }
 
-    /// All attributes of an object are read.
+    /// Creates a request to read all attributes of an object.
     pub fn get_all(class: u16, instance: u16) -> Self {
         Request { service: Service::GET_ALL, path: Path::instance(class, instance), data: Vec::new() }
     }
@@ -132,7 +132,7 @@ impl Request {
     /// Reads a request.
     ///
     /// # Errors
-    /// [`PacketError`] where it is a reply, or its path is cut off.
+    /// [`PacketError`] if it is a reply, or its path is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the CIP request", bytes);
         let code = fields.u8()?;
@@ -141,7 +141,7 @@ impl Request {
         Ok(Request { service, path, data: fields.tail().to_vec() })
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = vec![self.service.0];
         self.path.push_to(&mut bytes);
@@ -149,12 +149,12 @@ impl Request {
         bytes
     }
 
-    /// The reply that it was done.
+    /// Returns the reply for success.
     pub fn done(&self, data: Vec<u8>) -> Reply {
         Reply { service: self.service, status: GeneralStatus::OK, extended: Vec::new(), data }
     }
 
-    /// The reply that it was not.
+    /// Returns the reply for a failure.
     pub fn refused(&self, status: GeneralStatus) -> Reply {
         Reply { service: self.service, status, extended: Vec::new(), data: Vec::new() }
     }
@@ -164,7 +164,7 @@ impl Reply {
     /// Reads a reply.
     ///
     /// # Errors
-    /// [`PacketError`] where it is a request, or is cut off.
+    /// [`PacketError`] if it is a request, or is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the CIP reply", bytes);
         let code = fields.u8()?;

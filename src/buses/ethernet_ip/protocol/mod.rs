@@ -48,5 +48,5 @@ pub use tcp_ip::{AddressError, AddressSource, ConfigurationControl, InterfaceCon
 
 /// TCP: explicit messages; UDP: ListIdentity.
 pub const EXPLICIT_PORT: u16 = 44818;
-/// UDP: cyclic data, where nothing else was said when the connection was opened.
+/// UDP: cyclic data, unless another port was given when the connection was opened.
 pub const IMPLICIT_PORT: u16 = 2222;

@@ -3,7 +3,7 @@
 
 use super::fields::{Fields, PacketError};
 
-/// A path. Its segments fill whole words.
+/// Path. Its segments fill whole words.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Path(pub Vec<Segment>);
 
@@ -12,18 +12,18 @@ pub struct Path(pub Vec<Segment>);
 pub enum Segment {
     /// A number.
     Logical {
-        /// Of what.
+        /// Kind of the object.
         kind: LogicalKind,
         /// The number.
         number: u16,
-        /// The width in which it is sent. A number above 255 is always sent wide.
+        /// Width in which it is sent. A number above 255 is always sent wide.
         width: Width,
     },
-    /// 34h: what device it has to be.
+    /// 34h: the required device.
     Key(ElectronicKey),
-    /// 80h: words for whom the path leads to, up to 255.
+    /// 80h: words for the addressed object, up to 255.
     Data(Vec<u16>),
-    /// An unknown segment with all that follows, as its end is not known.
+    /// An unknown segment with everything after it, as its end is not known.
     Unknown(Vec<u8>),
 }
 
@@ -43,13 +43,13 @@ pub enum LogicalKind {
 /// The width in which a number is sent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Width {
-    /// In the byte behind the segment's type.
+    /// In the byte after the segment's type.
     Byte,
-    /// In a word behind a byte that is 0.
+    /// In a word after a byte that is 0.
     Word,
 }
 
-/// The values that a device is compared with before a connection is opened; 0 matches all.
+/// Values that a device is compared with before a connection is opened; 0 matches all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElectronicKey {
     /// As in the identity object.
@@ -58,7 +58,7 @@ pub struct ElectronicKey {
     pub device_type: u16,
     /// As in the identity object.
     pub product_code: u16,
-    /// Major revision; bit 7: a compatible one will do.
+    /// Major revision; bit 7: a compatible one is accepted.
     pub major: u8,
     /// Minor revision.
     pub minor: u8,
@@ -70,25 +70,25 @@ const KINDS: [(u8, LogicalKind); 4] = [
     (0x2C, LogicalKind::ConnectionPoint),
     (0x30, LogicalKind::Attribute),
 ];
-/// The only format of an electronic key, and how it begins: type, format.
+/// The only format of an electronic key, and its first bytes: type, format.
 const KEY: [u8; 2] = [0x34, 0x04];
 const DATA: u8 = 0x80;
 const WHAT: &str = "the path";
 
 impl Path {
-    /// An object.
+    /// Creates an object.
     pub fn instance(class: u16, instance: u16) -> Self {
         Path(vec![Segment::new(LogicalKind::Class, class), Segment::new(LogicalKind::Instance, instance)])
     }
 
-    /// An attribute of an object.
+    /// Creates an attribute of an object.
     pub fn attribute(class: u16, instance: u16, attribute: u16) -> Self {
         let Path(mut segments) = Path::instance(class, instance);
         segments.push(Segment::new(LogicalKind::Attribute, attribute));
         Path(segments)
     }
 
-    /// Assemblies of a cyclic connection: configuration, from originator to target, and back.
+    /// Creates the path of the assemblies of a cyclic connection: configuration, from originator to target, and back.
     pub fn assemblies(configuration: u16, to_target: u16, to_originator: u16) -> Self {
         const ASSEMBLY: u16 = 0x04;
         let Path(mut segments) = Path::instance(ASSEMBLY, configuration);
@@ -96,12 +96,12 @@ impl Path {
         Path(segments)
     }
 
-    /// The first number of a kind.
+    /// Returns the first number of a kind.
     pub fn number(&self, wanted: LogicalKind) -> Option<u16> {
         self.numbers(wanted).next()
     }
 
-    /// All numbers of a kind.
+    /// Returns all numbers of a kind.
     pub fn numbers(&self, wanted: LogicalKind) -> impl Iterator<Item = u16> {
         self.0.iter().filter_map(move |segment| match segment {
             Segment::Logical { kind, number, .. } if *kind == wanted => Some(*number),
@@ -112,7 +112,7 @@ impl Path {
     /// Reads a path that fills the bytes.
     ///
     /// # Errors
-    /// [`PacketError`] where a segment is cut off.
+    /// [`PacketError`] if a segment is incomplete.
     pub fn parse(bytes: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new(WHAT, bytes);
         let mut segments = Vec::new();
@@ -122,7 +122,7 @@ impl Path {
         Ok(Path(segments))
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         self.0.iter().flat_map(Segment::emit).collect()
     }
@@ -133,7 +133,7 @@ impl Path {
         Path::parse(fields.bytes(usize::from(words) * 2)?)
     }
 
-    /// Appends the length in words, then the path. Nothing of a path beyond 255 words.
+    /// Appends the length in words, then the path; nothing for a path beyond 255 words.
     pub(super) fn push_to(&self, bytes: &mut Vec<u8>) {
         let mut path = self.emit();
         path.truncate(usize::from(u8::MAX) * 2);
@@ -146,7 +146,7 @@ impl Path {
 }
 
 impl Segment {
-    /// A number, as narrow as it can be sent.
+    /// Creates a number, as narrow as it can be sent.
     pub const fn new(kind: LogicalKind, number: u16) -> Self {
         let width = if number > 0xFF { Width::Word } else { Width::Byte };
         Segment::Logical { kind, number, width }

@@ -1,4 +1,4 @@
-//! Frames out of the bytes of a TCP connection, in whatever portions they come.
+//! Frames from the bytes of a TCP connection, in any portions.
 
 use super::encapsulation::Frame;
 use super::fields::PacketError;
@@ -13,18 +13,18 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Bytes that have come.
+    /// Takes the received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         if self.broken.is_none() {
             self.bytes.extend(bytes);
         }
     }
 
-    /// The next whole frame.
+    /// Returns the next whole frame.
     ///
     /// # Errors
     /// [`PacketError`], from then on always: after a wrong header the start of the next one is not known, and the
-    /// connection has to be closed.
+    /// connection must be closed.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, PacketError> {
         if let Some(why) = self.broken {
             return Err(why);
@@ -40,7 +40,7 @@ impl Receiver {
         std::mem::take(if self.rest.is_empty() { &mut self.bytes } else { &mut self.rest })
     }
 
-    /// Bytes of a frame that is not whole. Where a connection ends with some, it was cut.
+    /// Returns the bytes of an incomplete frame. If a connection ends with some, it was truncated.
     pub const fn pending(&self) -> usize {
         self.bytes.len()
     }

@@ -5,11 +5,11 @@ use std::fmt;
 
 use super::message::Service;
 
-/// Of a frame. Codes that are not known are kept.
+/// Status of a frame. Unknown codes are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct EncapsulationStatus(u32);
 
-/// Of a CIP reply. Codes that are not known are kept.
+/// Status of a CIP reply. Unknown codes are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct GeneralStatus(u8);
 
@@ -20,7 +20,7 @@ pub struct StatusRow<C> {
     pub code: C,
     /// The meaning.
     pub meaning: &'static str,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 
@@ -29,11 +29,11 @@ pub struct StatusRow<C> {
 pub struct ExtendedStatusRow {
     /// The general status that it follows.
     pub general: GeneralStatus,
-    /// The first word behind it.
+    /// The first word after it.
     pub code: u16,
     /// The meaning.
     pub meaning: &'static str,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 
@@ -128,19 +128,19 @@ impl EncapsulationStatus {
     pub const OK: EncapsulationStatus = EncapsulationStatus(0);
     /// 01h: the device does not have the command.
     pub const UNSUPPORTED: EncapsulationStatus = EncapsulationStatus(0x01);
-    /// 03h: the data make no sense.
+    /// 03h: the data are invalid.
     pub const MALFORMED: EncapsulationStatus = EncapsulationStatus(0x03);
     /// 64h: the session is not registered.
     pub const NO_SESSION: EncapsulationStatus = EncapsulationStatus(0x64);
     /// 69h: another version of the protocol.
     pub const VERSION: EncapsulationStatus = EncapsulationStatus(0x69);
 
-    /// Any number is a status.
+    /// Creates it: any number is a status.
     pub const fn new(code: u32) -> Self {
         EncapsulationStatus(code)
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn code(self) -> u32 {
         self.0
     }
@@ -154,17 +154,17 @@ impl EncapsulationStatus {
 impl GeneralStatus {
     /// Done.
     pub const OK: GeneralStatus = GeneralStatus(0x00);
-    /// 01h: a connection was not opened or closed; the words behind it say why.
+    /// 01h: a connection was not opened or closed; the words after it tell why.
     pub const CONNECTION: GeneralStatus = GeneralStatus(0x01);
     /// 05h: there is no such object.
     pub const PATH_UNKNOWN: GeneralStatus = GeneralStatus(0x05);
     /// 08h: the object does not have the service.
     pub const NO_SERVICE: GeneralStatus = GeneralStatus(0x08);
-    /// 09h: beyond its range.
+    /// 09h: value out of range.
     pub const INVALID_VALUE: GeneralStatus = GeneralStatus(0x09);
     /// 0Ch: not in this state.
     pub const STATE: GeneralStatus = GeneralStatus(0x0C);
-    /// 0Eh: it can only be read.
+    /// 0Eh: read-only attribute.
     pub const NOT_SETTABLE: GeneralStatus = GeneralStatus(0x0E);
     /// 13h: the value is too short.
     pub const TOO_SHORT: GeneralStatus = GeneralStatus(0x13);
@@ -173,12 +173,12 @@ impl GeneralStatus {
     /// 15h: the value is too long.
     pub const TOO_LONG: GeneralStatus = GeneralStatus(0x15);
 
-    /// Any number is a status.
+    /// Creates it: any number is a status.
     pub const fn new(code: u8) -> Self {
         GeneralStatus(code)
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn code(self) -> u8 {
         self.0
     }

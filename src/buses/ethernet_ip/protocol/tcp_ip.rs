@@ -1,17 +1,17 @@
-//! The TCP/IP interface object (class F5h): where a device has its address from, and what it is (`P ODVA`).
+//! The TCP/IP interface object (class F5h): the source of a device's address, and the address (`P ODVA`).
 
 use core::net::Ipv4Addr;
 
 use super::fields::{Fields, PacketError, ascii, text};
 
-/// Attribute 3; 0 by default, which is what is stored. Bits that are not known are kept.
+/// Attribute 3; the default 0 means the stored address. Unknown bits are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ConfigurationControl(u32);
 
 /// Its bits 3 to 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum AddressSource {
-    /// 0: what is stored in the device.
+    /// 0: stored in the device.
     Stored,
     /// 1: BOOTP.
     Bootp,
@@ -26,9 +26,9 @@ pub enum AddressSource {
 pub struct InterfaceConfiguration {
     /// Its address; 0.0.0.0 for none.
     pub address: Ipv4Addr,
-    /// Of its network.
+    /// Network mask.
     pub mask: Ipv4Addr,
-    /// To other networks; 0.0.0.0 for none.
+    /// Gateway to other networks; 0.0.0.0 for none.
     pub gateway: Ipv4Addr,
     /// Name servers; 0.0.0.0 for none.
     pub name_servers: [Ipv4Addr; 2],
@@ -36,7 +36,7 @@ pub struct InterfaceConfiguration {
     pub domain: String,
 }
 
-/// Why a device could not be reached at such an address.
+/// Why a device could not be reached at an address.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum AddressError {
     /// 0.0.0.0, which is none.
@@ -105,7 +105,7 @@ impl ConfigurationControl {
         }
     }
 
-    /// The same with another source.
+    /// Returns the same with another source.
     pub const fn with(self, source: AddressSource) -> Self {
         let number = match source {
             AddressSource::Stored => 0,
@@ -121,11 +121,11 @@ impl InterfaceConfiguration {
     /// The attribute.
     pub const ATTRIBUTE: u16 = 5;
 
-    /// Reads the attribute: five addresses as numbers, their low byte first, and a text with its length in two bytes, filled
-    /// to whole words.
+    /// Parses the attribute: five addresses as numbers, low byte first, and a text with its length in two bytes, padded to
+    /// whole words.
     ///
     /// # Errors
-    /// [`PacketError`] where it is cut off or too long.
+    /// [`PacketError`] if it is incomplete or too long.
     pub fn parse(data: &[u8]) -> Result<Self, PacketError> {
         let mut fields = Fields::new("the interface configuration", data);
         let mut address = || fields.u32().map(Ipv4Addr::from);
@@ -176,7 +176,7 @@ impl InterfaceConfiguration {
         Ok(())
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub fn emit(&self) -> Vec<u8> {
         let [first, second] = self.name_servers;
         let addresses = [self.address, self.mask, self.gateway, first, second];
@@ -198,7 +198,7 @@ fn is_a_devices(address: Ipv4Addr) -> Result<(), AddressError> {
     let [first, ..] = address.octets();
     match first {
         _ if address.is_unspecified() => Err(AddressError::None),
-        // This network, the computer itself, groups and what is kept for later.
+        // This network, the computer itself, multicast groups and reserved addresses.
         0 | 127 | 224.. => Err(AddressError::Reserved(address)),
         _ => Ok(()),
     }
@@ -220,7 +220,7 @@ mod tests {
         configuration.check()
     }
 
-    /// First, last and broadcast addresses as `ipaddress.ip_network("192.168.1.64/26")` of Python has them: 64, 65…126, 127.
+    /// First, last and broadcast addresses as by `ipaddress.ip_network("192.168.1.64/26")` of Python: 64, 65…126, 127.
     #[test]
     fn an_address_is_one_that_a_device_can_have() {
         let own = |text: &str| -> Ipv4Addr { text.parse().unwrap() };

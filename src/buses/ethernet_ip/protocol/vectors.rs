@@ -1,5 +1,5 @@
-//! The packets of the reference, both ways; and packets that it does not have, put together by hand from the tables of
-//! fields. What is expected is never what the code under test has made.
+//! The packets of the reference, in both directions; and others, composed by hand from the tables of fields. Expected
+//! values never come from the code under test.
 
 use core::net::Ipv4Addr;
 use std::time::Duration;
@@ -96,7 +96,7 @@ fn the_published_requests() {
     assert!(matches!(Reply::parse(&[0x0E, 0, 0, 0]), Err(PacketError::Value { got: 0x0E, .. })));
 }
 
-/// A number may be sent wider than it has to be, and survives that; segments that are not known survive as they came.
+/// A number may be sent wider than necessary, which is preserved; unknown segments are preserved as received.
 #[test]
 fn every_path_survives() {
     for (label, text, segments) in [
@@ -176,7 +176,7 @@ fn the_published_connection() {
 }
 
 /// By hand, from the fields of the two replies: serial 0001, vendor 1234h, serial number ABCDh; then 0 words and a reserved
-/// byte, or the words of the path that are left and a reserved byte. Status 01, one word behind it, 0106h.
+/// byte, or the remaining words of the path and a reserved byte. Status 01, one word after it, 0106h.
 #[test]
 fn a_connection_ends_or_is_refused() {
     let text = "CE 00 00 00 01 00 34 12 CD AB 00 00 00 00";
@@ -215,7 +215,7 @@ fn the_published_network_parameters() {
         assert_eq!((parameters.kind(), parameters.priority()), (kind, NetworkPriority::Scheduled), "{word:04X}");
         assert_eq!((parameters.size(), parameters.is_variable(), parameters.redundant_owner()), (size, false, false));
     }
-    // 16 and 8 bytes of process data: 2 + 4 beside them to the target, 2 back.
+    // 16 and 8 bytes of process data: 2 + 4 in addition to the target, 2 back.
     assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Header)), [22, 14]);
     assert_eq!([16, 8].map(|data| data + IoPacket::overhead(RealTimeFormat::Modeless)), [18, 10]);
     assert_eq!(NetworkParameters::new(Multicast, NetworkPriority::Low, 512), None);
@@ -331,7 +331,7 @@ fn items_say_where_to_send() {
     }
 }
 
-/// Codes are told once each, and what is not in a table is said to be unknown.
+/// Each code is listed once, and an unknown one is reported as unknown.
 #[test]
 fn the_tables_of_status() {
     for (code, meaning) in [(0x05, "path unknown"), (0x09, "invalid value"), (0x0E, "attribute cannot be set")] {

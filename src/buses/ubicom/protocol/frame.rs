@@ -4,13 +4,13 @@
 pub const SYNC: u8 = 0x80;
 /// The address of the encoder.
 pub const NODE: u8 = 0x01;
-/// Longest payload that is taken for one. No message of the manual has more than five bytes (`U`).
+/// Longest payload accepted. No message of the manual has more than five bytes (`U`).
 pub const MAX_PAYLOAD: usize = 64;
 
-/// A frame whose checksum was right. What the payload means depends on the command.
+/// Frame with a correct checksum. The meaning of the payload depends on the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// The encoder it comes from or goes to.
+    /// Address of the encoder that sends or receives it.
     pub address: u8,
     /// Command byte; a reply has that of its request.
     pub command: u8,
@@ -24,10 +24,10 @@ pub enum FrameError {
     /// The first byte is not 80h.
     #[error("a frame begins with 80, not with {0:02X}")]
     Sync(u8),
-    /// Fewer or more bytes than the header says.
+    /// Fewer or more bytes than the header gives.
     #[error("{got} bytes where the frame has {expected}")]
     Length {
-        /// Bytes of a whole frame; of the shortest where there is no whole header.
+        /// Bytes of a complete frame; of the shortest if the header is incomplete.
         expected: usize,
         /// Bytes received.
         got: usize,
@@ -43,11 +43,11 @@ pub enum FrameError {
 }
 
 impl<'a> Frame<'a> {
-    /// Bytes around the payload: five before it, one behind it.
+    /// Bytes around the payload: five before it, one after it.
     pub const OVERHEAD: usize = 6;
 
-    /// Parses a frame. The whole slice is the frame; its length is that of the header, whatever examples in the manual
-    /// print.
+    /// Parses a frame. The whole slice is the frame; its length is that of the header, whatever the examples in the manual
+    /// show.
     ///
     /// # Errors
     /// [`FrameError`].
@@ -69,7 +69,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// The bytes on the line, checksum last.
+    /// Returns the bytes on the line, checksum last.
     pub fn emit(&self) -> Vec<u8> {
         // A payload has at most 64 bytes.
         let length = u16::try_from(self.payload.len()).unwrap_or(u16::MAX);
@@ -82,7 +82,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// The inverted sum of all bytes.
+/// Returns the inverted sum of all bytes.
 fn checksum(bytes: &[u8]) -> u8 {
     !bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
 }
@@ -145,7 +145,7 @@ mod tests {
         }
     }
 
-    /// Reference 5: the manual's example is a byte short.
+    /// Reference 5: the manual's example is a byte too short.
     #[test]
     fn the_length_of_the_header_counts() {
         let printed = [0x80, 0x01, 0x01, 0x02, 0x00, 0x00, 0x7B];

@@ -16,10 +16,10 @@ pub enum Command {
     Position,
 }
 
-/// A request without its address.
+/// Request without its address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Request {
-    /// 01h: a register's value.
+    /// 01h: reads a register.
     Read {
         /// Global address.
         register: u16,
@@ -28,17 +28,17 @@ pub enum Request {
     Write {
         /// Global address.
         register: u16,
-        /// Its value from now on.
+        /// Its new value.
         value: u8,
     },
     /// 03h: the position. The manual has one argument, 01h; others are kept.
     Position {
-        /// The byte behind the command.
+        /// The byte after the command.
         argument: u8,
     },
 }
 
-/// Why an encoder does not understand a request.
+/// Why an encoder rejects a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// Not one of the three commands.
@@ -68,11 +68,11 @@ pub enum Written {
 /// A reply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// To a read: the register's value.
+    /// Reply to a read: the register's value.
     Value(u8),
-    /// To a write.
+    /// Reply to a write.
     Written(Written),
-    /// To 03h.
+    /// Reply to 03h.
     Position(PositionWord),
 }
 
@@ -95,7 +95,7 @@ pub enum ReplyError {
         /// The value received.
         got: u8,
     },
-    /// It has the wrong number of bytes. Where it has as many as the request, it may be its echo.
+    /// It has the wrong number of bytes. If it has as many as the request, it may be its echo.
     #[error("{got} payload bytes instead of {expected}")]
     Length {
         /// Bytes of the reply.
@@ -106,7 +106,7 @@ pub enum ReplyError {
 }
 
 impl Command {
-    /// Its byte.
+    /// Returns its byte.
     pub const fn byte(self) -> u8 {
         match self {
             Command::Read => 0x01,
@@ -144,8 +144,8 @@ impl Command {
 impl Request {
     /// The position, as the manual asks for it.
     pub const POSITION: Request = Request::Position { argument: 0x01 };
-    /// Its answer tells in which order the encoder takes the two bytes of a register: see [`order_told_by`]. Sent in
-    /// the order low byte first.
+    /// Request whose reply shows the order of the two bytes of a register number: see [`order_told_by`]. Sent low byte
+    /// first.
     pub const PROBE: Request = Request::Read { register: Request::PROBE_REGISTER };
     /// The register that [`PROBE`](Self::PROBE) reads.
     pub const PROBE_REGISTER: u16 = 0x0001;
@@ -159,7 +159,7 @@ impl Request {
         }
     }
 
-    /// The frame for the line. The order of the register's two bytes is nowhere printed (`U`).
+    /// Returns the frame for the line. The order of the register's two bytes is not documented (`U`).
     pub fn emit(self, order: ByteOrder) -> Vec<u8> {
         let number = |register: u16| match order {
             ByteOrder::LowFirst => register.to_le_bytes(),
@@ -197,8 +197,8 @@ impl Request {
     }
 }
 
-/// The order of a register's two bytes that the answer to [`Request::PROBE`] tells: 02h is the bank of the data sheet in
-/// register 0001h, 01h the version of its profile in register 0100h. `None`: the encoder has something else there.
+/// Returns the order of a register's two bytes by the reply to [`Request::PROBE`]: 02h is the bank of the data sheet in
+/// register 0001h, 01h the version of its profile in register 0100h. `None`: the encoder has another value there.
 pub const fn order_told_by(answer: u8) -> Option<ByteOrder> {
     match answer {
         0x02 => Some(ByteOrder::LowFirst),
@@ -217,7 +217,7 @@ impl Written {
         }
     }
 
-    /// Its byte.
+    /// Returns its byte.
     pub const fn byte(self) -> u8 {
         match self {
             Written::Acknowledged => 0x90,
@@ -237,7 +237,7 @@ impl Reply {
         }
     }
 
-    /// The frame for the line.
+    /// Returns the frame for the line.
     pub fn emit(self) -> Vec<u8> {
         let payload = match self {
             Reply::Value(value) => vec![value],
@@ -250,7 +250,7 @@ impl Reply {
     /// Reads the reply to a command.
     ///
     /// # Errors
-    /// [`ReplyError`] where the frame is none.
+    /// [`ReplyError`] if the frame is not a reply.
     pub fn parse(frame: &Frame<'_>, command: Command) -> Result<Self, ReplyError> {
         if frame.address != NODE {
             return Err(ReplyError::Address { expected: NODE, got: frame.address });
@@ -321,7 +321,7 @@ mod tests {
         }
     }
 
-    /// The probe's frame read either way, and what each encoder answers.
+    /// The probe's frame read in both orders, and the replies of the encoders.
     #[test]
     fn the_answer_tells_the_order() {
         let bytes = Request::PROBE.emit(ByteOrder::LowFirst);

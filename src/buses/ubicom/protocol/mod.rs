@@ -26,7 +26,7 @@ const BAUD: Baud = Baud::B115200;
 
 /// The format of the line: 115200 8N1.
 pub const FORMAT: CharacterFormat = CharacterFormat { baud: BAUD, parity: Parity::None };
-/// Bits of a character: start, eight of data, a parity where there is one, stop.
+/// Returns the bits of a character: start, eight of data, a parity if there is one, stop.
 pub const fn character_bits(format: CharacterFormat) -> u64 {
     match format.parity {
         Parity::None => 10,
@@ -38,5 +38,5 @@ pub const fn character_bits(format: CharacterFormat) -> u64 {
 pub const REPLY_TIME_OUT: Duration = Duration::from_millis(100);
 /// The longest silence of an encoder while it calibrates (`U`).
 pub const CALIBRATION_TIME_OUT: Duration = Duration::from_secs(10);
-/// A frame that pauses for so long is over (`U`).
+/// Time after which a paused frame is over (`U`).
 pub const BYTE_TIME_OUT: Duration = Duration::from_millis(20);

@@ -1,6 +1,6 @@
-//! The position word: five bytes, the lowest first. What its bits say the encoder's frame tells.
+//! The position word: five bytes, lowest first. The encoder's frame defines its bits.
 
-/// A position word as it came; bits that no position has are kept.
+/// Position word as received; unused bits are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PositionWord(u64);
 
@@ -8,7 +8,7 @@ impl PositionWord {
     /// Bytes on the line.
     pub const BYTES: usize = 5;
 
-    /// Forty bits; `None` above.
+    /// Creates a word of forty bits; `None` above.
     pub const fn new(word: u64) -> Option<Self> {
         if word >> 40 == 0 { Some(PositionWord(word)) } else { None }
     }
@@ -25,7 +25,7 @@ impl PositionWord {
         [b0, b1, b2, b3, b4]
     }
 
-    /// All forty bits.
+    /// Returns all forty bits.
     pub const fn word(self) -> u64 {
         self.0
     }

@@ -1,6 +1,6 @@
-//! Frames out of a stream of bytes. 80h may stand within a payload, so that it begins a frame only where none is under
-//! way: after a whole frame, a damaged one, or silence (reference 2). How long silence has to last is the caller's
-//! matter: [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT).
+//! Frames from a stream of bytes. 80h may occur within a payload, so it begins a frame only if none is in progress: after a
+//! complete frame, a damaged one, or silence (reference 2). The caller decides how long silence must last:
+//! [`BYTE_TIME_OUT`](super::BYTE_TIME_OUT).
 
 use super::frame::{Frame, MAX_PAYLOAD, SYNC};
 
@@ -28,12 +28,12 @@ impl Receiver {
         Receiver { node, bytes: Vec::new(), skipped: 0 }
     }
 
-    /// Bytes that have come.
+    /// Takes the received bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend(bytes);
     }
 
-    /// The next whole frame. Bytes before it that belong to none are skipped.
+    /// Returns the next complete frame. Bytes before it that belong to none are skipped.
     pub fn next_frame(&mut self) -> Option<Vec<u8>> {
         loop {
             match self.head() {
@@ -57,12 +57,12 @@ impl Receiver {
         }
     }
 
-    /// A frame has begun and is not complete.
+    /// Returns whether a frame has begun and is not complete.
     pub fn is_waiting(&self) -> bool {
         !self.bytes.is_empty()
     }
 
-    /// Bytes so far that belonged to no frame.
+    /// Returns the number of bytes so far that belonged to no frame.
     pub const fn skipped(&self) -> u64 {
         self.skipped
     }
@@ -86,7 +86,7 @@ impl Receiver {
     }
 
     fn skip(&mut self) {
-        // At least one byte; then up to what may begin a frame.
+        // At least one byte; then up to a possible start of a frame.
         let rest = self.bytes.get(1..).unwrap_or_default();
         let count = 1 + rest.iter().position(|byte| *byte == SYNC).unwrap_or(rest.len());
         self.bytes.drain(..count);
@@ -103,7 +103,7 @@ mod tests {
 
     const READ: &str = "80 01 01 02 00 26 00 55";
     const VALUE: &str = "80 01 01 01 00 4B 31";
-    /// 80 01 stands within its payload.
+    /// 80 01 is within its payload.
     const TRICKY: &str = "80 01 03 05 00 80 01 01 01 00 F3";
 
     fn frames(receiver: &mut Receiver, text: &str) -> Vec<String> {
@@ -146,7 +146,7 @@ mod tests {
         assert!(receiver.is_waiting());
         assert_eq!(receiver.silence(), None);
         assert!(!receiver.is_waiting());
-        // The false beginning hides a whole frame until then.
+        // The false start hides a complete frame until then.
         assert_eq!(frames(&mut receiver, &format!("80 01 01 3F 00 {VALUE} {READ}")), [""; 0]);
         assert_eq!(receiver.silence().map(|frame| hex(&frame)).as_deref(), Some(VALUE));
         assert_eq!(receiver.silence().map(|frame| hex(&frame)).as_deref(), Some(READ));

@@ -1,5 +1,5 @@
-//! `do`: filter, preset, and the procedures with a person at the motor. Without a terminal the question what turns the
-//! motor cannot be asked; --yes then states that the motor does not need this encoder.
+//! `do`: filter, preset, and the guided procedures at the motor. Without a terminal the program cannot ask what turns the
+//! motor; --yes then states that the motor does not need this encoder.
 
 use std::path::Path;
 use std::time::Duration;
@@ -26,7 +26,7 @@ use crate::devices::biss::protocol::{Filter, KIND, PresetValue};
 use crate::devices::biss::state::explain as words;
 use crate::result_of;
 
-/// How long a person may take to turn the motor as required.
+/// Time for the user to turn the motor as required.
 const PERSON: Duration = Duration::from_secs(300);
 
 const ACTIONS: &str = "check, calibrate, wiegand-test, filter, preset, lead-back and mounting";
@@ -86,7 +86,7 @@ fn lead_back(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-/// Runs a procedure with a person at the motor, or only the measurement.
+/// Runs a guided procedure at the motor, or only the measurement.
 fn guided(common: &Common, output: &Output, act: &Do, run: MountingRun) -> Result {
     require_consent(&act.consent)?;
     let motor = if run.needs_motor() { motor(output, act)? } else { MotorSource::Other };
@@ -132,7 +132,7 @@ fn change(common: &Common, output: &Output, act: &Do, change: impl FnOnce(&mut R
     }
 }
 
-/// An operation that is done, with a result that is good where it has one.
+/// Returns whether an operation passed: it is done, and its result, if any, is good.
 fn passes(outcome: &Outcome) -> bool {
     match outcome {
         Outcome::Tested(report) => report.result.passes(),
@@ -145,8 +145,8 @@ fn passes(outcome: &Outcome) -> bool {
     }
 }
 
-/// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration
-/// nor test is named, both are meant.
+/// Parses the arguments of a mounting run: `calibrate wiegand-test save preset=ST,MT data=FILE`. If neither calibration nor
+/// test is given, both are run.
 fn mounting(output: &Output, words: &[&str]) -> Result<MountingRun> {
     let mut run = MountingRun::default();
     let (mut tests, mut saves) = (false, false);
@@ -221,7 +221,7 @@ impl<'a> PresetArguments<'a> {
         Ok(PresetArguments { singleturn, multiturn, parts })
     }
 
-    /// A multiturn that is not given is 0; where it is not preset, the stored one stays.
+    /// Returns the change. A multiturn that is not given is 0; if it is not preset, the stored one stays.
     fn change(&self, runner: &mut Runner) -> Result<Change> {
         let stored = |runner: &mut Runner| -> Result<String> {
             let Ok(range) = BissProfile::PRESET.parse::<RegisterRange>() else { return Ok("0".to_owned()) };

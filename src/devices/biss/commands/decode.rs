@@ -1,5 +1,5 @@
-//! `decode`: captured UBICOM frames, bridge packets, position frames and position words in words, offline. Which of them
-//! bytes are is found by what fits: the sum, the CRC. A position word has neither, so it is written as `position` prints it:
+//! `decode`: explains captured UBICOM frames, bridge packets, position frames and position words, offline. Their kind is
+//! determined by a matching sum or CRC. A position word has neither, so it is written as `position` prints it:
 //! `0x024698000`, nine digits, or `raw=610893824`.
 
 mod bridge;
@@ -37,8 +37,8 @@ pub(super) fn decode(output: &Output, words: &[String]) -> Result {
     show(output, &explained)
 }
 
-/// Nine hex digits with 0x, what has raw= in front or a final h is a position word; 11 hex digits, or others with 0x, are the
-/// bits of a frame; what is left are bytes.
+/// Parses the arguments. Nine hex digits with 0x, a `raw=` prefix or a final h make a position word; 11 hex digits, or
+/// others with 0x, are the bits of a frame; all others are bytes.
 fn captured(words: &[String]) -> Result<Vec<Captured>> {
     let is_bits = |word: &String| match digits(word) {
         (true, digits) => (3..=2 * position::BYTES).contains(&digits.len()),
@@ -62,7 +62,7 @@ fn captured(words: &[String]) -> Result<Vec<Captured>> {
     words.iter().map(one).collect()
 }
 
-/// In front of a position word as JSON and tables have it.
+/// Prefix of a position word in JSON and tables.
 const RAW: &str = "raw=";
 
 fn position_word(word: &str) -> Result<u64> {
@@ -74,7 +74,8 @@ fn position_word(word: &str) -> Result<u64> {
         .ok_or_else(|| Failure::Usage(format!("{word:?} is not a position word, such as 0x024698000 or raw=610893824")))
 }
 
-/// An odd number of digits is no bytes, and may be a position word, decimal or hexadecimal: that has to be said.
+/// Refuses a word with an odd number of digits: it is not bytes, but may be a decimal or hexadecimal position word, which
+/// must be marked.
 fn ensure_no_word(word: &str) -> Result<()> {
     let is_number = word.len() % 2 == 1 && word.len() > 1 && word.chars().all(|c| c.is_ascii_hexdigit());
     if !is_number {
@@ -93,7 +94,7 @@ fn digits(word: &str) -> (bool, &str) {
     }
 }
 
-/// Bytes are what fits; where nothing does, what they look like.
+/// Explains bytes by the protocol whose checksum matches, else by their form.
 fn explain(bytes: &[u8], requested: &mut Option<Request>) -> Vec<Explained> {
     let ubicom = ubicom::explain(bytes, requested);
     let bridge = bridge::explain(bytes);

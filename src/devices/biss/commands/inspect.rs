@@ -1,4 +1,4 @@
-//! Commands that only look: `identify`, `status`, `position`, `read`.
+//! Commands that only read: `identify`, `status`, `position`, `read`.
 
 use std::time::{Duration, Instant};
 
@@ -21,7 +21,7 @@ use crate::devices::biss::protocol::{KIND, Name, Role};
 use crate::devices::biss::state::explain as explained;
 use crate::result_of;
 
-/// Without a good frame for so long, nothing but noise comes.
+/// Time without a good frame after which the line counts as noise only.
 const NOISE: Duration = Duration::from_secs(5);
 
 pub(super) fn identify(common: &Common, output: &Output) -> Result {
@@ -52,7 +52,7 @@ fn manufacturer(identity: &Identity) -> String {
     text.map_or_else(|| hex_compact(bytes), str::to_owned)
 }
 
-/// Degrees Celsius, where the encoder has a register for them.
+/// Reads the temperature in degrees Celsius, if the encoder has a register for it.
 fn temperature(runner: &mut Runner, identity: &Identity) -> Result<Option<f64>> {
     let Some(register) = identity.description.with_role(Role::Temperature) else { return Ok(None) };
     let Some(range) = RegisterRange::new(register.address, register.width) else { return Ok(None) };
@@ -89,7 +89,7 @@ fn identity_text(identity: &Identity, celsius: Option<f64>) -> String {
     lines.text()
 }
 
-/// The number, and its bytes: which of them is the highest no manual says.
+/// Returns the serial number and its bytes: no manual says which byte is the highest.
 fn serial(identity: &Identity) -> String {
     format!("{} ({})", identity.serial_number, hex(&identity.serial_bytes))
 }
@@ -168,7 +168,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
             let reading = match came {
                 Ok(BissOutput::Position(reading)) => reading,
                 Ok(other) => return Err(unexpected(&other)),
-                // No line, and the next frame may be a good one.
+                // No line is printed, since the next frame may be good.
                 Err(error) if is_noise(&error) && good_at.elapsed() < NOISE => return Ok(false),
                 Err(error) => {
                     if let JobError::Device(Error::WrongWidths { frames, .. }) = &*error {
@@ -192,7 +192,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     ended
 }
 
-/// A frame came, and its checksum was wrong each time.
+/// Returns whether frames arrived, all with a wrong checksum.
 fn is_noise(error: &JobError) -> bool {
     matches!(error, JobError::Device(Error::Damaged { cause: Damage::Frame(_), .. }))
 }

@@ -32,7 +32,7 @@ use crate::profile::Body;
 use crate::sim::ConfigError;
 use crate::units::{CharacterFormat, Moment};
 
-/// How long to wait for a motor, or a shaft at rest, where no one can be told.
+/// Time to wait for a motor, or a shaft at rest, without a user.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// The commands for BiSS encoders.
@@ -146,7 +146,7 @@ impl Simulated for sim::Port {
     }
 }
 
-/// The registers that a user names.
+/// Returns the registers that a user names.
 fn item(text: &str) -> Result<RegisterRange> {
     text.parse().map_err(|error: ItemError| Failure::Usage(error.to_string()))
 }

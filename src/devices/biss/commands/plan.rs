@@ -1,4 +1,4 @@
-//! A plan for a BiSS encoder: shown, agreed to, carried out; and what came of it.
+//! The plan for a BiSS encoder: shown, confirmed, carried out; and its result.
 
 use std::time::Duration;
 
@@ -25,13 +25,13 @@ use crate::result_of;
 pub(super) const CALIBRATION: &str =
     "counterclockwise, then clockwise; if the clockwise run fails, the calibration table is lost";
 
-/// Makes a plan for a change; nothing is written.
+/// Makes a plan for a change. Writes nothing.
 pub(super) fn prepare(runner: &mut Runner, change: Change) -> Result<Prepared> {
     Ok(result_of!(runner.run(BissJob::Prepare(change))?, BissOutput::Prepared(prepared) => *prepared))
 }
 
-/// Asks for consent where needed, and carries the plan out. An empty plan sends nothing. Only the measurement decides
-/// when a run may start: `patience` is the time limit for that.
+/// Asks for consent if required, and carries the plan out. An empty plan sends nothing. The measurement alone decides when
+/// a run may start, within the time limit `patience`.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -56,13 +56,13 @@ pub(super) fn commit(
     Ok((WriteSummary { written, verified, write_cycles, backup: committed.backup }, outcomes))
 }
 
-/// The plan for a person and for a script: each operation old → new, and what it costs.
+/// Returns the plan as text and JSON: each operation old → new, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// The operations as JSON; registers that are saved together cost nothing by themselves.
+/// Returns the operations as JSON; registers that are saved together have no cost of their own.
 pub(super) fn operations(plan: &BissPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }

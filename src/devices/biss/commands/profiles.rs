@@ -1,4 +1,4 @@
-//! The commands about profiles of a BiSS encoder: `save`, `restore`, and reading it for a comparison.
+//! The commands for profiles of a BiSS encoder: `save`, `restore`, and reading the encoder for a comparison.
 
 use serde_json::json;
 
@@ -29,7 +29,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// The encoder as it is, for a comparison: refused where it shows what was never saved.
+/// Reads the encoder for a comparison; refused if it shows values that were never saved.
 pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
     Ok(Body::new(saved(common, BissJob::SaveToCompare)?))
 }

@@ -1,4 +1,4 @@
-//! Running jobs on a BiSS encoder, and what they give beside their results.
+//! Running jobs on a BiSS encoder, and their messages.
 
 use super::BissCommands;
 use crate::app::Given;
@@ -18,7 +18,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Biss>;
 
 impl Runs for Biss {
-    /// The way to the encoder.
+    /// Connection to the encoder.
     type Context = Transport;
     const COMMANDS: &'static dyn DeviceCommands = &BissCommands;
 
@@ -28,7 +28,7 @@ impl Runs for Biss {
 
     fn print_message(remark: &DeviceMessage) {
         match remark {
-            // They are counted, and told at the end.
+            // They are counted, and reported at the end.
             DeviceMessage::CrcErrors(_) => {}
             remark => words::remark(remark).iter().for_each(|text| say(&format!("{}\n", text.terminal()))),
         }
@@ -74,7 +74,7 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(result_of!(runner.run(BissJob::Identify)?, BissOutput::Identity(identity) => identity))
 }
 
-/// Frames with a wrong checksum that the last job met, beside those of its reading.
+/// Returns the number of frames with a wrong checksum in the last job, apart from those in its reading.
 pub(super) fn crc_errors(runner: &Runner) -> u64 {
     let count = |remark: &DeviceMessage| match remark {
         DeviceMessage::CrcErrors(count) => u64::from(*count),
@@ -83,12 +83,12 @@ pub(super) fn crc_errors(runner: &Runner) -> u64 {
     runner.remarks.iter().map(count).sum()
 }
 
-/// The registers of a run.
+/// Returns the registers of a run.
 pub(super) fn registers(runner: &mut Runner, range: RegisterRange) -> Result<Vec<u8>> {
     read_registers(runner, range).map(|read| read.bytes)
 }
 
-/// The registers of a run, and whether they may show what was never saved.
+/// Reads consecutive registers, and whether they may show values that were never saved.
 pub(super) fn read_registers(runner: &mut Runner, range: RegisterRange) -> Result<ReadRegisters> {
     match runner.run(BissJob::Read(range))? {
         BissOutput::Registers(read) if read.bytes.len() == usize::from(range.count()) => Ok(read),

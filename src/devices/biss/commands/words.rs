@@ -1,4 +1,4 @@
-//! The names of the kit encoder's registers, and the meaning of their bytes, in words.
+//! The names of the kit encoder's registers, and the meaning of their bytes, as text.
 
 use std::sync::LazyLock;
 
@@ -37,7 +37,7 @@ pub(super) fn quantity(register: &Register, bytes: &[u8]) -> Option<f64> {
     }
 }
 
-/// The word for a filter, as `do biss filter` takes it.
+/// Returns the word for a filter, as `do biss filter` takes it.
 pub(super) fn filter(filter: Filter) -> String {
     match filter {
         Filter::Balanced => "balanced".to_owned(),

@@ -18,7 +18,7 @@ pub(super) fn commit(
     let (store, is_virtual) = (context.store.clone(), context.is_virtual);
     let Commit { agreed, mut attendance } = commit;
     let Prepared { identity, plan, .. } = &agreed.prepared;
-    // Each step of an operation is told, and so where it begins.
+    // The steps of an operation are reported, including its start.
     let report = &mut |news: ProcedureProgress| {
         let (done, total) = (news.op as u64, plan.ops.len() as u64);
         let item = plan.ops.get(news.op).map(Op::item).unwrap_or_default();
@@ -86,7 +86,7 @@ impl Planned for Prepared {
         let mut document = backup_of(Body::new(profile));
         let note = document.note.get_or_insert_default();
         for (address, value) in &base.registers {
-            // A profile has no place for them.
+            // A profile cannot contain them.
             note.push_str(&format!("; {address} was 0x{value:02X}"));
         }
         document.emit()

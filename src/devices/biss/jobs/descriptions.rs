@@ -1,10 +1,10 @@
-//! The descriptions of encoders: the built-in ones, and those of the user's own before them.
+//! The descriptions of encoders: the user's own, then the built-in ones.
 
 use crate::devices::biss::protocol::{Descriptions, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// The built-in descriptions of encoders, those of the user's own before them, and what is wrong with those that cannot be
+/// Returns the descriptions of encoders, the user's own before the built-in ones, and the errors of those that cannot be
 /// used (a `DescriptionError` each).
 pub fn descriptions(store: &Store) -> (Descriptions, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");

@@ -6,7 +6,7 @@ use crate::buses::bridge::protocol::Data;
 use crate::devices::biss::procedures::{Frame, frames};
 use crate::devices::biss::protocol::Layout;
 
-/// Position frames of BiSS, with their checksums looked at.
+/// Position frames of BiSS, with their checksums checked.
 #[derive(Clone, Debug)]
 pub struct BissFrames {
     /// Layout of the frames.
@@ -45,7 +45,7 @@ mod tests {
     use crate::devices::biss::protocol::PositionData;
     use crate::worker::stream::Producer;
 
-    /// 20 000 frames a second; a frame of 43 clocks takes 21.5 µs at 2 MHz, beside 27 µs of waiting.
+    /// 20 000 frames per second; a frame of 43 clocks takes 21.5 µs at 2 MHz, and 27 µs of waiting.
     fn biss() -> BissFrames {
         BissFrames { layout: Layout::default(), clock_hz: 2_000_000, period_us: 50 }
     }
@@ -65,7 +65,7 @@ mod tests {
             for frame in &batch.samples {
                 let PositionData { multiturn, singleturn, error, warning } = frame.unwrap();
                 let position = i64::from(multiturn) * 131_072 + i64::from(singleturn);
-                // 50 revolutions a second are 327.68 steps a frame.
+                // 50 revolutions per second are 327.68 steps per frame.
                 assert!(before.is_none_or(|before| (327..=328).contains(&(position - before))) && !error && !warning);
                 before = Some(position);
             }

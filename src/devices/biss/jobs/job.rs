@@ -20,33 +20,33 @@ use crate::worker::commit::{ApprovedPlan, wear};
 
 /// Persistent writes after which an encoder counts as worn (manual 6.1: "1000 write cycles should not be exceeded").
 pub const WEAR_LIMIT: u64 = 1000;
-/// Persistent writes from which a person should know that they are numbered.
+/// Number of persistent writes from which the user is warned of wear.
 pub const WEAR_WARNING: u64 = 800;
 
 /// A job of a session with a BiSS encoder.
 #[derive(Debug)]
 pub enum BissJob {
-    /// Everything there is to see: for a window, after connecting.
+    /// Reads everything that is displayed: for a window, after connecting.
     Survey,
     /// Identifies the encoder.
     Identify,
     /// Mode, errors, warnings, temperature, filter.
     Status,
-    /// Checks the encoder against its description, its data sheet and the line, with a verdict a line.
+    /// Checks the encoder against its description, its data sheet and the line, with one verdict per item.
     Check,
     /// The position, once.
     Position,
-    /// Registers that follow each other; those of an area of data only at standstill.
+    /// Reads consecutive registers; those of a data area only at standstill.
     Read(RegisterRange),
-    /// All direct registers, 40h…7Fh.
+    /// Reads all direct registers, 40h…7Fh.
     ReadDirect,
-    /// All registers of a bank.
+    /// Reads all registers of a bank.
     ReadBank(u8),
-    /// All registers of an area of data; at standstill.
+    /// Reads all registers of a data area, at standstill.
     ReadArea(Area),
-    /// Everything that can be restored; at standstill. What was never saved is marked.
+    /// Reads everything that can be restored, at standstill. Values that were never saved are marked.
     Save,
-    /// The same for a comparison: refused where it may hold what was never saved.
+    /// The same for a comparison: refused if there may be values that were never saved.
     SaveToCompare,
     /// Makes a plan; writes nothing.
     Prepare(Change),
@@ -59,43 +59,44 @@ pub enum BissJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Make the encoder as the profile says.
+    /// Restores a profile.
     Restore {
         profile: Box<BissProfile>,
         options: RestoreOptions,
     },
-    /// Write registers: where, and which bytes. Those of an area of data are saved together.
+    /// Writes registers: addresses and bytes. Those of a data area are saved together.
     Write(Vec<(RegisterRange, Vec<u8>)>),
     SelectFilter(Filter),
-    /// Store this preset value, where one is given; and make the shaft's place what is stored then, where parts are.
+    /// Stores this preset value, if given; then sets the given parts of the position at the shaft's present place to the
+    /// stored value.
     Preset {
         value: Option<PresetValue>,
         /// Parts of the position.
         parts: Option<PresetParts>,
     },
-    /// Procedures led by a person: one, or all of a mounting.
+    /// Guided procedures: one, or all of a mounting.
     Guided {
         run: MountingRun,
         motor: MotorSource,
     },
 }
 
-/// Kinds of change that differ in what completes one that was cut off.
+/// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// A profile is restored: doing it again completes it.
+    /// Restore of a profile: repeating it completes it.
     Restore,
-    /// Edited bytes are written: those that are not yet stay edited.
+    /// Edited bytes: those not yet written remain edits.
     Bytes,
-    /// Procedures led by a person: those that are not done are begun again.
+    /// Guided procedures: those not completed are started again.
     Guided,
-    /// The same with a calibration among them: no backup holds its table.
+    /// The same with a calibration among them: no backup contains its table.
     Calibration,
-    /// A Wiegand test alone: it stores nothing but its result.
+    /// Wiegand test alone: it stores only its result.
     WiegandTest,
     /// Another filter.
     Filter,
-    /// A preset: its value, the shaft's place, or both.
+    /// Preset: its value, its execution, or both.
     Preset,
 }
 
@@ -113,14 +114,14 @@ impl Change {
     }
 }
 
-/// A plan, ready to be looked at.
+/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: BissPlan,
-    /// The encoder it is for.
+    /// The encoder that it is for.
     pub identity: Identity,
-    /// Persistent writes that this computer has seen the encoder take; `None` where the logbook does not tell.
+    /// Number of persistent writes of the encoder recorded on this computer; `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
     /// Registers that are as they should be already.
     pub unchanged: u64,
@@ -128,36 +129,36 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<RegisterRange>,
-    /// The device mode in which the profile was read that is restored, where it may hold what was never saved.
+    /// Device mode in which the profile to restore was read, if it may contain values that were never saved.
     pub unsaved: Option<DeviceMode>,
     /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
-    /// Values of another device's mounting that are written: they have to be set up again.
+    /// Values of another device's mounting that are written: they must be set up again.
     pub mounting_written: Vec<RegisterRange>,
 }
 
 impl Prepared {
-    /// Write cycles that the flash will have taken at least, where a person should know that they are numbered.
+    /// Returns the minimum number of write cycles of the flash, if the user should be warned of wear.
     pub fn wear(&self) -> Option<u64> {
         wear(self.cycles_seen, self.plan.write_cycles(), WEAR_WARNING)
     }
 }
 
-/// A plan that a person consented to.
+/// Plan with the user's consent.
 #[derive(Clone, Debug)]
 pub struct Commit {
     /// The plan, with the consent to it.
     pub agreed: ApprovedPlan<Prepared>,
-    /// The person at the motor.
+    /// The operator at the motor.
     pub attendance: OperatorPresence,
 }
 
-/// The person at the motor while a plan is carried out.
+/// Presence of an operator at the motor while a plan is carried out.
 #[derive(Clone, Debug)]
 pub enum OperatorPresence {
-    /// A person, whose answers arrive here.
+    /// An operator, whose answers arrive here.
     Attended(OperatorChannel),
-    /// No person.
+    /// No operator.
     Unattended(Unattended),
 }
 
@@ -187,7 +188,7 @@ pub struct ReadRegisters {
     pub start: RegisterAddress,
     /// Their values, in the order of their addresses.
     pub bytes: Vec<u8>,
-    /// The device mode in which they were read, where they may show what was never saved.
+    /// Device mode in which they were read, if they may show values that were never saved.
     pub unsaved: Option<DeviceMode>,
 }
 
@@ -200,7 +201,7 @@ pub enum DeviceMessage {
     Descriptions(Vec<StoreError>),
 }
 
-/// The step that a BiSS job is at. Its text is the command line's.
+/// Step of a running BiSS job. Its text is that of the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum JobStep {
     Register(RegisterAddress),
@@ -235,13 +236,13 @@ pub enum BissOutput {
     Registers(ReadRegisters),
     Area {
         banks: Vec<Bank>,
-        /// The device mode in which they were read, where they may show what was never saved.
+        /// Device mode in which they were read, if they may show values that were never saved.
         unsaved: Option<DeviceMode>,
     },
     Saved(Box<BissProfile>),
     Prepared(Box<Prepared>),
     Committed(Box<Committed>),
-    /// With the mode in which it was.
+    /// With the mode before.
     LedBack(DeviceMode),
 }
 

@@ -1,4 +1,4 @@
-//! A BiSS encoder at the end of a session, and its jobs.
+//! A BiSS encoder as seen by a session, and its jobs.
 
 mod commit;
 mod descriptions;
@@ -32,20 +32,20 @@ use crate::store::{Store, StoreError};
 use crate::worker::commit::cycles_seen;
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
-/// A BiSS encoder at the end of its wire.
+/// BiSS encoder with its connection.
 pub struct Biss {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<Descriptions>,
-    /// Descriptions of the user's own that cannot be used; told once.
+    /// The user's own descriptions that cannot be used; reported once.
     broken: Vec<StoreError>,
     /// Motor of a virtual encoder.
     motor: Option<Motor>,
-    /// Microseconds between the frames of a stream, where they are wished closer than one can ask for them.
+    /// Interval of the frames in a stream, in microseconds, if it is shorter than single requests allow.
     streamed_us: Option<u32>,
 }
 
-/// Positions that are wished as close as this come as a stream, where there is an adapter.
+/// Interval below which positions come as a stream, if there is an adapter.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Biss {
@@ -55,7 +55,7 @@ impl fmt::Debug for Biss {
 }
 
 impl Biss {
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
@@ -71,8 +71,8 @@ impl Biss {
 }
 
 impl Session<Biss> {
-    /// A session on an open wire, with the descriptions of `store`. With a motor the encoder lives in this process, and
-    /// its wear counts apart.
+    /// Creates a session on an open connection, with the descriptions of `store`. With a motor the encoder is a virtual one
+    /// in this process, and its writes are counted separately.
     pub fn over(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -233,12 +233,12 @@ impl Biss {
     ) -> Result<BissOutput, JobError> {
         self.ensure_identified(context)?;
         let bytes = read_registers(&mut self.master(context), start, count)?;
-        // Direct registers hold nothing that is entered first and saved later.
+        // Direct registers do not show values that are entered first and saved later.
         let unsaved = if start.bank().is_some() { self.unsaved(context)? } else { None };
         Ok(BissOutput::Registers(ReadRegisters { start, bytes, unsaved }))
     }
 
-    /// The device mode in which registers may show what was never saved.
+    /// Returns the device mode in which registers may show values that were never saved.
     fn unsaved(&mut self, context: &mut SessionContext) -> Result<Option<DeviceMode>, Error> {
         let mut master = self.master(context);
         let description = master.description()?;

@@ -1,4 +1,4 @@
-//! From a link URL to a session with a BiSS encoder.
+//! Opening a session with a BiSS encoder from a link URL.
 
 use std::sync::Arc;
 
@@ -14,18 +14,18 @@ use crate::store::Store;
 use crate::worker::open::{check_parameters, inside, leads_elsewhere, margin, open_bytes};
 use crate::worker::{OpenError, Session};
 
-/// A parameter for links whose scheme does not show whether there is an adapter.
+/// Link parameter for schemes that do not show whether there is an adapter.
 const BRIDGE: &str = "bridge";
 /// Checks a link to a BiSS encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
+/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to a BiSS encoder: `serial:` and `tcp:` lead to its configuration pin, `bridge:` to an adapter on its bus,
-/// `sim:` and `replay:` to the one or, with `bridge=on`, to the other.
+/// Opens a link to a BiSS encoder: `serial:` and `tcp:` to its configuration pin, `bridge:` to an adapter on its bus,
+/// `sim:` and `replay:` to the pin or, with `bridge=on`, to the adapter.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -42,7 +42,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Biss>, OpenError> {
     Ok(Session::over(wire, clock, station, store, motor))
 }
 
-/// The line, and the virtual encoder, which counts for a link to it alone.
+/// Returns the line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     let way = transport(url)?;
     let is_virtual = url.scheme == Scheme::Sim;
@@ -57,7 +57,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Simulated), OpenError> {
     if !is_virtual {
         return Ok((station, Simulated::new(way, &[])?));
     }
-    // Echo and order are the virtual encoder's: they are learned as with a real one.
+    // Echo and order are the virtual encoder's: they are detected as with a real one.
     (station.line.echo, station.order) = (Echo::Unknown, None);
     let line = [Transport::ConfigPin, Transport::Adapter].map(Transport::parameters).concat();
     let of_the_encoder = |name: &str| name != BRIDGE && (Config::KEYS.contains(&name) || !line.contains(&name));
@@ -75,7 +75,7 @@ fn transport(url: &LinkUrl) -> Result<Transport, OpenError> {
     }
 }
 
-/// Refuses what neither the line nor the virtual device has, and tells what needs an adapter in between.
+/// Refuses parameters that neither the line nor the virtual device has, and names those that need an adapter.
 fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
     let own = |way: Transport| {
         let line = way.parameters().into_iter().filter(|name| !Config::KEYS.contains(name));
@@ -92,7 +92,7 @@ fn check_virtual(query: &Query, way: Transport) -> Result<(), UrlError> {
     Err(UrlError::Unknown { name, scheme: Scheme::Sim.word(), known: known.join(", ") })
 }
 
-/// The virtual encoder as its parameters say, at the end of either way.
+/// The virtual encoder created from its parameters, behind the pin or the adapter.
 enum Simulated {
     Pin(Box<Config>),
     Bus(Box<Adapter>),

@@ -1,4 +1,4 @@
-//! From a change that a user wants to a plan. Reads; writes nothing, and leaves the device mode as it is.
+//! Makes a plan from a change. Reads; writes nothing, and leaves the device mode as it is.
 
 use std::collections::BTreeSet;
 
@@ -82,7 +82,7 @@ fn state(
     read_state(master, identity, banks, report)
 }
 
-/// Reads what the edits touch.
+/// Reads the registers that the edits change.
 fn edits_of(
     master: &mut Master<'_>,
     identity: &Identity,

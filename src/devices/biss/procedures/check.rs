@@ -1,5 +1,5 @@
-//! The device check: what an encoder says of itself, beside what its description, its data sheet and the line say, with a
-//! verdict a line. It writes nothing but the bank that is selected.
+//! The device check: the values of an encoder compared with its description, its data sheet and the line, with one verdict
+//! per item. It writes nothing except the bank selection.
 
 use super::survey::{Bits, Status, survey};
 use super::{Error, Identity, Master, PositionReading, Survey, Transport};
@@ -20,15 +20,15 @@ pub enum CheckStep {
     Identity,
     /// Errors, warnings, device mode, password.
     Status,
-    /// The position with its bits.
+    /// The position with its error and warning bits.
     Position,
-    /// The sums of the data sheet, and the frame that it tells.
+    /// The checksums of the data sheet, and its frame.
     DataSheet,
-    /// Temperature and supply, beside what the data sheet allows.
+    /// Temperature and supply, compared with the limits of the data sheet.
     Limits,
     /// The saved Wiegand test.
     Wiegand,
-    /// Readings of the position, and how many came damaged.
+    /// Readings of the position, and the number of damaged ones.
     Readings,
     /// Write cycles of the flash.
     Wear,
@@ -41,7 +41,7 @@ pub enum CheckFinding {
     Name(String),
     SerialNumber(String),
     Firmware(Firmware),
-    /// No description is for it.
+    /// No description matches it.
     Mismatch(Mismatch),
     Error(u8, Option<Name>),
     Warning(u8, Option<Name>),
@@ -51,76 +51,76 @@ pub enum CheckFinding {
     /// The password is set.
     Open,
     Position(PositionReading),
-    /// The position came with its error bit.
+    /// The position has its error bit set.
     ErrorBit,
-    /// The position came with its warning bit.
+    /// The position has its warning bit set.
     WarningBit,
-    /// No position that can be read.
+    /// No readable position.
     NoPosition,
     /// Both sums of the data sheet fit.
     SumsFit,
     /// A bank of the data sheet, or both together, cannot be relied upon.
     Sheet(EdsError),
-    /// There is no data sheet that this program knows.
+    /// There is no data sheet known to this program.
     NoSheet,
-    /// The frame of the data sheet is not that of the description: bits of turns and steps, of the one and of the other.
+    /// The frame of the data sheet differs from that of the description: bits of turns and steps.
     OtherFrame {
-        /// As the data sheet says.
+        /// Of the data sheet.
         sheet: (u8, u8),
-        /// As the description says.
+        /// Of the description.
         description: (u8, u8),
     },
-    /// Degrees Celsius, and what the data sheet allows.
+    /// Degrees Celsius, and the limits of the data sheet.
     Temperature {
         celsius: f64,
-        /// At least.
+        /// Lower limit.
         low: i32,
-        /// At most.
+        /// Upper limit.
         high: i32,
     },
-    /// Millivolts that the adapter measured when it switched the supply on, and what the data sheet allows.
+    /// Millivolts measured by the adapter when it switched the supply on, and the limits of the data sheet.
     Supply {
-        /// As it was.
+        /// Measured value.
         millivolt: u16,
-        /// At least.
+        /// Lower limit.
         low: u32,
-        /// At most.
+        /// Upper limit.
         high: u32,
     },
-    /// Milliamperes that the adapter measured, and what the data sheet allows.
+    /// Milliamperes measured by the adapter, and the limit of the data sheet.
     Current {
-        /// As it was.
+        /// Measured value.
         milliampere: u16,
-        /// At most.
+        /// Upper limit.
         high: u32,
     },
     /// The Wiegand test that was saved.
     Wiegand(WiegandResult),
     /// None was saved.
     NotTested,
-    /// Readings of the position that were asked for, and frames or replies that came damaged.
+    /// Number of readings of the position, and of damaged frames or replies.
     Readings {
         /// Number requested.
         requested: u32,
         /// Number damaged.
         damaged: u64,
     },
-    /// Write cycles that were seen, and what the flash stands.
+    /// Recorded write cycles, and the limit of the flash.
     Wear {
-        /// As many at least.
+        /// Minimum number of write cycles.
         seen: u64,
-        /// As many it stands.
+        /// Limit of write cycles.
         limit: u64,
     },
 }
 
-/// Readings of the position that tell how good the line is.
+/// Number of readings of the position for assessing the line.
 const READINGS: u32 = 50;
 
-/// Carries out the check. It ends early only when the line fails. `wear` is asked when it is known who is there.
+/// Runs the check. It ends early only if the line fails. `wear` is called once the encoder is identified.
 ///
 /// # Errors
-/// The line, or the user's wish.
+/// Errors of the exchange, or cancellation.
 pub fn check(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -248,11 +248,11 @@ fn value(sheet: &Eds, offset: u8) -> Option<EdsValue> {
     sheet.values().find(|(field, _)| field.offset == offset).map(|(_, value)| value)
 }
 
-/// The saved test; `None` for an encoder that has none.
+/// Checks the saved test; `None` for an encoder that has none.
 fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     let saved = survey.wiegand_saved?;
     let finding = match saved.emit() {
-        // As it leaves the factory: nothing is wrong with that, and nothing tells that the sensor is right.
+        // Factory state: this is no error, but nothing proves that the sensor works.
         [0, 0, 0, 0] => (Verdict::Skipped, CheckFinding::NotTested),
         _ if saved.passes() => (Verdict::Good, CheckFinding::Wiegand(saved)),
         _ => (Verdict::Bad, CheckFinding::Wiegand(saved)),
@@ -260,7 +260,7 @@ fn wiegand(survey: &Survey) -> Option<BissStepResult> {
     Some(BissStepResult::of(CheckStep::Wiegand, vec![finding]))
 }
 
-/// Reads the position again and again. A reading that does not come at all is damage as well.
+/// Reads the position repeatedly. A missing reading counts as damaged.
 fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     let before = master.station().line.damaged;
     let told_by_line = master.station().transport == Transport::ConfigPin;
@@ -268,7 +268,7 @@ fn readings(master: &mut Master<'_>) -> Result<BissStepResult, Error> {
     for _ in 0..READINGS {
         match master.position() {
             Ok(reading) => damaged += u64::from(reading.crc_errors),
-            // Each of its tries is counted there.
+            // The line counts each attempt.
             Err(Error::Damaged { .. }) if told_by_line => {}
             Err(Error::Damaged { .. } | Error::WrongWidths { .. } | Error::TooWide { .. }) => damaged += 1,
             Err(error) => return Err(error),

@@ -13,7 +13,7 @@ use crate::profile::DeviceError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RequestedItem {
     Read(RegisterAddress),
-    /// To take a value into a register.
+    /// Write a value to a register.
     Write(RegisterAddress, u8),
     Position,
 }
@@ -34,16 +34,16 @@ pub enum Error {
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nothing came back.
+    /// No reply.
     #[error("no reply while {requested} (attempts: {tries})")]
     NoReply {
         requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
-        /// Our own bytes came back: the adapter echoes, so the line itself works.
+        /// The sent bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
-    /// Something came back and was broken every time.
+    /// A reply came and was damaged every time.
     #[error("damaged reply while {requested} (attempts: {tries}): {cause}")]
     Damaged {
         requested: RequestedItem,
@@ -52,7 +52,7 @@ pub enum Error {
         /// Damage of the last reply.
         cause: Damage,
     },
-    /// Bytes keep arriving where there should be silence.
+    /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
     /// The adapter between us and the encoder.
@@ -63,7 +63,7 @@ pub enum Error {
     NoAcknowledge {
         /// Number of attempts.
         tries: u32,
-        /// The adapter could supply the encoder and was not told to.
+        /// The adapter could supply the encoder, but was not told to.
         supply_off: bool,
     },
     /// The data line stays low.
@@ -78,7 +78,7 @@ pub enum Error {
         /// Number of attempts.
         tries: u32,
     },
-    /// No frame has ever had a right checksum: the widths are not those of the encoder.
+    /// No frame ever had a right checksum: the widths are not those of the encoder.
     #[error("{frames} frames in a row have a wrong CRC: the encoder's have not {data_bits}+{crc_bits} bits")]
     WrongWidths {
         /// Number of frames.
@@ -94,10 +94,10 @@ pub enum Error {
         /// The frames differ: the shaft turns.
         moving: bool,
     },
-    /// The encoder answers, and not when it is asked for this register: it has none there.
+    /// The encoder replies, but not for this register: it does not have it.
     #[error("the encoder has no register {address}")]
     NoSuchRegister { address: RegisterAddress },
-    /// Registers of an area of data are not watched: they are read at standstill only.
+    /// Registers of a data area are not watched: they are read at standstill only.
     #[error("register {address} is data, which is not read while the shaft may turn")]
     NotWatched { address: RegisterAddress },
     /// The encoder did not take a value.
@@ -105,10 +105,10 @@ pub enum Error {
     Refused {
         address: RegisterAddress,
         value: u8,
-        /// The value that the register reads instead, if the way shows it.
+        /// The value that the register has instead, if the connection shows it.
         reads: Option<u8>,
     },
-    /// Whether a value was accepted is not known: reading the register back does not show it, or is not possible.
+    /// It is not known whether a value was accepted: reading the register back does not show it, or is not possible.
     #[error("whether 0x{value:02X} was written to register {address} is not known: {cause}")]
     Unclear {
         address: RegisterAddress,
@@ -116,7 +116,7 @@ pub enum Error {
         /// Why it is not known.
         cause: Box<Error>,
     },
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// Neither order of a register number's two bytes gives an answer that the manual knows.
@@ -125,17 +125,17 @@ pub enum Error {
         /// The reply to the probe.
         answer: u8,
     },
-    /// A position with more bits than the encoder is said to have.
+    /// A position with more bits than the known frame of the encoder.
     #[error("the position 0x{word:X} has more than {multiturn}+{singleturn} bits")]
     TooWide {
-        /// As it came.
+        /// As received.
         word: u64,
         /// Bits of the revolutions.
         multiturn: u8,
         /// Bits within a revolution.
         singleturn: u8,
     },
-    /// Registers behind the last that can be named.
+    /// Registers after the last address.
     #[error("{count} registers from {start} on are more than there can be")]
     OutOfRange {
         /// The first.
@@ -143,19 +143,19 @@ pub enum Error {
         /// Number of registers.
         count: usize,
     },
-    /// No description is for this encoder, nor for any.
+    /// Neither a description for this encoder nor a general one exists.
     #[error("no description fits the encoder, which says {0}")]
     NoDescription(Identity),
     /// The encoder has not been identified yet.
     #[error("the encoder was not identified")]
     NotIdentified,
-    /// The shaft turns where it must stand still.
+    /// The shaft turns but must stand still.
     #[error("the shaft moves")]
     Moving {
-        /// Revolutions a minute, above 0 clockwise; `None` where the encoder counts too few revolutions to tell.
+        /// Revolutions per minute, positive clockwise; `None` if the encoder counts too few turns to tell.
         rpm: Option<f64>,
     },
-    /// The encoder is in a device mode, in which its registers may show what was entered and never saved.
+    /// The encoder is in a device mode in which its registers may show values that were never saved.
     #[error("the encoder is in device mode {mode}")]
     NotInOperation { mode: DeviceMode },
     /// Values changed between the plan and its execution.
@@ -186,7 +186,7 @@ pub enum Error {
         /// Registers read.
         got: usize,
     },
-    /// The encoder does not return to operation, or does not give up its password.
+    /// The encoder does not return to operation, or keeps its password set.
     #[error("the encoder stays in device mode {mode}, or its password stays set")]
     StaysUnlocked {
         /// The mode that it reports.
@@ -201,7 +201,7 @@ impl Error {
     }
 }
 
-/// Returns the register of a request over the configuration pin; the bank selection where the number names none.
+/// Returns the register of a request over the configuration pin; the bank selection if the number names none.
 pub(super) fn asked_register(number: u16) -> RegisterAddress {
     RegisterAddress::from_global(number).unwrap_or(RegisterAddress::BANK_SELECT)
 }
@@ -223,13 +223,13 @@ pub enum Damage {
         /// Number of bytes.
         bytes: usize,
     },
-    /// A frame that is no reply to what was asked.
+    /// A frame that is not a reply to the request.
     #[error(transparent)]
     Reply(#[from] ReplyError),
-    /// A reply came before our own bytes, or these came back changed.
+    /// A reply arrived before the echo, or the echo was changed.
     #[error("no correct echo before the reply")]
     Echo,
-    /// The checksum of a position frame.
+    /// The checksum of a control frame, as reported by the adapter.
     #[error(transparent)]
     Frame(#[from] FrameError),
     /// The checksum of a control frame, as the adapter says.
@@ -266,7 +266,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// The encoder can no longer be reached: trying anything else makes no sense.
+    /// Returns whether the encoder can no longer be reached, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_)

@@ -1,5 +1,5 @@
-//! Errors and warnings of a position that does not contain them: over the configuration pin they are in registers
-//! (reference UBICOM 4), which are read with it.
+//! Errors and warnings for positions that do not contain them: over the configuration pin they are in registers (reference
+//! UBICOM 4), which are read in addition.
 
 use std::time::Duration;
 
@@ -13,17 +13,17 @@ pub(super) struct Flags {
     error: Option<bool>,
     warning: Option<bool>,
     looked_at: Moment,
-    /// The errors were looked at last.
+    /// If set, the error register was read last.
     errors_last: bool,
 }
 
-/// While positions are polled one of the two registers is read so often: hardly any position is missing for it.
+/// Interval of reading one of the two registers while positions are polled: hardly any position is lost for it.
 const EVERY: Duration = Duration::from_millis(500);
 
-/// Reads the position once, with what the encoder says of it now.
+/// Reads the position once, with the present errors and warnings of the encoder.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> {
     let reading = master.position()?;
     if reading.frame.is_some() {
@@ -33,7 +33,7 @@ pub fn read_position(master: &mut Master<'_>) -> Result<PositionReading, Error> 
     with_flags(master, reading)
 }
 
-/// The position with what the registers said last; one of them is looked at when it is time.
+/// Adds the flags read last to the position; reads one of the registers if it is due.
 pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> Result<PositionReading, Error> {
     let now = master.now();
     let flags = match master.station().flags {
@@ -53,7 +53,7 @@ pub(super) fn with_flags(master: &mut Master<'_>, reading: PositionReading) -> R
     Ok(PositionReading { error: flags.error, warning: flags.warning, ..reading })
 }
 
-/// A bit of the register is set; `None` where the encoder has no such register.
+/// Returns whether a bit of the register is set; `None` if the encoder has no such register.
 fn is_set(master: &mut Master<'_>, role: Role) -> Result<Option<bool>, Error> {
     let (description, firmware) = (master.station().description.clone(), master.station().firmware.unwrap_or_default());
     let register = description.as_ref().and_then(|own| own.with_role(role)).filter(|own| firmware >= own.since);

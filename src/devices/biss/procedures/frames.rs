@@ -1,4 +1,4 @@
-//! The frames of a stream, each with its checksum looked at: what a reading says, or why there is none.
+//! The frames of a stream with checked checksums: each as a reading, or the reason why there is none.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -14,10 +14,10 @@ pub enum NoReading {
     /// No encoder acknowledged.
     #[error("no encoder acknowledges on the bus")]
     NoAcknowledge,
-    /// Its bits are no frame: a wrong checksum, a line that does not move.
+    /// Its bits are not a frame: a wrong checksum, or a line that does not change.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The adapter says something that this version does not know.
+    /// The adapter reports a status unknown to this version.
     #[error("the adapter has no frame, status {}", .0.byte())]
     Status(BissStatus),
 }
@@ -28,9 +28,9 @@ pub type Frame = Result<PositionData, NoReading>;
 /// Frames of a stream that follow each other at equal distances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameRun {
-    /// Number of the first, counted from the start of the stream; what is missing counts.
+    /// Number of the first frame, counted from the start of the stream, including missing ones.
     pub first: u64,
-    /// When that was taken.
+    /// Time of the first frame.
     pub at: Moment,
     /// Nanoseconds from one to the next.
     pub period_ns: i64,
@@ -44,7 +44,7 @@ pub struct FrameRun {
     pub is_split_known: bool,
     /// The clock of the bus in hertz.
     pub clock_hz: u32,
-    /// They cannot come as close to each other as was wished.
+    /// The frames cannot have the requested interval.
     pub is_limited: bool,
 }
 
@@ -59,23 +59,23 @@ impl FrameRun {
     ) -> Self {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         let is_limited = period_ns > i64::from(wished_us) * 1000;
-        // Not before the stream began.
+        // Not before the start of the stream.
         let at = Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs()));
         FrameRun { first, at, period_ns, lost, frames, layout, is_split_known, clock_hz, is_limited }
     }
 
-    /// A stream begins.
+    /// Returns whether a stream begins.
     pub const fn is_stream_start(&self) -> bool {
         self.first == self.lost
     }
 
-    /// Each frame with the moment in which it was taken.
+    /// Returns each frame with the moment in which it was taken.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, &Frame)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.frames).map(move |(number, frame)| (self.at + period * number, frame))
     }
 
-    /// Frames with a wrong checksum.
+    /// Returns the number of frames with a wrong checksum.
     pub fn crc_errors(&self) -> usize {
         let is_wrong = |frame: &&Frame| matches!(frame, Err(NoReading::Frame(FrameError::Crc { .. })));
         self.frames.iter().filter(is_wrong).count()

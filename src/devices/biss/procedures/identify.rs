@@ -16,29 +16,29 @@ use crate::devices::biss::protocol::{
 };
 use crate::profile::Unknown;
 
-/// An encoder as it says who it is.
+/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identity {
     /// The kind that the encoder reports.
     pub kind: Kind,
-    /// The serial number, high byte first (`U`), as a decimal number; empty where there is no register for it.
+    /// The serial number, high byte first (`U`), as a decimal number; empty if there is no register for it.
     pub serial_number: String,
-    /// Its bytes as they came.
+    /// Its bytes as received.
     pub serial_bytes: Vec<u8>,
-    /// Its firmware; `None` where its registers do not tell.
+    /// Its firmware; `None` if it has no registers for it.
     pub firmware: Option<Firmware>,
     /// Description of its registers.
     pub description: Arc<Description>,
     /// A description of the same manufacturer is for another device ID.
     pub mismatch: Option<Mismatch>,
-    /// Its data sheet; `None` where it has none that this program knows.
+    /// Its data sheet; `None` if it has none known to this program.
     pub data_sheet: Option<DataSheet>,
     /// The frame of its position.
     pub layout: Layout,
     pub source: FrameSource,
-    /// The adapter, over that way.
+    /// The adapter, if it is connected over one.
     pub adapter: Option<Hello>,
-    /// Which byte of a register's number comes first over the configuration pin.
+    /// Byte order of register numbers over the configuration pin.
     pub order: Option<ByteOrder>,
 }
 
@@ -51,7 +51,7 @@ pub enum FrameSource {
     Description,
     /// The user, in the link.
     Given,
-    /// The checksum of its frames, while the shaft turned: how many bits are turns is not known.
+    /// Checksum of the frames while the shaft turned: the number of turn bits is not known.
     Checksum,
     /// Assumed: that of the kit encoder.
     Assumed,
@@ -74,15 +74,15 @@ pub struct DataSheet {
     pub common: DataSheetBank,
     /// The encoder's bank.
     pub encoder: DataSheetBank,
-    /// The frame that both tell, or why they do not.
+    /// The frame given by both banks, or why there is none.
     pub layout: Result<Layout, EdsError>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataSheetBank {
-    /// Its number.
+    /// Number of the bank.
     pub bank: u8,
-    /// Its registers, as they came.
+    /// Its registers as received.
     pub bytes: [u8; 64],
     /// Its content, if the checksum is right.
     pub eds: Result<Eds, EdsError>,
@@ -119,13 +119,13 @@ impl Identity {
     }
 }
 
-/// In the common bank: where the bank about the encoder is.
+/// Position in the common bank of the number of the encoder bank.
 const ENCODER_BANK: usize = 0x14;
 
-/// Asks who is there, and how its position comes; both are known from then on.
+/// Identifies the encoder and its frame; both are known from then on.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn identify(master: &mut Master<'_>, types: &Descriptions) -> Result<Identity, Error> {
     identify_with(master, types, &mut Registers::default())
 }
@@ -211,7 +211,7 @@ fn read_kind(master: &mut Master<'_>, registers: &mut Registers) -> Result<Kind,
     })
 }
 
-/// A description of the same manufacturer and profile that is for another device.
+/// Returns a description of the same manufacturer and profile that is for another device.
 fn near_miss(types: &Descriptions, kind: &Kind) -> Option<Mismatch> {
     let is_near = |own: &Kind| own.manufacturer == kind.manufacturer && own.profile == kind.profile;
     types
@@ -228,7 +228,7 @@ fn firmware_of(description: &Description, registers: &Registers) -> Option<Firmw
     }
 }
 
-/// The two banks, where the profile is the one whose data sheet this program knows.
+/// Reads the two banks, if the profile is the one whose data sheet this program knows.
 fn read_data_sheet(
     master: &mut Master<'_>,
     profile: ProfileId,

@@ -1,7 +1,7 @@
-//! The host's side of the line: what is asked again, what is read back, and what is asked twice. One exchange is in
-//! [`ubicom`] or [`bus`].
+//! The host's side of the line: repeating requests, reading back, and reading twice. A single exchange is in [`ubicom`] or
+//! [`bus`].
 //!
-//! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
+//! A read is repeated, at most five times and for at most eight seconds; a write is never repeated blindly.
 
 mod bus;
 mod stream;
@@ -22,8 +22,8 @@ use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
-/// How often a register must be silent beside one that answers before it counts as missing: a bad line loses single
-/// answers.
+/// Number of missing replies, while another register replies, after which a register counts as missing: a bad line loses
+/// single replies.
 const SILENCES: u32 = 3;
 
 /// The host's side of the line to a BiSS encoder, over either way.
@@ -34,32 +34,32 @@ pub struct Master<'a> {
 
 /// An exchange that gave no answer.
 enum ExchangeError {
-    /// Nothing came back but, maybe, our own bytes.
+    /// No reply, except possibly the echo.
     Silence {
-        /// Our own bytes came back.
+        /// The sent bytes came back.
         echo_heard: bool,
     },
-    /// Something came back and is broken.
+    /// A reply arrived damaged.
     Damage(Damage),
     /// The bus has no frame.
     NoFrame(NoFrame),
 }
 
-/// The end of one exchange. The outer error ends everything; the inner one may be retried.
+/// Result of one exchange. The outer error is final; the inner one may be retried.
 type Attempt<T> = Result<Result<T, ExchangeError>, Error>;
 
 /// An encoder's reaction to a value.
 enum WriteReaction {
     Yes,
-    /// It refused; with what the register gives back, where the way tells that.
+    /// It refused; with the value that the register returns, if the connection shows it.
     No(Option<u8>),
 }
 
 impl<'a> Master<'a> {
-    /// A master on this line, for one job: it has its patience before it.
+    /// Creates a master for one job, with the whole time limit ahead.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
-        // The encoder may have restarted since the last one.
+        // The encoder may have restarted since the last job.
         station.bank = None;
         Master { line: SerialLine::new(ctx), station }
     }
@@ -72,7 +72,7 @@ impl<'a> Master<'a> {
     /// Returns the description of the encoder's registers.
     ///
     /// # Errors
-    /// [`Error::NotIdentified`] before that is known.
+    /// [`Error::NotIdentified`] before the encoder is identified.
     pub fn description(&self) -> Result<Arc<Description>, Error> {
         self.station.description.clone().ok_or(Error::NotIdentified)
     }
@@ -81,7 +81,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Waits; ends early when the user wishes.
+    /// Waits; ends early when cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -89,7 +89,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Runs `work`, which returns the device to a safe state; a request to end is ignored meanwhile.
+    /// Runs `work`, which returns the device to a safe state; cancellation is ignored meanwhile.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.shield(true);
         let result = work(self);
@@ -97,12 +97,12 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Sets whether a request to end is ignored; returns the previous setting.
+    /// Sets whether cancellation is ignored; returns the previous setting.
     pub(super) fn shield(&mut self, shielded: bool) -> bool {
         self.line.shield(shielded)
     }
 
-    /// Runs `work`, which an encoder may leave unanswered for this long; reading is repeated until then.
+    /// Runs `work`, during which an encoder may not reply for this long; reads are repeated until then.
     pub fn with_patience<T>(&mut self, patience: Duration, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.patience.replace(patience);
         let result = work(self);
@@ -110,7 +110,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Runs `work`, which reads something that is kept; every register has to come twice.
+    /// Runs `work`, which reads values to be stored; every register must give the same value twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -118,10 +118,10 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a register. Where the line has damaged something in this session, its value has to come twice.
+    /// Reads a register. If the line has damaged anything in this session, it must give the same value twice.
     ///
     /// # Errors
-    /// When every try failed, when there is no such register, or when the user wished an end.
+    /// If every attempt failed, the register does not exist, or the user cancelled.
     pub fn read(&mut self, address: RegisterAddress) -> Result<u8, Error> {
         self.be_ready()?;
         let requested = RequestedItem::Read(address);
@@ -132,10 +132,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Reads registers one after the other, by their global addresses: behind a bank comes the next.
+    /// Reads registers one after the other by their global addresses, across the end of a bank.
     ///
     /// # Errors
-    /// As [`read`](Self::read); [`Error::OutOfRange`] behind the last that there can be.
+    /// As [`read`](Self::read); [`Error::OutOfRange`] after the last address.
     pub fn read_run(&mut self, start: RegisterAddress, count: usize) -> Result<Vec<u8>, Error> {
         let none = || Error::OutOfRange { start, count };
         let count_16 = u16::try_from(count).map_err(|_| none())?;
@@ -145,12 +145,12 @@ impl<'a> Master<'a> {
         places.into_iter().map(|address| self.read(address)).collect()
     }
 
-    /// Writes a register. Where no answer tells whether it was taken, it is read back as far as that tells; only what was
-    /// not taken is sent again.
+    /// Writes a register. If no reply shows whether the value was accepted, it is read back if that can show it; it is sent
+    /// again only if it was not accepted.
     ///
     /// # Errors
-    /// [`Error::Refused`]; [`Error::Unclear`] where nothing tells whether it was taken, as with a command; or it was not
-    /// taken after five tries. With [`Error::Cancelled`] it was not.
+    /// [`Error::Refused`]; [`Error::Unclear`] if nothing shows whether it was accepted, as with a command; or it was not
+    /// accepted after five attempts. After [`Error::Cancelled`] it was not written.
     pub fn write(&mut self, address: RegisterAddress, value: u8) -> Result<(), Error> {
         self.be_ready()?;
         let requested = RequestedItem::Write(address, value);
@@ -183,7 +183,7 @@ impl<'a> Master<'a> {
             if !self.station.tells_back(address) {
                 return Err(unclear(failed));
             }
-            // From here on the line has to tell what happened, also when the user wishes an end.
+            // From here on the result must be determined, even after cancellation.
             match self.shielded(|master| master.read(address)) {
                 Ok(reads) if reads == value => return Ok(()),
                 Ok(_) => failure?,
@@ -195,7 +195,7 @@ impl<'a> Master<'a> {
     /// Reads the position.
     ///
     /// # Errors
-    /// When every try failed, or when the user wished an end; [`Error::TooWide`] where it does not fit the widths.
+    /// If every attempt failed, or the user cancelled; [`Error::TooWide`] if it does not fit the widths.
     pub fn position(&mut self) -> Result<PositionReading, Error> {
         if self.station.transport == Transport::ConfigPin {
             return self.ask(RequestedItem::Position, |master| master.pin_position_once());
@@ -207,7 +207,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// A frame of so many bits as it comes over an adapter, unchecked, right-justified.
+    /// Reads a frame of this many bits over an adapter, unchecked, right-justified.
     pub(super) fn frame(&mut self, data_bits: u8, crc_bits: u8) -> Result<u64, Error> {
         self.be_ready_for(data_bits, crc_bits)?;
         self.ask(RequestedItem::Position, |master| master.frame_once()).map(|(raw, _)| raw)
@@ -262,7 +262,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Asks like [`ask`](Self::ask); on a line that has damaged something before, the reply has to come twice.
+    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the reply must come twice.
     fn read_confirmed(
         &mut self,
         requested: RequestedItem,
@@ -291,7 +291,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Prepares the line for the next attempt; returns `failed` when there is to be none.
+    /// Prepares the line for the next attempt; returns `failed` if there is none.
     fn may_try_again(&mut self, tries: u32, trouble: ExchangeError, failed: Error) -> Result<(), Error> {
         self.station.noisy |= matches!(trouble, ExchangeError::Damage(_));
         let quality = &mut self.station.line.quality;
@@ -307,18 +307,18 @@ impl<'a> Master<'a> {
             return Err(failed);
         }
         match trouble {
-            // Frames come one after the other, good or bad, and late packets are told by their number.
+            // Frames follow in sequence, good or bad, and late packets are recognised by their number.
             ExchangeError::Damage(Damage::Frame(_)) => {}
             _ if self.station.transport == Transport::Adapter => self.pause()?,
             ExchangeError::Silence { .. } => self.line.hear_late(&mut self.station.line, tries, BYTE_TIME_OUT)?,
-            // A frame that the encoder still waits for the end of is over after that.
+            // After this time, an incomplete frame in the encoder has timed out.
             _ => self.station.line.quiet_until = self.now() + BYTE_TIME_OUT,
         }
         Ok(())
     }
 
-    /// A register gave no answer: whether another one does, again and again, so that it is this one that is not there.
-    /// Who is known to be silent for long is not asked.
+    /// Checks, after a register gave no reply, whether another one replies repeatedly, so that only this one is missing.
+    /// Not done if the encoder may be silent for long.
     fn is_silent_only_there(&mut self, address: RegisterAddress) -> Result<bool, Error> {
         if address == RegisterAddress::BANK_SELECT || self.line.patience.is_some() {
             return Ok(false);

@@ -1,4 +1,4 @@
-//! The encoder's memory: banks, whole areas of data, and all that can be restored. Areas of data are not touched while the
+//! The encoder's memory: banks, data areas, and everything that can be restored. Data areas are not accessed while the
 //! shaft turns (manual 6.5).
 
 use std::time::Duration;
@@ -13,22 +13,21 @@ use crate::devices::biss::profile::{Bank, BissProfile, DataImage, ListedBank, Pr
 use crate::devices::biss::protocol::{Area, Descriptions, DeviceMode, RegisterAddress};
 use crate::profile::Unknown;
 
-/// Positions that say whether the shaft stands still, and the time between two.
+/// Number of positions for detecting standstill; the interval is below.
 const READINGS: usize = 3;
 const BETWEEN: Duration = Duration::from_millis(100);
-/// Bits of counted revolutions with which no motor comes round unseen in the time of the readings: at 12,000 rpm it turns
+/// Bits of counted turns with which a motor cannot complete the range unnoticed between readings: at 12,000 rpm it turns
 /// forty times.
 const COUNTED: u8 = 7;
-/// A shaft that moves by no more than a revolution's 8192nd part stands still: the position trembles (`U`).
+/// Motion up to 1/8192 of a revolution counts as standstill: the position jitters (`U`).
 const TREMBLE: u64 = 8192;
 
-/// How to treat values that were entered in a device mode and never saved: the encoder shows them as if they were
-/// stored.
+/// How to treat values that were entered in a device mode and never saved: the encoder shows them as if they were stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unsaved {
-    /// They are saved, and the profile says so.
+    /// They are read, and the profile is marked.
     Marked,
-    /// Nothing is read: they would be compared as the encoder's content.
+    /// They are refused: they would be compared as the encoder's content.
     Refused,
 }
 
@@ -39,10 +38,10 @@ pub enum ReadStage {
     Bank(u8),
 }
 
-/// Reads the position three times, a tenth of a second apart, and gives the last when the shaft stands still.
+/// Reads the position three times, a tenth of a second apart, and returns the last if the shaft stands still.
 ///
 /// # Errors
-/// [`Error::Moving`], or what reading gives.
+/// [`Error::Moving`], or errors of reading.
 pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Error> {
     let first = master.position()?;
     let mut readings = vec![first];
@@ -61,8 +60,8 @@ pub fn ensure_standstill(master: &mut Master<'_>) -> Result<PositionReading, Err
     }
 }
 
-/// Revolutions a minute between the first and the last of them, above 0 clockwise; `None` where a shaft could have come
-/// round unseen between two of them.
+/// Returns the revolutions per minute between the first and the last reading, positive clockwise; `None` if a shaft could
+/// have completed the range unnoticed between two of them.
 fn speed(readings: &[PositionReading]) -> Option<f64> {
     let (first, last) = (readings.first()?, readings.last()?);
     if first.multiturn_bits < COUNTED || !first.is_split_known {
@@ -70,23 +69,23 @@ fn speed(readings: &[PositionReading]) -> Option<f64> {
     }
     let range = 1_i64.checked_shl((first.multiturn_bits + first.singleturn_bits).into())?;
     let steps = last.position() as i64 - first.position() as i64;
-    // The short way round.
+    // The shorter way round.
     let steps = (steps + range / 2).rem_euclid(range) - range / 2;
     let turns = steps as f64 / f64::powi(2.0, first.singleturn_bits.into());
     let minutes = last.at.since(first.at).as_secs_f64() / 60.0;
     (minutes > 0.0).then(|| turns / minutes)
 }
 
-/// Steps between two positions, the short way round: a shaft at rest may tremble across zero.
+/// Returns the steps between two positions, the shorter way round: a shaft at rest may jitter across zero.
 fn distance(a: u64, b: u64, range: Option<u64>) -> u64 {
     let straight = a.abs_diff(b);
     range.map_or(straight, |range| straight.min(range.saturating_sub(straight)))
 }
 
-/// Reads registers that follow each other; those of an area of data only at standstill.
+/// Reads consecutive registers; those of a data area only at standstill.
 ///
 /// # Errors
-/// [`Error::Moving`], or what reading gives.
+/// [`Error::Moving`], or errors of reading.
 pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8) -> Result<Vec<u8>, Error> {
     let in_area = master.station().description.as_ref().is_some_and(|own| own.area_at(start).is_some());
     if in_area {
@@ -95,10 +94,10 @@ pub fn read_registers(master: &mut Master<'_>, start: RegisterAddress, count: u8
     certainly(master, |master| master.read_run(start, count.into()))
 }
 
-/// Reads an area of data; the shaft stands still.
+/// Reads a data area; the shaft must stand still.
 ///
 /// # Errors
-/// What reading gives.
+/// Errors of reading.
 pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(u8)) -> Result<Vec<Bank>, Error> {
     let mut banks = Vec::new();
     for number in area.banks() {
@@ -112,7 +111,7 @@ pub fn read_area(master: &mut Master<'_>, area: &Area, progress: &mut dyn FnMut(
 /// Reads an area of data for itself.
 ///
 /// # Errors
-/// [`Error::Moving`], or what reading gives.
+/// [`Error::Moving`], or errors of reading.
 pub fn read_area_surely(
     master: &mut Master<'_>,
     area: &Area,
@@ -126,7 +125,7 @@ pub fn read_area_surely(
 /// discard entered values.
 ///
 /// # Errors
-/// The line, [`Error::Moving`], or [`Error::NotInOperation`] where unsaved values are refused.
+/// Errors of the exchange, [`Error::Moving`], or [`Error::NotInOperation`] if unsaved values are refused.
 pub fn save(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -167,8 +166,8 @@ pub fn save(
     })
 }
 
-/// A line that has damaged something while this was read may have damaged more, unseen: then all is read again, and has
-/// to come twice.
+/// Reads again if the line has damaged anything meanwhile, because it may have damaged more unnoticed: then everything must
+/// come twice.
 fn certainly<T>(
     master: &mut Master<'_>,
     mut read: impl FnMut(&mut Master<'_>) -> Result<T, Error>,
@@ -178,7 +177,7 @@ fn certainly<T>(
     if was_sure || !master.station().reads_twice() { Ok(value) } else { master.thoroughly(read) }
 }
 
-/// A profile of an encoder with these data, which were read in this device mode where that is not operation.
+/// Creates the profile of an encoder with these data, with the device mode in which they were read if it was not operation.
 pub fn profile_of(survey: &Survey, data: Vec<DataImage>, unsaved: Option<DeviceMode>) -> BissProfile {
     let identity = &survey.identity;
     let sheets = identity.data_sheet.iter().flat_map(|sheet| [&sheet.common, &sheet.encoder]);

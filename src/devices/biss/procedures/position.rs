@@ -1,4 +1,4 @@
-//! The position as a person or a plot takes it, and registers that are watched beside it.
+//! Positions for display and plotting, and registers that are watched at the same time.
 
 use super::flags::with_flags;
 use super::{Damage, Error, FrameRun, Master};
@@ -16,12 +16,12 @@ pub struct PositionReading {
     pub turns: u32,
     /// Place within the revolution, in parts of 2 to the power of [`singleturn_bits`](Self::singleturn_bits).
     pub steps: u32,
-    /// The encoder says that the position is invalid; `None` where nothing tells. Over the configuration pin its register
-    /// does, which is looked at beside the position.
+    /// The error bit: the position is invalid; `None` if it is not known. Over the configuration pin it is read from a
+    /// register in addition to the position.
     pub error: Option<bool>,
-    /// The encoder warns; `None` where nothing tells.
+    /// The warning bit; `None` if it is not known.
     pub warning: Option<bool>,
-    /// Frames with a wrong CRC that came before it, since the last reading.
+    /// Number of frames with a wrong CRC since the last reading.
     pub crc_errors: u32,
     /// Bits of the revolutions, 0…32.
     pub multiturn_bits: u8,
@@ -30,12 +30,12 @@ pub struct PositionReading {
     /// Whether the number of turn bits is known; otherwise turns and steps are only the upper and the lower part of the
     /// position.
     pub is_split_known: bool,
-    /// The whole frame that it came in, with its flags and its CRC; `None` over the configuration pin.
+    /// The whole frame, with its flags and its CRC; `None` over the configuration pin.
     pub frame: Option<Word>,
 }
 
 impl PositionReading {
-    /// A reading at a moment, without anything that only one way tells.
+    /// Creates a reading without the data that only one kind of connection has.
     pub(super) fn new(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             at,
@@ -51,7 +51,7 @@ impl PositionReading {
         }
     }
 
-    /// A reading that came in a frame with a right checksum.
+    /// Creates a reading from a frame with a right checksum.
     pub fn in_frame(at: Moment, reading: &PositionData, layout: &Layout) -> Self {
         PositionReading {
             error: layout.has_error_bit().then_some(reading.error),
@@ -61,7 +61,7 @@ impl PositionReading {
         }
     }
 
-    /// The position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
+    /// Returns the position word as it was received: the bits of the turns above those of the steps, without flags and CRC.
     pub const fn raw(&self) -> Word {
         Word { value: self.position(), bits: self.multiturn_bits + self.singleturn_bits }
     }
@@ -71,12 +71,12 @@ impl PositionReading {
         (self.turns as u64) << self.singleturn_bits | self.steps as u64
     }
 
-    /// Degrees within the revolution, from 0 up to 360; `None` where nothing tells what a revolution is.
+    /// Returns the degrees within the revolution, from 0 up to 360; `None` if the steps per revolution are not known.
     pub fn angle(&self) -> Option<f64> {
         self.is_split_known.then(|| self.degrees())
     }
 
-    /// Degrees within the revolution, from 0 up to 360.
+    /// Returns the degrees within the revolution, from 0 up to 360.
     pub fn degrees(&self) -> f64 {
         f64::from(self.steps) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
@@ -91,33 +91,33 @@ impl PositionReading {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sample {
     Position(PositionReading),
-    /// Frames came, and none with a right checksum.
+    /// Frames arrived, none with a right checksum.
     Missed {
-        /// When the last one came.
+        /// Time of the last frame.
         at: Moment,
         /// Number of CRC errors, including frames that were requested again.
         crc_errors: u32,
     },
     /// Frames that an adapter streams.
     Frames(FrameRun),
-    /// Registers that are watched beside the position.
+    /// Registers that are watched in addition to the position.
     Watched(WatchedReading),
 }
 
 /// Registers that are watched, as they were read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// When the answer was there.
+    /// Time of the reply.
     pub at: Moment,
     pub range: RegisterRange,
-    /// Their values, in the order of their addresses, or why there are none: no such register, or data.
+    /// Their values in the order of addresses, or why there are none: no such register, or data.
     pub value: Result<Vec<u8>, Error>,
 }
 
-/// Reads the position once; that frames were damaged is an answer too, as long as there have been good ones.
+/// Reads the position once. Damaged frames are a valid result if good ones have been received before.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     match master.position() {
         Ok(reading) if reading.frame.is_some() => Ok(Sample::Position(reading)),
@@ -129,10 +129,10 @@ pub fn read_sample(master: &mut Master<'_>) -> Result<Sample, Error> {
     }
 }
 
-/// Reads watched registers once; that there are none, or that they are data, is an answer too.
+/// Reads watched registers once. Missing registers, or registers of a data area, are a valid result.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_watched(master: &mut Master<'_>, what: RegisterRange) -> Result<WatchedReading, Error> {
     let description = master.station().description.clone();
     let of_area = |address| description.as_ref().is_some_and(|own| own.area_at(address).is_some());

@@ -1,4 +1,4 @@
-//! Values of registers as they were read, byte for byte, and the reading of what a description names.
+//! Values of registers as read, byte by byte, and reading the registers of a description.
 
 use std::collections::BTreeMap;
 
@@ -10,18 +10,18 @@ use crate::devices::biss::protocol::{Decoded, Description, Firmware, Register, R
 pub struct Registers(BTreeMap<RegisterAddress, u8>);
 
 impl Registers {
-    /// The value of one.
+    /// Returns the value of one.
     pub fn get(&self, address: RegisterAddress) -> Option<u8> {
         self.0.get(&address).copied()
     }
 
-    /// A run of them, by global address; `None` where one was not read.
+    /// Returns consecutive registers by global address; `None` if one was not read.
     pub fn run(&self, start: RegisterAddress, count: u8) -> Option<Vec<u8>> {
         let first = start.global();
         (first..first.saturating_add(count.into())).map(|at| self.get(RegisterAddress::from_global(at)?)).collect()
     }
 
-    /// The bytes of a described register; `None` where one was not read.
+    /// Returns the bytes of a described register; `None` if one was not read.
     pub fn bytes(&self, register: &Register) -> Option<Vec<u8>> {
         self.run(register.address, register.width)
     }
@@ -42,7 +42,7 @@ impl Registers {
         }
     }
 
-    /// All of them, by ascending address.
+    /// Returns all registers by ascending address.
     pub fn iter(&self) -> impl Iterator<Item = (RegisterAddress, u8)> {
         self.0.iter().map(|(address, value)| (*address, *value))
     }
@@ -73,11 +73,11 @@ impl Registers {
         self.read(master, register.address, register.width)
     }
 
-    /// Reads all registers of a description that this firmware has and that are not read yet. Returns the addresses at
-    /// which the encoder has none regardless.
+    /// Reads all registers of a description that this firmware has and that are not read yet. Returns the addresses that
+    /// the encoder does not have regardless.
     ///
     /// # Errors
-    /// The line.
+    /// Errors of the exchange.
     pub(super) fn read_described(
         &mut self,
         master: &mut Master<'_>,
@@ -105,7 +105,7 @@ impl Registers {
     /// Reads the registers with these roles, as far as the encoder has them.
     ///
     /// # Errors
-    /// The line.
+    /// Errors of the exchange.
     pub(super) fn read_roles(
         &mut self,
         master: &mut Master<'_>,
@@ -126,7 +126,7 @@ impl Registers {
     }
 }
 
-/// The register can be read of an encoder with this firmware; of one that does not tell it, only what every firmware has.
+/// Returns whether a register can be read with this firmware; if the firmware is not known, whether every firmware has it.
 fn has(register: &Register, firmware: Option<Firmware>) -> bool {
     register.access.reads() && firmware.unwrap_or_default() >= register.since
 }

@@ -20,14 +20,14 @@ use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Moment, Parity, SupplyVoltage};
 
 parameters! {
-    /// The configuration pin, as a link says.
+    /// Parameters of the configuration pin in a link.
     pub struct PinParameters: UrlError {
-        /// Speed: what serial ports can be set to; the port itself may have fewer.
+        /// Baud rates of serial ports; the port itself may have fewer.
         pub baud: Baud = FORMAT.baud, "baud" => Checked(Expected::BitRate { low: 300, high: 4_000_000 }, read_baud),
             "settings_card.baud" like "115200";
         /// Parity.
         pub parity: Parity = FORMAT.parity, "parity" => Parity::WORDS;
-        /// Which byte of a register's number comes first; `None`: it is probed.
+        /// Byte order of register numbers; `None`: it is detected.
         pub order: Option<ByteOrder> = None, "order" => Words(&[
             ("auto", None), ("low-first", Some(ByteOrder::LowFirst)), ("high-first", Some(ByteOrder::HighFirst)),
         ]);
@@ -41,15 +41,15 @@ parameters! {
 parameters! {
     /// Limits for late replies, from the link.
     pub struct LineParameters: UrlError {
-        /// How much later than usual a reply may arrive; `None` for the default of the link.
+        /// Additional delay allowed for a reply; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
     }
 }
 
 parameters! {
-    /// The bus behind an adapter, as a link says.
+    /// Parameters of the bus behind an adapter in a link.
     pub struct BusParameters: UrlError {
-        /// The clock of BiSS: slow enough for long cables where none is wished.
+        /// Clock of BiSS: by default slow enough for long cables.
         pub clock_hz: u32 = 1_000_000, "clock" => CLOCK, "connect.biss_clock";
         /// Supply of the encoder by the adapter; `None` for none.
         pub millivolt: Option<u16> = None, "voltage" => Maybe(Millivolts(Supply::RANGE));
@@ -59,7 +59,7 @@ parameters! {
 }
 
 parameters! {
-    /// The frame of an encoder that does not tell it, as a link says.
+    /// Parameters in a link for the frame of an encoder that does not report it.
     pub struct FrameParameters: UrlError {
         /// Bits of turns.
         pub multiturn: Option<u8> = None, "mt" => Maybe(Whole(Quantity::Bits, 0..=32)), "connect.biss_turns" like "16";
@@ -71,7 +71,7 @@ parameters! {
     }
 }
 
-/// The way to the encoder.
+/// Connection to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transport {
     /// UBICOM over its configuration pin: registers by their global address.
@@ -81,7 +81,7 @@ pub enum Transport {
 }
 
 impl Transport {
-    /// The link parameters that mean something over it.
+    /// Returns the link parameters that mean something over it.
     pub fn parameters(self) -> Vec<&'static str> {
         match self {
             Transport::ConfigPin => [PinParameters::KEYS, LineParameters::KEYS, FrameParameters::KEYS].concat(),
@@ -93,38 +93,38 @@ impl Transport {
 /// The state of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// The way to the encoder.
+    /// Connection to the encoder.
     pub transport: Transport,
-    /// Speed and parity on the configuration pin. The encoder has 115200 8N1 and nothing to set; what stands between it and
-    /// us, a converter or a radio link, may have another.
+    /// Baud rate and parity on the configuration pin. The encoder uses 115200 8N1 only; a converter or a radio link in
+    /// between may use another format.
     pub format: CharacterFormat,
-    /// Silences, echo and damage: what every line has.
+    /// Silence, echo and damage on the line.
     pub line: LineState,
-    /// Which byte of a register's number comes first over the configuration pin; `None` until it was probed.
+    /// Byte order of register numbers over the configuration pin; `None` until it is detected.
     pub order: Option<ByteOrder>,
     /// Time limit of a reply, besides the time of its bytes and the margin.
     pub timeout: Duration,
-    /// The clock of BiSS in hertz, as wished; the adapter takes the nearest that it has.
+    /// Requested clock of BiSS in hertz; the adapter uses the nearest one that it supports.
     pub clock_hz: u32,
-    /// The clock of BiSS in hertz as the adapter has set it; `None` before.
+    /// Clock of BiSS in hertz as set by the adapter; `None` before.
     pub actual_clock_hz: Option<u32>,
-    /// The encoder's supply, where the adapter is to switch it.
+    /// Supply of the encoder, if the adapter is to switch it.
     pub supply: Option<Supply>,
-    /// The adapter, over that way.
+    /// The adapter, if connected over one.
     pub adapter: AdapterState,
-    /// The description of its registers; `None` before it was identified.
+    /// The description of its registers; `None` before identification.
     pub description: Option<Arc<Description>>,
     /// The encoder's firmware, as it was identified.
     pub firmware: Option<Firmware>,
-    /// The frame as the encoder's data sheet tells it, or what stands for that.
+    /// The frame from the encoder's data sheet, or its substitute.
     pub layout: Option<Layout>,
-    /// The frame as the user gives it, for an encoder that does not tell it.
+    /// The frame given by the user, for an encoder that does not report it.
     pub given: Option<Layout>,
     /// Source of the frame; `None` before the encoder was identified.
     pub(super) source: Option<FrameSource>,
-    /// Read values are kept: each has to be read twice, even on a line that seems good.
+    /// Set while values to be stored are read: each must be read twice, even on a line that seems good.
     pub(super) thorough: bool,
-    /// Replies and frames came damaged.
+    /// Replies and frames arrived damaged.
     pub(super) noisy: bool,
     /// Setting of the adapter's bus.
     pub(super) bus: Option<Bus>,
@@ -142,23 +142,24 @@ pub struct Station {
     pub(super) streamed_until: Option<Time>,
     /// When a register was last written.
     pub(super) written_at: Option<Moment>,
-    /// A write ended early and could not be led back: a store, a calibration or a restart may be under way.
+    /// A write ended early and the encoder could not be returned to operation: a store, a calibration or a restart may be
+    /// running.
     pub unfinished: bool,
 }
 
 /// The encoder's supply as an adapter gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
-    /// Millivolts wished.
+    /// Millivolts requested.
     pub millivolt: u16,
-    /// Millivolts and milliamperes measured when it was switched on; `None` before.
+    /// Millivolts and milliamperes measured when the supply was switched on; `None` before.
     pub measured: Option<(u16, u16)>,
 }
 
 impl Supply {
-    /// Until registers can be asked: data sheet, 02:0Eh.
+    /// Time until registers can be read: data sheet, 02:0Eh.
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Millivolts that every version of the kit encoder stands (manual, chapter 2: 4.75 to 12.5 V).
+    /// Millivolts allowed for every version of the kit encoder (manual, chapter 2: 4.75 to 12.5 V).
     const RANGE: std::ops::RangeInclusive<u16> = 4_750..=12_500;
 
     /// Returns the supply voltage of a kit encoder with its limits.
@@ -207,10 +208,10 @@ impl Station {
         }
     }
 
-    /// A line as the parameters of its link say.
+    /// Creates the station from the parameters of its link.
     ///
     /// # Errors
-    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the line are ignored.
     pub fn from_query(query: &Query, way: Transport, margin: Duration) -> Result<Self, UrlError> {
         let pairs = query.pairs();
         let (pin, bus) = (PinParameters::read(pairs)?, BusParameters::read(pairs)?);
@@ -224,7 +225,8 @@ impl Station {
         Ok(station)
     }
 
-    /// The frame of the position: as the encoder's data sheet says, else its description, else that of the kit encoder.
+    /// Returns the frame of the position: from the encoder's data sheet, else from its description, else that of the kit
+    /// encoder.
     pub fn frame(&self) -> Layout {
         let described = || self.description.as_ref().and_then(|description| description.layout().cloned());
         self.layout.clone().or_else(described).unwrap_or_default()
@@ -237,7 +239,7 @@ impl Station {
         self.forget_settings();
     }
 
-    /// An adapter that was reset has neither a setting of its bus nor the supply switched on.
+    /// Forgets the bus settings and the supply, which an adapter loses when it is reset.
     pub(super) fn forget_settings(&mut self) {
         (self.bank, self.bus) = (None, None);
         if let Some(supply) = &mut self.supply {
@@ -255,13 +257,13 @@ impl Station {
         self.source.is_none_or(FrameSource::is_known)
     }
 
-    /// Once is not enough: a sum lets some pairs of flipped bits through.
+    /// Returns whether values must be read twice: a checksum misses some pairs of flipped bits.
     pub(super) fn reads_twice(&self) -> bool {
         self.thorough || self.noisy
     }
 
-    /// Returns whether reading a register back proves that it was written. The value of a command register does not:
-    /// the same command may have been given before.
+    /// Returns whether reading a register back proves that it was written. The value of a command register does not: the
+    /// same command may have been given before.
     pub(super) fn tells_back(&self, address: RegisterAddress) -> bool {
         if address == RegisterAddress::BANK_SELECT {
             return true;
@@ -289,7 +291,7 @@ impl fmt::Display for Station {
 }
 
 impl FrameParameters {
-    /// The frame; the checksum is the usual one where none is given.
+    /// Returns the frame; the usual checksum applies if none is given.
     fn layout(self, query: &Query) -> Result<Option<Layout>, Refused> {
         let alone = |name: &str, allowed| Refused::new(name, query.get(name).unwrap_or_default(), allowed);
         let Some(singleturn) = self.singleturn else {
@@ -297,13 +299,13 @@ impl FrameParameters {
             return other.map_or(Ok(None), |name| Err(alone(name, Expected::OnlyWith("st"))));
         };
         let crc = self.crc.unwrap_or_else(|| Crc::new(Crc::POSITION, 0, true).ok());
-        // 32 and 32 bits leave no room for flags and checksum.
+        // 32 and 32 bits leave no space for flags and checksum.
         let layout = Layout::new(self.multiturn.unwrap_or(0), singleturn, true, true, crc);
         layout.map(Some).map_err(|_| alone("st", Expected::ShortFrame))
     }
 }
 
-/// `Some(None)`: the frames have none.
+/// Parses a checksum. `Some(None)`: the frames have none.
 fn read_crc(text: &str) -> Option<Option<Crc>> {
     if text == "none" {
         return Some(None);
@@ -385,8 +387,8 @@ mod tests {
         }
     }
 
-    /// Manual, appendix 9.1: bank select, mode, password and the data areas keep what they are given; the rest are
-    /// commands, cannot be written, or are not described.
+    /// Manual, appendix 9.1: bank select, mode, password and the data areas keep the values written; the rest are commands,
+    /// cannot be written, or are not described.
     #[test]
     fn reading_back_tells_of_registers_that_keep_what_they_are_given() {
         let mut station = Station::new(Transport::ConfigPin, Duration::ZERO);

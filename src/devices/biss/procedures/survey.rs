@@ -20,12 +20,12 @@ pub struct Status {
     pub celsius: Option<f64>,
     /// The filter of the position.
     pub filter: Option<Filter>,
-    /// The position, with the error and warning bit where the way has them; `None` where it gave none.
+    /// The position, with the error and warning bit if they are available; `None` if there was none.
     pub position: Option<PositionReading>,
 }
 
 impl Status {
-    /// The device mode, where that is not operation: registers may show what was entered and never saved.
+    /// Returns the device mode if it is not operation: registers may show values that were never saved.
     pub fn unsaved_mode(&self) -> Option<DeviceMode> {
         self.mode.filter(|mode| *mode != DeviceMode::OPERATION)
     }
@@ -34,9 +34,9 @@ impl Status {
 /// A register of bits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Bits {
-    /// All of them.
+    /// All bits.
     pub raw: u64,
-    /// Those that are set, the lowest first, with what the description says of each.
+    /// The bits that are set, lowest first, with their names in the description.
     pub set: Vec<(u8, Option<Name>)>,
 }
 
@@ -46,28 +46,28 @@ pub struct Survey {
     pub identity: Identity,
     pub status: Status,
     pub calibration: Option<CalibrationStatus>,
-    /// The last Wiegand test since power came.
+    /// The last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
     /// The factory's Wiegand test.
     pub wiegand_production: Option<WiegandResult>,
-    /// The Wiegand test that was saved in the encoder, as it stood when power came.
+    /// The Wiegand test saved in the encoder, as of power-up.
     pub wiegand_saved: Option<WiegandResult>,
     /// Preset value of the position.
     pub preset: Option<PresetValue>,
-    /// All that was read, byte for byte.
+    /// All values read, byte by byte.
     pub registers: Registers,
     /// Registers of the description that the encoder does not have.
     pub missing: Vec<RegisterAddress>,
 }
 
 const STATUS: [Role; 6] = [Role::Mode, Role::Password, Role::Errors, Role::Warnings, Role::Temperature, Role::Filter];
-/// Behind the error code of a Wiegand test: the last result, the factory's, the saved one.
+/// Offset of the results of a Wiegand test from its error code: the last one, the factory's, the saved one.
 const WIEGAND_RESULTS: u8 = 1;
 
 /// Reads how an encoder is that was identified before.
 ///
 /// # Errors
-/// The line; an encoder that was not identified.
+/// Errors of the exchange; an encoder that was not identified.
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     let description = master.description()?;
     let firmware = master.station().firmware;
@@ -80,7 +80,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
 /// Reads all that the encoder's description names, and the position.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn survey(
     master: &mut Master<'_>,
     types: &Descriptions,
@@ -91,7 +91,7 @@ pub fn survey(
     look_around(master, identity, registers, progress)
 }
 
-/// All but who is there; `registers` are those that were read for that.
+/// Reads everything except the identity; `registers` are those already read for it.
 pub(super) fn look_around(
     master: &mut Master<'_>,
     identity: Identity,

@@ -5,9 +5,9 @@ use std::time::Duration;
 use super::{Error, Master};
 use crate::devices::biss::protocol::{Crc, Layout, LayoutError, data_bits_of};
 
-/// As many bits as a frame has at most, data and checksum.
+/// Maximum number of bits of a frame, data and checksum.
 const CLOCKED: u8 = 64;
-/// Most frames that are looked at, and the time from one to the next.
+/// Maximum number of frames examined, and the interval between them.
 const FRAMES: usize = 200;
 const BETWEEN: Duration = Duration::from_millis(2);
 /// Bits within a revolution at most.
@@ -18,7 +18,7 @@ const MOST: u8 = 32;
 /// fit a word of 32 count as one turn.
 ///
 /// # Errors
-/// [`Error::WidthsUnknown`] where no length fits, or the shaft stands still; the line.
+/// [`Error::WidthsUnknown`] if no length fits, or the shaft stands still; errors of the exchange.
 pub(super) fn find_widths(master: &mut Master<'_>) -> Result<Layout, Error> {
     let crc = Crc::new(Crc::POSITION, 0, true).map_err(LayoutError::from)?;
     let mut frames = Vec::with_capacity(FRAMES);

@@ -1,5 +1,5 @@
-//! Writes a plan into an encoder: reads its base again, carries out each operation and reads it back, with a person at
-//! the motor where needed, and leads the encoder back to operation after each.
+//! Writes a plan to an encoder: reads its base again, carries out each operation and reads it back, with an operator at the
+//! motor if required, and returns the encoder to operation after each.
 
 use super::error::exactly;
 use super::procedure::{Failure, Guide, LeftState, Operator, Outcome, ProcedureProgress, ProcedureStep};
@@ -10,14 +10,14 @@ use crate::devices::biss::protocol::{
 };
 use crate::profile::{Confirmed, Write, WriteRecord};
 
-/// What was written.
+/// Progress of a write.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Written {
     /// Operations carried out, of the plan's.
     pub ops: usize,
     /// Registers and settings changed.
     pub written: u64,
-    /// Those of them that were read back and found as they should be.
+    /// Registers that were read back with the right value.
     pub verified: u64,
     /// Persistent writes spent, or that may have been.
     pub write_cycles: u64,
@@ -38,19 +38,19 @@ impl WriteRecord for Written {
 /// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Failure, Written, EndState>;
 
-/// In which state an encoder was left.
+/// State in which an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EndState {
-    /// At which step of the operation that was under way.
+    /// The step of the operation that was running.
     pub at: ProcedureStep,
-    /// `None` in operation, without the password. Else it could not be led back: what is known of it, unless it has lost power
-    /// since, which leads back as well.
+    /// `None` in operation, with the password cleared. Otherwise the encoder could not be returned to operation: its known
+    /// state, unless it has lost power since, which also returns it to operation.
     pub standing: Option<LeftState>,
 }
 
 impl Interrupted {
-    /// Returns a register that is written by itself, and of which is not known whether it took its value. What was refused, or
-    /// ended before it was sent, has not.
+    /// Returns a register that is written by itself, if it is not known whether it accepted its value. A value that was
+    /// refused, or not sent, was not accepted.
     pub fn unclear(&self) -> Option<RegisterAddress> {
         match (&self.unfinished, &self.cause) {
             (Some(Op::WriteRegister { .. }), Failure::Device(Error::Cancelled | Error::Refused { .. })) => None,
@@ -69,7 +69,7 @@ pub struct EncoderWrite<'w, 'm> {
 }
 
 impl<'w, 'm> EncoderWrite<'w, 'm> {
-    /// The encoder for which the plan was made has this identity; every step is told.
+    /// Creates the writer for the encoder with this identity; every step is reported.
     ///
     /// # Errors
     /// An encoder that was not identified.
@@ -95,7 +95,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type Left = EndState;
 
-    /// Checks that this is the encoder for which the plan was made, by its memory too: two new encoders have the same.
+    /// Checks that this is the encoder of the plan, by its memory as well: two new encoders have the same identity.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
         let master = self.guide.master();
         let changed = |item: &str| Err(Error::Changed { item: item.to_owned() });
@@ -132,8 +132,8 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// A wish to end is heard between two exchanges, but not where it would leave something half done. The encoder is led
-    /// back after each operation, however it ended.
+    /// Cancellation is checked between two exchanges, but not if it would leave something incomplete. The encoder is
+    /// returned to operation after each operation, however it ended.
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Failure> {
         let guide = &mut self.guide;
         guide.begin(done.outcomes.len());
@@ -142,7 +142,7 @@ impl Write for EncoderWrite<'_, '_> {
         self.at = guide.at();
         let led = lead_back(guide, ended.as_ref().err());
         count(done, op, ended?);
-        // It is done, and the encoder cannot be left so.
+        // The operation is done, and the encoder cannot be left in this state.
         self.at = guide.at();
         Ok(led?)
     }
@@ -161,7 +161,7 @@ fn lead_back(guide: &mut Guide<'_, '_>, cause: Option<&Failure>) -> Result<(), E
     }
 }
 
-/// The wire itself is gone: nothing more can be sent.
+/// Returns whether the connection itself is lost: nothing more can be sent.
 fn is_gone(error: &Error) -> bool {
     match error {
         Error::Link(_) => true,
@@ -174,7 +174,7 @@ fn count(done: &mut Written, op: &Op, outcome: Outcome) {
     if !matches!(outcome, Outcome::Skipped { .. }) {
         done.ops += 1;
         done.written += op.weight();
-        // The encoder's word is all there is of a calibration, and of a result that shows after a restart.
+        // A calibration, and a result that shows after a restart, are known only from the encoder's status.
         let is_unverifiable =
             matches!(op, Op::Calibrate | Op::WiegandTest { .. } | Op::WriteRegister { old: None, .. });
         done.verified += if is_unverifiable { 0 } else { op.weight() };
@@ -200,7 +200,7 @@ fn is_same(master: &mut Master<'_>, identity: &Identity) -> Result<bool, Error> 
     Ok(true)
 }
 
-/// Refuses an encoder in a device mode: what was entered there and not saved would be taken for what it holds.
+/// Refuses an encoder in a device mode: values entered there and not saved would be taken for its content.
 ///
 /// # Errors
 /// [`Error::NotInOperation`]; the line.
@@ -211,11 +211,11 @@ pub fn ensure_operation(master: &mut Master<'_>, description: &Description) -> R
     }
 }
 
-/// The device mode in which registers may show what was entered and never saved; `None` in operation, and for an encoder
-/// without device modes.
+/// Returns the device mode in which registers may show values that were never saved; `None` in operation, and for an
+/// encoder without device modes.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Result<Option<DeviceMode>, Error> {
     let Some(lock) = description.lock() else { return Ok(None) };
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
@@ -225,7 +225,7 @@ pub fn unsaved_mode(master: &mut Master<'_>, description: &Description) -> Resul
 /// Reads what a plan needs of an encoder: its identity, its settings, and these banks.
 ///
 /// # Errors
-/// [`Error::Moving`] where banks are read; [`Error::NotInOperation`]; the line.
+/// [`Error::Moving`] if banks are read; [`Error::NotInOperation`]; errors of the exchange.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
@@ -251,14 +251,14 @@ pub fn read_state(
 /// Reads a bank twice, if the line has damaged anything; the shaft stands still.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_bank(master: &mut Master<'_>, number: u8) -> Result<Bank, Error> {
     let start = RegisterAddress::banked(number, 0).unwrap_or(RegisterAddress::BANK_SELECT);
     let bytes = master.read_run(start, Bank::SIZE)?;
     Ok(Bank { number, bytes: exactly(start, bytes)? })
 }
 
-/// The filter in force; `None` where the firmware has no choice.
+/// Reads the filter in use; `None` if the firmware has no choice.
 fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Option<Filter>, Error> {
     let firmware = master.station().firmware;
     let Some(register) = description.with_role(Role::Filter) else { return Ok(None) };
@@ -268,7 +268,7 @@ fn read_filter(master: &mut Master<'_>, description: &Description) -> Result<Opt
     Ok(Some(Filter::from_byte(master.read(register.address)?)))
 }
 
-/// The stored preset value; `None` where the firmware has none.
+/// Reads the stored preset value; `None` if the firmware has none.
 fn read_preset(master: &mut Master<'_>, description: &Description) -> Result<Option<PresetValue>, Error> {
     let firmware = master.station().firmware;
     let place = description.procedure(ProcedureKind::Preset).and_then(|procedure| procedure.data);

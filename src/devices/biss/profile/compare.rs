@@ -7,7 +7,7 @@ use crate::devices::biss::protocol::RegisterAddress;
 use crate::profile::difference::runs;
 use crate::profile::{Comparison, Difference};
 
-/// Compares filter, preset value and plain data. What is only recorded is not part of it.
+/// Compares filter, preset value and plain data. Recorded values are not compared.
 pub(super) fn compare(left: &BissProfile, right: &BissProfile) -> Comparison {
     let mut comparison = Comparison::default();
     let filter = |profile: &BissProfile| profile.filter.map(|filter| vec![filter.byte()]);

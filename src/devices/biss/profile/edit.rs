@@ -1,5 +1,5 @@
-//! Plans for single changes and for the procedures that a person leads, each with the encoder's own rules checked before
-//! anything is sent.
+//! Plans for single changes and for the guided procedures, each checked against the encoder's own rules before anything is
+//! sent.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -18,9 +18,9 @@ const PRESET_PARTS_SINCE: Firmware = Firmware::new(1, 6, 0);
 /// The motor that turns the shaft in a procedure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotorSource {
-    /// Something that does not need this encoder: another motor, an open loop, another feedback.
+    /// A motor that does not need this encoder: another motor, an open loop, another feedback.
     Other,
-    /// A drive that closes its loop on this encoder, which gives no position meanwhile.
+    /// A drive that closes its loop on this encoder, which provides no position meanwhile.
     ThisEncoder,
 }
 
@@ -38,12 +38,12 @@ pub struct MountingRun {
 }
 
 impl MountingRun {
-    /// Returns whether some of it needs a motor.
+    /// Returns whether any part of it needs a motor.
     pub fn needs_motor(&self) -> bool {
         self.calibrate || self.wiegand.is_some()
     }
 
-    /// Refuses a motor that needs this encoder where the run needs a motor.
+    /// Refuses a motor that needs this encoder if the run needs a motor.
     ///
     /// # Errors
     /// [`PlanError::DrivenByThisEncoder`].
@@ -58,16 +58,16 @@ impl MountingRun {
 /// The kind of a register for a write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind<'d> {
-    /// In an area that is opened and saved.
+    /// In a data area that is opened and saved.
     Data(&'d Area),
-    /// For itself.
+    /// Individually.
     Register,
 }
 
 /// Returns the meaning of a write to a register.
 ///
 /// # Errors
-/// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for what only the procedures write.
+/// [`PlanError::ReadOnly`]; [`PlanError::Guarded`] for registers that only the procedures write.
 pub fn place(description: &Description, address: RegisterAddress) -> Result<RegisterKind<'_>, PlanError> {
     if is_guarded(description, address) {
         return Err(PlanError::Guarded { address });
@@ -79,7 +79,7 @@ pub fn place(description: &Description, address: RegisterAddress) -> Result<Regi
     Ok(area.map_or(RegisterKind::Register, RegisterKind::Data))
 }
 
-/// Device mode, password, and the registers of procedures, but for the plain data itself.
+/// Returns whether it is the device mode, the password, or a register of procedures, but not the plain data itself.
 fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     let locks = description.lock().is_some_and(|lock| [lock.password_at, lock.mode_at].contains(&address));
     let leads = |procedure: &Procedure| {
@@ -90,7 +90,7 @@ fn is_guarded(description: &Description, address: RegisterAddress) -> bool {
     locks || description.procedures().iter().any(leads)
 }
 
-/// The procedure of an encoder.
+/// Returns the procedure of an encoder.
 ///
 /// # Errors
 /// [`PlanError::NoProcedure`], [`PlanError::FirmwareTooOld`].
@@ -109,9 +109,8 @@ pub fn procedure(
     }
 }
 
-/// Writes exactly these bytes, of two edits of the same register the later; what stands there already is left out.
-/// `banks` and `registers` are what stands there: all that the edits touch, a register with `None` where it cannot be
-/// read.
+/// Plans to write exactly these bytes, for two edits of the same register the later; equal ones are left out. `banks` and
+/// `registers` have the present values of all edited registers, `None` for a register that cannot be read.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -163,12 +162,12 @@ pub fn plan_edits(
     Ok(BissPlan { base, ops })
 }
 
-/// Persistent writes that a value costs: of what is not described, at most one.
+/// Returns the persistent writes that a value costs: at most one if the register is not described.
 fn cycles(description: &Description, address: RegisterAddress, value: u8) -> u8 {
     description.at(address).map_or(1, |register| u8::from(register.is_save(value)))
 }
 
-/// Selects a filter; nothing where it is the one in force.
+/// Plans to select a filter; empty if it is already in use.
 ///
 /// # Errors
 /// No such filter, or the encoder has no choice.
@@ -181,11 +180,11 @@ pub fn plan_filter(description: &Description, device: &DeviceState, to: Filter) 
     Ok(BissPlan { base, ops: if from == to { vec![] } else { vec![Op::SelectFilter { from, to }] } })
 }
 
-/// Stores a preset value where one is given that is not stored yet; and, with `parts`, makes the shaft's place what is
-/// stored then.
+/// Plans to store a preset value, if one is given that is not stored yet; and, with `parts`, to set the position at the
+/// shaft's present place to the stored value.
 ///
 /// # Errors
-/// The value is too wide, or the encoder has no preset, or none of these parts alone.
+/// The value is too wide, or the encoder has no preset, or cannot preset these parts separately.
 pub fn plan_preset(
     description: &Description,
     device: &DeviceState,
@@ -209,10 +208,10 @@ pub fn plan_preset(
     Ok(BissPlan { base: Base { preset: Some(from), ..Base::default() }, ops })
 }
 
-/// A run of procedures that a person leads.
+/// Plans a run of guided procedures.
 ///
 /// # Errors
-/// See [`PlanError`]; a motor that needs this encoder is refused where the run needs a motor.
+/// See [`PlanError`]; a motor that needs this encoder is refused if the run needs a motor.
 pub fn plan_mounting(
     description: &Description,
     device: &DeviceState,

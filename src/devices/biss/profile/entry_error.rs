@@ -3,7 +3,7 @@
 /// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A bank that stands in the list already.
+    /// A bank that is already in the list.
     #[error("bank 0x{0:02X} appears twice")]
     Twice(u8),
     /// Banks that end before they begin.
@@ -32,7 +32,7 @@ pub enum EntryError {
         /// Required number.
         expected: usize,
     },
-    /// No release of a firmware.
+    /// Not a release of a firmware.
     #[error("{0:?} is not of the form 1.6.0")]
     Release(String),
     /// The marked item does not exist.

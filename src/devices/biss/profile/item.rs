@@ -1,12 +1,12 @@
-//! The names of things in an encoder: `0x66` for a direct register, `0x24:0x10` for one of a bank, `0x24:0x10+3` for a
-//! run of them.
+//! The names of items in an encoder: `0x66` for a direct register, `0x24:0x10` for one of a bank, `0x24:0x10+3` for
+//! consecutive ones.
 
 use std::fmt;
 use std::str::FromStr;
 
 use crate::devices::biss::protocol::RegisterAddress;
 
-/// A run of registers that follow each other: direct ones, or within one bank.
+/// Consecutive registers: direct ones, or within one bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterRange {
     start: RegisterAddress,
@@ -20,17 +20,17 @@ pub struct RegisterRange {
 pub struct ItemError(pub String);
 
 impl RegisterRange {
-    /// One register.
+    /// Creates one register.
     pub const fn one(start: RegisterAddress) -> Self {
         RegisterRange { start, count: 1 }
     }
 
-    /// `count` registers from `start` on; `None` for none of them, or for more than the bank has from there.
+    /// Creates the range of `count` registers from `start`; `None` if `count` is 0 or beyond the bank.
     pub fn new(start: RegisterAddress, count: u8) -> Option<Self> {
         start.plus(count.checked_sub(1)?).map(|_| RegisterRange { start, count })
     }
 
-    /// The first.
+    /// Returns the first.
     pub const fn start(self) -> RegisterAddress {
         self.start
     }
@@ -40,19 +40,19 @@ impl RegisterRange {
         self.count
     }
 
-    /// A register lies in it.
+    /// Returns whether a register is in the range.
     pub fn contains(self, address: RegisterAddress) -> bool {
-        // Global addresses of a bank follow each other, and a run does not leave its bank.
+        // Global addresses of a bank are consecutive, and a range does not leave its bank.
         let first = self.start.global();
         (first..first + u16::from(self.count)).contains(&address.global())
     }
 
-    /// Every register of it.
+    /// Returns every register of the range.
     pub fn addresses(self) -> impl Iterator<Item = RegisterAddress> {
         (0..self.count).filter_map(move |at| self.start.plus(at))
     }
 
-    /// The shortest list of runs with these registers, which are in ascending order.
+    /// Returns the shortest list of runs with these registers, which are in ascending order.
     pub fn runs(addresses: impl IntoIterator<Item = RegisterAddress>) -> Vec<Self> {
         let mut runs: Vec<RegisterRange> = Vec::new();
         for address in addresses {
@@ -89,7 +89,7 @@ impl FromStr for RegisterRange {
 
 fn read_count(text: &str) -> Option<u8> {
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        // from_str_radix takes a sign.
+        // from_str_radix accepts a sign.
         Some(digits) if digits.bytes().all(|c| c.is_ascii_hexdigit()) => u8::from_str_radix(digits, 16).ok(),
         None if text.bytes().all(|c| c.is_ascii_digit()) => text.parse().ok(),
         _ => None,

@@ -1,4 +1,5 @@
-//! BiSS: what is saved of an encoder, how two differ, and what restoring and the guided procedures would do.
+//! BiSS profiles: the content saved of an encoder, the differences between two, and the effect of restoring and of the
+//! guided procedures.
 
 #![warn(missing_docs)]
 

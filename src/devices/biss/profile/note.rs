@@ -1,12 +1,12 @@
-//! The changes of an operation in one line for the logbook: registers by address and name, old and new. The words are
-//! the manual's, whatever the language of the window.
+//! The changes of an operation in one line for the logbook: registers by address and name, old and new. The terms are the
+//! manual's, in any language of the window.
 
 use super::{Op, PresetParts, RegisterChange, RegisterRange};
 use crate::bits::hex_compact;
 use crate::devices::biss::protocol::{Description, Filter, PresetValue};
 
 impl Op {
-    /// Returns the changes, old and new. Of a long run of registers only the first are included: the backup has all of
+    /// Returns the changes, old and new. Of many consecutive registers only the first are included: the backup has all of
     /// them.
     pub fn note(&self, description: &Description) -> String {
         match self {
@@ -35,9 +35,9 @@ impl Op {
     }
 }
 
-/// Runs of registers that are told.
+/// Maximum number of ranges listed.
 const RUNS: usize = 8;
-/// Registers of a run whose values are told.
+/// Maximum number of registers of a range listed with values.
 const VALUES: usize = 8;
 
 fn run(range: RegisterRange, name: &str, registers: &[RegisterChange]) -> String {

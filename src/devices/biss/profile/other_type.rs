@@ -1,6 +1,6 @@
 //! Checks whether an encoder is of the type that a profile was read from. A type is the reported identity (profile ID,
-//! manufacturer, device ID) and the widths of the position: a preset is a number of steps, which means another angle
-//! where widths differ.
+//! manufacturer, device ID) and the widths of the position: a preset is a number of steps, which means another angle if
+//! widths differ.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::devices::biss::protocol::Identity;
 /// A profile and an encoder of two types.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
-    /// They say of themselves that they are not the same.
+    /// Their identities differ.
     #[error("the profile is of {profile}, the encoder says {device}")]
     Kind {
         /// In the profile.
@@ -28,10 +28,10 @@ pub enum OtherType {
     },
 }
 
-/// Bits of a position, as far as they are known: of the revolutions and within the revolution.
+/// Bits of a position, as far as known: turns, and within the turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Width {
-    /// Of the revolutions.
+    /// Bits of the turns.
     pub multiturn: Option<u8>,
     /// Within the revolution.
     pub singleturn: Option<u8>,

@@ -1,4 +1,4 @@
-//! The operations that change an encoder, what they cost, and what they rest upon.
+//! The operations that change an encoder, their cost, and their base.
 
 use super::{Bank, BissProfile, RegisterRange};
 use crate::devices::biss::protocol::{Area, Filter, PresetCommand, PresetValue, RegisterAddress};
@@ -7,7 +7,7 @@ use crate::profile::{Operation, Plan};
 /// A planned write to a BiSS encoder.
 pub type BissPlan = Plan<Base, Op>;
 
-/// The values that a plan is based on: everything that its operations change and that can be read.
+/// Values that a plan is based on: everything that its operations change and that can be read.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// The banks of plain data that the plan touches.
@@ -20,7 +20,7 @@ pub struct Base {
     pub registers: Vec<(RegisterAddress, u8)>,
 }
 
-/// One thing that is done, from entering its device mode to leaving it.
+/// Operation, from entering its device mode to leaving it.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// Manual 6.5: registers of one area are written and saved together.
@@ -30,14 +30,14 @@ pub enum Op {
         /// The changes, by ascending address.
         registers: Vec<RegisterChange>,
     },
-    /// Manual 6.7: another preset value is stored; nothing is preset yet.
+    /// Manual 6.7: stores another preset value; the position is not preset yet.
     StorePreset {
         /// Stored now.
         from: PresetValue,
         /// Stored from then on.
         to: PresetValue,
     },
-    /// Manual 6.7: the shaft's place becomes the stored preset value.
+    /// Manual 6.7: sets the position at the shaft's present place to the stored preset value.
     FirePreset {
         /// Parts of the position.
         parts: PresetParts,
@@ -46,19 +46,19 @@ pub enum Op {
     },
     /// Manual 6.6.
     SelectFilter {
-        /// In force now.
+        /// The present filter.
         from: Filter,
-        /// In force from then on.
+        /// The new filter.
         to: Filter,
     },
-    /// Manual 6.4, led by a person.
+    /// Manual 6.4, guided.
     Calibrate,
-    /// Manual 6.3, led by a person.
+    /// Manual 6.3, guided.
     WiegandTest {
         /// Keep the result in the encoder.
         save: bool,
     },
-    /// A register outside of the procedures, written as it is.
+    /// A register outside of the procedures, written directly.
     WriteRegister {
         /// The register.
         address: RegisterAddress,
@@ -85,7 +85,7 @@ pub struct RegisterChange {
 /// The part of the position that a preset sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PresetParts {
-    /// All of it.
+    /// Both parts.
     Both,
     /// The place within the revolution.
     Singleturn,
@@ -94,7 +94,7 @@ pub enum PresetParts {
 }
 
 impl PresetParts {
-    /// The command that carries it out.
+    /// Returns the command that carries it out.
     pub const fn command(self) -> PresetCommand {
         match self {
             PresetParts::Both => PresetCommand::Both,
@@ -129,12 +129,12 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// A motor turns the shaft for it.
+    /// Returns whether a motor turns the shaft for it.
     pub fn turns(&self) -> bool {
         matches!(self, Op::Calibrate | Op::WiegandTest { .. })
     }
 
-    /// Runs of registers that it changes, as `read` takes them; empty for what changes no register that can be read.
+    /// Returns the register ranges that it changes, as `read` takes them; empty if it changes no readable register.
     pub fn ranges(&self) -> Vec<RegisterRange> {
         let known = |text: &str| text.parse().into_iter().collect();
         match self {
@@ -146,7 +146,7 @@ impl Op {
         }
     }
 
-    /// Names of what it changes, as `read` takes them where they can be read.
+    /// Returns the names of the changed items, as `read` takes them if they can be read.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -156,7 +156,7 @@ impl Op {
         }
     }
 
-    /// Things it changes, counted as a comparison counts them: registers of an area, or one.
+    /// Returns the number of changes as a comparison counts them: registers of an area, or one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::StoreData { registers, .. } => registers.len() as u64,

@@ -9,12 +9,12 @@ use crate::devices::biss::protocol::{
 };
 use crate::profile::ron_text::Unknown;
 
-/// A BiSS encoder as it is saved.
+/// Profile of a BiSS encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BissProfile {
     /// The identity.
     pub identity: ProfileIdentity,
-    /// The filter of the position; `None` where the encoder has no choice.
+    /// The filter of the position; `None` if the encoder has no choice.
     pub filter: Option<Filter>,
     /// Preset value; `None` if the encoder has none. It belongs to the mounting.
     pub preset: Option<PresetSetting>,
@@ -29,7 +29,7 @@ pub struct BissProfile {
 /// The identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number as the encoder's identification tells it; empty where it does not.
+    /// Serial number from the encoder's identification; empty if it has none.
     pub serial_number: String,
     /// 42h and 43h.
     pub profile_id: ProfileId,
@@ -37,11 +37,11 @@ pub struct ProfileIdentity {
     pub device_id: [u8; 6],
     /// 7Eh and 7Fh.
     pub manufacturer: [u8; 2],
-    /// 74h…76h; `None` where the encoder has no such registers.
+    /// 74h…76h; `None` if the encoder has no such registers.
     pub firmware: Option<Firmware>,
     /// Name of the description with which it was read.
     pub description: String,
-    /// Bits of the revolutions in the position; `None` where nothing tells them.
+    /// Turn bits of the position; `None` if not known.
     pub multiturn_bits: Option<u8>,
     /// Bits within the revolution.
     pub singleturn_bits: Option<u8>,
@@ -63,7 +63,7 @@ pub struct PresetSetting {
 pub struct Recorded {
     /// Banks of the electronic data sheet, as they were read.
     pub eds: Vec<ListedBank>,
-    /// The last Wiegand test since power came.
+    /// The last Wiegand test since power-up.
     pub wiegand_last: Option<WiegandResult>,
     /// The factory's Wiegand test.
     pub wiegand_production: Option<WiegandResult>,
@@ -71,8 +71,7 @@ pub struct Recorded {
     pub wiegand_saved: Option<WiegandResult>,
     /// Status register of the calibration (bank 0, 01h).
     pub calibration_status: Option<u8>,
-    /// The device mode in which it was read, where that was not operation: values may be among it that were entered and
-    /// never saved.
+    /// The device mode in which it was read, if not operation: it may contain values that were never saved.
     pub device_mode: Option<DeviceMode>,
     /// Entries that this program does not know.
     pub unknown: Unknown,
@@ -86,7 +85,7 @@ pub type MountingMark = crate::profile::MountingMark<MountingItem>;
 pub enum MountingItem {
     /// Registers.
     Registers(RegisterRange),
-    /// The table of the calibration, which lies in the encoder and cannot be read.
+    /// The table of the calibration, which is in the encoder and cannot be read.
     Calibration,
 }
 
@@ -107,13 +106,13 @@ impl fmt::Display for MountingItem {
 /// The 64 registers of a bank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Bank {
-    /// Its number.
+    /// Number of the bank.
     pub number: u8,
     /// The content of its registers.
     pub bytes: [u8; 64],
 }
 
-/// A bank that stands in a profile.
+/// Bank listed in a profile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ListedBank {
     /// The content.
@@ -122,7 +121,7 @@ pub struct ListedBank {
     pub unknown: Unknown,
 }
 
-/// The content of an area of plain data. Banks with the same byte in every register need not be listed.
+/// Content of a plain data area. Banks with the same byte in every register need not be listed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DataImage {
     /// The area's name in the encoder's description.
@@ -145,10 +144,10 @@ impl BissProfile {
     /// Register of the kit encoder's filter.
     pub const FILTER: &'static str = "0x6E";
 
-    /// Marks what is known to be a value of the mounting, and is not marked yet: preset and calibration.
+    /// Marks the items that belong to the mounting and are not marked yet: preset and calibration.
     pub fn mark_mounting(&mut self) {
         let preset = Self::PRESET.parse().ok().filter(|_| self.preset.is_some()).map(MountingItem::Registers);
-        // An encoder that presets is one that calibrates: a kit encoder.
+        // An encoder with a preset also has a calibration: it is a kit encoder.
         let calibration = preset.map(|_| MountingItem::Calibration);
         let known = [(preset, "preset value"), (calibration, "singleturn calibration: it stays in the encoder")];
         for (item, meaning) in known {
@@ -157,7 +156,7 @@ impl BissProfile {
         }
     }
 
-    /// A register belongs to the mounting.
+    /// Returns whether a register belongs to the mounting.
     pub fn is_mounting(&self, address: RegisterAddress) -> bool {
         self.mounting.iter().any(|mark| match mark.item {
             MountingItem::Registers(range) => range.contains(address),
@@ -165,12 +164,12 @@ impl BissProfile {
         })
     }
 
-    /// A bank as it is to be; `None` where the profile says nothing about it.
+    /// Returns the content of a bank; `None` if the profile does not contain it.
     pub fn bank(&self, number: u8) -> Option<Bank> {
         self.data.iter().find_map(|image| image.bank(number))
     }
 
-    /// Makes a register of plain data another byte. False where the profile says nothing about its bank.
+    /// Changes a register of plain data. Returns false if the profile does not contain its bank.
     pub fn put(&mut self, address: RegisterAddress, byte: u8) -> bool {
         let Some(number) = address.bank() else { return false };
         let image = self.data.iter_mut().find_map(|image| Some((image.bank(number)?, image)));
@@ -188,14 +187,14 @@ impl BissProfile {
         true
     }
 
-    /// Every bank that the profile says something about, in the order of the file.
+    /// Returns every bank in the profile, in the order of the file.
     pub fn banks(&self) -> impl Iterator<Item = Bank> {
         self.data.iter().flat_map(DataImage::all)
     }
 }
 
 impl ProfileIdentity {
-    /// The kind of encoder.
+    /// Returns the kind of encoder.
     pub fn kind(&self) -> Identity {
         Identity { profile: self.profile_id, manufacturer: self.manufacturer, device_id: self.device_id }
     }
@@ -205,18 +204,18 @@ impl Bank {
     /// Registers of a bank.
     pub const SIZE: usize = RegisterAddress::BANK_SIZE as usize;
 
-    /// A bank with the same byte everywhere.
+    /// Creates a bank with the same byte everywhere.
     pub const fn filled(number: u8, byte: u8) -> Self {
         Bank { number, bytes: [byte; Self::SIZE] }
     }
 
-    /// The byte that stands everywhere in it; `None` where there are several.
+    /// Returns the byte in all registers; `None` if they differ.
     fn only_byte(&self) -> Option<u8> {
         let [first, ..] = self.bytes;
         self.bytes.iter().all(|byte| *byte == first).then_some(first)
     }
 
-    /// Every register with its byte.
+    /// Returns every register with its byte.
     pub fn registers(self) -> impl Iterator<Item = (RegisterAddress, u8)> {
         let place = move |offset| RegisterAddress::banked(self.number, offset);
         (0..RegisterAddress::BANK_SIZE).zip(self.bytes).filter_map(move |(offset, byte)| Some((place(offset)?, byte)))
@@ -248,14 +247,14 @@ impl DataImage {
         }
     }
 
-    /// A bank of the area; `None` where the profile says nothing about it.
+    /// Returns a bank of the area; `None` if the profile does not contain it.
     pub fn bank(&self, number: u8) -> Option<Bank> {
         let listed = self.listed.iter().map(|listed| listed.bank).find(|bank| bank.number == number);
         let blank = || self.empty.map(|byte| Bank::filled(number, byte));
         listed.or_else(|| blank().filter(|_| (self.first..=self.last).contains(&number)))
     }
 
-    /// Every bank that it says something about.
+    /// Returns every bank that it contains.
     pub fn all(&self) -> impl Iterator<Item = Bank> {
         (self.first..=self.last).filter_map(|number| self.bank(number))
     }

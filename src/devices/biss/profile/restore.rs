@@ -1,5 +1,5 @@
 //! Planning a restore: only differences, in the fewest persistent writes, and nothing that belongs to another encoder's
-//! mounting. A preset is stored and never carried out.
+//! mounting. A preset is stored but never executed.
 
 pub use crate::profile::RestoreOptions;
 
@@ -7,16 +7,16 @@ use super::other_type::{OtherType, other_type};
 use super::{Bank, Base, BissPlan, BissProfile, Op, ProfileIdentity, RegisterChange, RegisterRange};
 use crate::devices::biss::protocol::{Area, Filter, Firmware, PresetValue, ProcedureKind, RegisterAddress};
 
-/// An encoder as it is, as far as a plan needs it.
+/// Present state of an encoder, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// The identity.
     pub identity: ProfileIdentity,
-    /// Its filter; `None` where its firmware has no choice.
+    /// Its filter; `None` if its firmware has no choice.
     pub filter: Option<Filter>,
-    /// Its stored preset value; `None` where its firmware has none.
+    /// Its stored preset value; `None` if its firmware has none.
     pub preset: Option<PresetValue>,
-    /// Its areas of plain data.
+    /// Its plain data areas.
     pub areas: Vec<Area>,
     /// The banks that were read: at least [`banks_needed`].
     pub banks: Vec<Bank>,
@@ -25,7 +25,7 @@ pub struct DeviceState {
 /// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<BissPlan, RegisterRange>;
 
-/// Why something cannot be planned.
+/// Why a change cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
@@ -69,7 +69,7 @@ pub enum PlanError {
         /// The description's name.
         description: String,
     },
-    /// The encoder's firmware is older than what is asked of it.
+    /// The encoder's firmware is too old for the request.
     #[error("firmware {needed} is needed, the encoder has {found}")]
     FirmwareTooOld {
         /// The procedure.
@@ -91,7 +91,7 @@ pub enum PlanError {
         /// The register.
         address: RegisterAddress,
     },
-    /// As many bytes as the range has belong to it.
+    /// The number of bytes must equal the registers of the range.
     #[error("{count} bytes are given for {range}")]
     ByteCount {
         /// The registers.
@@ -105,12 +105,12 @@ pub enum PlanError {
         /// The filter's code.
         code: u8,
     },
-    /// The drive that turns the motor closes its loop on this encoder, which gives no position meanwhile.
+    /// The drive that turns the motor closes its loop on this encoder, which provides no position meanwhile.
     #[error("the motor is driven by this encoder's position, which is not there during the procedure")]
     DrivenByThisEncoder,
 }
 
-/// The banks that have to be read before a restore of this profile can be planned.
+/// Returns the banks that have to be read before a restore of this profile can be planned.
 pub fn banks_needed(profile: &BissProfile, areas: &[Area]) -> Vec<u8> {
     let there = |bank: &u8| areas.iter().any(|area| area.contains(*bank));
     profile.banks().map(|bank| bank.number).filter(there).collect()
@@ -145,8 +145,7 @@ pub fn plan_data(profile: &BissProfile, device: &DeviceState) -> Result<Restore,
     Ok(planner.finish())
 }
 
-/// Refuses an encoder that the profile was not read from. Encoders that do not tell their serial number are never the
-/// same one.
+/// Refuses an encoder that the profile was not read from. Encoders without a serial number are never the same one.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -154,8 +153,8 @@ pub fn check_device(profile: &BissProfile, device: &ProfileIdentity) -> Result<(
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Refuses an encoder that the profile was not read from, as far as that is not allowed. Registers of another type of encoder
-/// may mean something else, so that a permit for another serial number is none for that.
+/// Refuses an encoder that the profile was not read from, unless the options allow it. Registers of another type of encoder
+/// may have other meanings, so permission for another serial number does not include that.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].
@@ -204,11 +203,11 @@ pub(super) fn check_preset(value: PresetValue, identity: &ProfileIdentity) -> Re
 /// How to treat the values of the mounting.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Mounting {
-    /// They are this encoder's.
+    /// They belong to this encoder.
     Own,
-    /// They are another encoder's, and are left.
+    /// They belong to another encoder, and are left out.
     Leave,
-    /// They are another encoder's, and are written.
+    /// They belong to another encoder, and are written.
     Write,
 }
 
@@ -245,7 +244,7 @@ impl<'a> Planner<'a> {
         }
     }
 
-    /// All that differs in an area is one save.
+    /// Plans one save for all differences in an area.
     fn data(&mut self) -> Result<(), PlanError> {
         let mut areas: Vec<(&Area, Vec<RegisterChange>)> = Vec::new();
         for wanted in self.profile.banks() {
@@ -270,7 +269,7 @@ impl<'a> Planner<'a> {
         Ok(())
     }
 
-    /// The registers of a bank that differ and may be written.
+    /// Returns the registers of a bank that differ and may be written.
     fn changes(&mut self, now: &Bank, wanted: &Bank) -> Vec<RegisterChange> {
         let mut changes = Vec::new();
         for ((address, old), (_, new)) in now.registers().zip(wanted.registers()) {
@@ -334,12 +333,13 @@ impl<'a> Planner<'a> {
     }
 }
 
-/// The registers of the preset value.
+/// Returns the registers of the preset value.
 fn preset_addresses() -> impl Iterator<Item = RegisterAddress> {
     BissProfile::PRESET.parse::<RegisterRange>().into_iter().flat_map(RegisterRange::addresses)
 }
 
-/// An area that is opened and saved takes all of it at once; another one, register by register.
+/// Returns the operations for an area: one that is opened and saved takes all registers at once; another one, register by
+/// register.
 pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
     if area.open.is_some() {
         return vec![Op::StoreData { area: area.clone(), registers }];
@@ -348,7 +348,7 @@ pub(super) fn store(area: &Area, registers: Vec<RegisterChange>) -> Vec<Op> {
         address: change.address,
         old: Some(change.old),
         new: change.new,
-        // Nothing tells what it costs; at most one.
+        // The cost is not known; at most one.
         cycles: 1,
     };
     registers.into_iter().map(single).collect()

@@ -1,9 +1,9 @@
-//! Profiles for tests: a kit encoder as delivered, to be changed.
+//! Test profiles: a kit encoder as delivered, to be changed.
 
 use super::{Bank, BissProfile, DataImage, PresetSetting, ProfileIdentity, Recorded};
 use crate::devices::biss::protocol::{Access, Area, Filter, Firmware, PresetValue, ProfileId};
 
-/// The areas of the manual's table 12.
+/// Returns the areas of the manual's table 12.
 pub(super) fn areas() -> [Area; 2] {
     let area = |name: &str, first, last, open| Area {
         name: crate::devices::biss::protocol::Name::new(name),
@@ -15,7 +15,7 @@ pub(super) fn areas() -> [Area; 2] {
     [area("EDS motor data", 0x04, 0x23, 1), area("OEM data", 0x24, 0x43, 2)]
 }
 
-/// An encoder as delivered, with the newest firmware known.
+/// Returns the profile of an encoder as delivered, with the newest known firmware.
 pub(super) fn profile(serial_number: &str) -> BissProfile {
     let empty = |area: &Area| DataImage::of(area, area.banks().map(|number| Bank::filled(number, 0)).collect());
     BissProfile {

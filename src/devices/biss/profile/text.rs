@@ -1,4 +1,4 @@
-//! The text of a BiSS profile: written for people, read from their hands. What is wrong names its entry.
+//! The text of a BiSS profile, written for people and edited by them. An error names its entry.
 
 use super::{
     Bank, BissProfile, DataImage, EntryError, ListedBank, MountingItem, MountingMark, PresetSetting, ProfileIdentity,

@@ -4,11 +4,11 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// A register's place. Direct registers come before those of the banks, as their global addresses do.
+/// The location of a register. Direct registers come before those of the banks, as their global addresses do.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RegisterAddress(u16);
 
-/// Why a text does not name a register.
+/// The reason why a text does not name a register.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no register: 0x40 to 0x7F stands for a direct one, BANK:OFFSET as 0x24:0x10 for one of a bank")]
 pub struct AddressError(String);
@@ -16,26 +16,26 @@ pub struct AddressError(String);
 impl RegisterAddress {
     /// Registers of a bank, and direct ones.
     pub const BANK_SIZE: u8 = 0x40;
-    /// 40h, which every encoder has: the bank of 00h…3Fh.
+    /// 40h, common to all encoders: the bank of 00h…3Fh.
     pub const BANK_SELECT: RegisterAddress = RegisterAddress(0x00);
-    /// 41h, which every encoder has: the first bank of the data sheet.
+    /// 41h, common to all encoders: the first bank of the data sheet.
     pub const EDS_BANK: RegisterAddress = RegisterAddress(0x01);
-    /// 42h and 43h, which every encoder has: the profile identification.
+    /// 42h and 43h, common to all encoders: the profile identification.
     pub const PROFILE: RegisterAddress = RegisterAddress(0x02);
-    /// 78h…7Dh, which every encoder has: the device ID; behind it the manufacturer.
+    /// 78h…7Dh, common to all encoders: the device ID; after it the manufacturer.
     pub const DEVICE_ID: RegisterAddress = RegisterAddress(0x38);
 
-    /// A direct register, 40h…7Fh.
+    /// Creates a direct register, 40h…7Fh.
     pub const fn direct(address: u8) -> Option<Self> {
         if 0x40 <= address && address <= 0x7F { Some(RegisterAddress(address as u16 - 0x40)) } else { None }
     }
 
-    /// A register of a bank, 00h…3Fh.
+    /// Creates a register of a bank, 00h…3Fh.
     pub const fn banked(bank: u8, offset: u8) -> Option<Self> {
         if offset < Self::BANK_SIZE { Some(RegisterAddress(0x40 + 0x40 * bank as u16 + offset as u16)) } else { None }
     }
 
-    /// The first register of a bank.
+    /// Creates the first register of a bank.
     pub const fn start_of(bank: u8) -> Self {
         RegisterAddress(0x40 + 0x40 * bank as u16)
     }
@@ -45,24 +45,24 @@ impl RegisterAddress {
         if global < 0x40 + 0x4000 { Some(RegisterAddress(global)) } else { None }
     }
 
-    /// The one number: direct registers from 0, those of bank 0 from 40h on, and so forth.
+    /// Returns the global number: direct registers from 0, those of bank 0 from 40h on, and so forth.
     pub const fn global(self) -> u16 {
         self.0
     }
 
-    /// The bank that has to be selected; `None` for a direct register.
+    /// Returns the bank that has to be selected; `None` for a direct register.
     pub const fn bank(self) -> Option<u8> {
         if self.0 < 0x40 { None } else { Some(((self.0 - 0x40) / 0x40) as u8) }
     }
 
-    /// The seven bits of the control frame: 40h…7Fh direct, 00h…3Fh within the bank.
+    /// Returns the seven bits of the control frame: 40h…7Fh direct, 00h…3Fh within the bank.
     pub const fn address(self) -> u8 {
         // Below 40h either way.
         let offset = (self.0 % 0x40) as u8;
         if self.0 < 0x40 { 0x40 + offset } else { offset }
     }
 
-    /// The register `count` further on in the same bank; `None` beyond its end.
+    /// Returns the register `count` places further in the same bank; `None` beyond its end.
     pub fn plus(self, count: u8) -> Option<Self> {
         let offset = u16::from(self.address() % Self::BANK_SIZE) + u16::from(count);
         (offset < u16::from(Self::BANK_SIZE)).then_some(RegisterAddress(self.0 + u16::from(count)))
@@ -81,7 +81,7 @@ impl fmt::Display for RegisterAddress {
 impl FromStr for RegisterAddress {
     type Err = AddressError;
 
-    /// Reads `0x66` or `0x24:0x10`; numbers without `0x` are decimal.
+    /// Parses `0x66` or `0x24:0x10`; numbers without `0x` are decimal.
     fn from_str(text: &str) -> Result<Self, AddressError> {
         let place = match text.split_once(':') {
             None => byte(text).and_then(Self::direct),
@@ -94,7 +94,7 @@ impl FromStr for RegisterAddress {
 fn byte(text: &str) -> Option<u8> {
     let text = text.trim();
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        // from_str_radix takes a sign.
+        // from_str_radix accepts a sign.
         Some(digits) => u8::from_str_radix(digits, 16).ok().filter(|_| digits.bytes().all(|c| c.is_ascii_hexdigit())),
         None => text.parse().ok().filter(|_| text.bytes().all(|c| c.is_ascii_digit())),
     }

@@ -1,4 +1,4 @@
-//! The control frame: register access, one bit a cycle in each direction (manual 3.1.2, figures 3 and 4; what they leave
+//! The control frame: register access, one bit per cycle in each direction (manual 3.1.2, figures 3 and 4; what they leave
 //! open from iC-Haus, *BiSS protocol description (C-mode)*).
 //!
 //! ```text
@@ -6,11 +6,11 @@
 //! CDM    S  CTS  ID    ADR    CRC4    R   W   S   DATA    CRC4    P        host → encoder, at the end of a cycle
 //! CDS    0  IDL0 … IDL7 0…            0   R   W   S       DATA    CRC4 P   encoder → host, at the start of a cycle
 //! ```
-//! A bit of CDS answers the bit of CDM of the cycle before. P = 1 goes on with the next address, its S in the same
-//! cycle. Fourteen cycles of CDM = 0 lead both sides back to rest, wherever they are.
+//! A bit of CDS answers the bit of CDM of the previous cycle. P = 1 continues with the next address, its S in the same
+//! cycle. Fourteen cycles of CDM = 0 return both sides to rest from any state.
 //!
-//! What stands in no source available (`U`) and is chosen here: a host that waits for the encoder's S repeats its own,
-//! because fourteen zeros would be an abort; an encoder echoes what it is given to write, its checksum among it.
+//! Not in any available source (`U`) and chosen here: a host that waits for the encoder's S repeats its own, because
+//! fourteen zeros would be an abort; an encoder echoes the data of a write, with its checksum.
 
 mod encoder;
 mod host;
@@ -41,13 +41,13 @@ enum RequestKind {
     Write { values: Vec<u8> },
 }
 
-/// Why a request is not possible.
+/// The reason why a request is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
-    /// There are eight numbers, 0…7.
+    /// A number outside the eight, 0…7.
     #[error("a slave has a number from 0 to 7, not {0}")]
     Slave(u8),
-    /// No register at all, or one beyond 7Fh.
+    /// No register, or one beyond 7Fh.
     #[error("{count} registers from 0x{address:02X} on do not lie within 0x00 and 0x7F")]
     Range {
         /// The first.
@@ -57,10 +57,10 @@ pub enum RequestError {
     },
 }
 
-/// Why a request failed.
+/// The reason why a request failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ControlError {
-    /// No encoder of that number is on the line.
+    /// No encoder with that number is on the line.
     #[error("no slave {0} answers")]
     NoSlave(u8),
     /// The encoder does not repeat the kind of access: it has not understood, or it refuses.
@@ -85,7 +85,7 @@ impl Request {
     /// Reads `count` registers one after the other.
     ///
     /// # Errors
-    /// [`RequestError`] where they are not there.
+    /// [`RequestError`] if the slave or the registers do not exist.
     pub fn read(slave: u8, address: u8, count: u8) -> Result<Self, RequestError> {
         Self::checked(slave, address, RequestKind::Read { count })
     }
@@ -93,7 +93,7 @@ impl Request {
     /// Writes registers one after the other.
     ///
     /// # Errors
-    /// [`RequestError`] where they are not there.
+    /// [`RequestError`] if the slave or the registers do not exist.
     pub fn write(slave: u8, address: u8, values: &[u8]) -> Result<Self, RequestError> {
         Self::checked(slave, address, RequestKind::Write { values: values.to_vec() })
     }
@@ -121,7 +121,7 @@ impl Request {
         matches!(self.kind, RequestKind::Read { .. })
     }
 
-    /// DATA and CRC4 that the host sends for the register number `index` of the request; zeros where it reads.
+    /// Returns DATA and CRC4 that the host sends for the register number `index` of the request; zeros for a read.
     fn data(&self, index: usize) -> u16 {
         match &self.kind {
             RequestKind::Read { .. } => 0,
@@ -130,7 +130,7 @@ impl Request {
     }
 }
 
-/// A value with its CRC4, twelve bits.
+/// Returns a value with its CRC4, twelve bits.
 fn with_crc(value: u8) -> u16 {
     let value = u16::from(value);
     value << 4 | u16::from(super::crc::crc4(value, 8))

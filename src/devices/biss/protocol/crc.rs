@@ -1,9 +1,9 @@
 //! The checksums of BiSS: a polynomial of up to 32 bits, first bit first, nothing reflected (manual 3.1.1; iC-Haus AN3).
-//! Which polynomial guards the position data is the encoder's matter; the control frame always has the one of 4 bits.
+//! Each encoder defines the polynomial of its position data; the control frame always has the one of 4 bits.
 
 use std::fmt;
 
-/// A checksum as a description tells it: the polynomial decides how many bits it has.
+/// A checksum as given by a description: the polynomial determines its number of bits.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Crc {
     polynomial: u64,
@@ -13,13 +13,13 @@ pub struct Crc {
     table: [u32; 256],
 }
 
-/// Why a checksum is not possible.
+/// The reason why a checksum is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CrcError {
     /// The polynomial's degree is 0 or above 32.
     #[error("the CRC polynomial {0:#X} must have 2 to 33 bits, including its highest and lowest term")]
     Degree(u64),
-    /// The polynomial's lowest term is missing: it would not see every single flipped bit.
+    /// The polynomial's lowest term is missing: it would not detect every single flipped bit.
     #[error("the CRC polynomial {0:#X} must end with the term 1")]
     LowestTerm(u64),
     /// The start value has more bits than the checksum.
@@ -33,16 +33,16 @@ pub enum CrcError {
 }
 
 impl Crc {
-    /// x⁶ + x + 1, sent inverted: position data, unless an encoder says otherwise.
+    /// x⁶ + x + 1, sent inverted: position data, unless an encoder specifies another.
     pub const POSITION: u64 = 0x43;
     /// x⁴ + x + 1, sent inverted: the control frame.
     pub const CONTROL: u64 = 0x13;
 
-    /// A checksum with all terms of its polynomial written, the highest too (43h is x⁶ + x + 1), the register's value
+    /// Creates a checksum from all terms of its polynomial, including the highest (43h is x⁶ + x + 1), the register's value
     /// before the first bit, and whether the result is sent inverted.
     ///
     /// # Errors
-    /// [`CrcError`] where that is no checksum of 1 to 32 bits.
+    /// [`CrcError`] if that is no checksum of 1 to 32 bits.
     pub fn new(polynomial: u64, start: u32, inverted: bool) -> Result<Self, CrcError> {
         let degree = polynomial.checked_ilog2().unwrap_or(0);
         if !(1..=32).contains(&degree) {
@@ -58,11 +58,11 @@ impl Crc {
         Ok(crc)
     }
 
-    /// A checksum as the electronic data sheet writes it: without the term 1, which every polynomial has (21h is
-    /// 43h); `None` for 0, which stands for no checksum.
+    /// Creates a checksum from the notation of the electronic data sheet: without the term 1, which every polynomial has
+    /// (21h is 43h); `None` for 0, which means no checksum.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
+    /// Errors as for [`new`](Self::new).
     pub fn from_data_sheet(polynomial: u32, start: u32) -> Result<Option<Self>, CrcError> {
         match polynomial {
             0 => Ok(None),
@@ -70,34 +70,34 @@ impl Crc {
         }
     }
 
-    /// All terms of the polynomial.
+    /// Returns all terms of the polynomial.
     pub const fn polynomial(&self) -> u64 {
         self.polynomial
     }
 
-    /// The register before the first bit.
+    /// Returns the register before the first bit.
     pub const fn start(&self) -> u32 {
         self.start
     }
 
-    /// The result is sent inverted.
+    /// Returns whether the result is sent inverted.
     pub const fn is_inverted(&self) -> bool {
         self.inverted
     }
 
-    /// Bits of the checksum, 1…32.
+    /// Returns the number of bits of the checksum, 1…32.
     pub const fn width(&self) -> u8 {
         self.polynomial.ilog2() as u8 // at most 32
     }
 
-    /// The checksum of the lowest `bits` bits of `data` as it is sent, the highest of them first. More than 64 count as
+    /// Returns the checksum of the lowest `bits` bits of `data` as sent, the highest of them first. More than 64 count as
     /// 64.
     pub fn of(&self, data: u64, bits: u8) -> u32 {
         let unused = 32 - u32::from(self.width());
         let mut register = self.start << unused;
         let mut left = u32::from(bits.min(64));
         while left > 0 {
-            // The odd bits come first, so that whole bytes follow.
+            // The odd bits come first, so that complete bytes follow.
             let now = if left.is_multiple_of(8) { 8 } else { left % 8 };
             left -= now;
             let group = (data >> left) as u32 & ((1 << now) - 1);
@@ -127,7 +127,7 @@ impl fmt::Debug for Crc {
     }
 }
 
-/// The checksum of the control frame over the lowest `bits` bits of `data`: x⁴ + x + 1, inverted.
+/// Returns the checksum of the control frame over the lowest `bits` bits of `data`: x⁴ + x + 1, inverted.
 pub(super) fn crc4(data: u16, bits: u8) -> u8 {
     let sum = (0..bits.min(16)).rev().fold(0u8, |sum, at| {
         let feedback = sum >> 3 ^ (data >> at & 1) as u8;
@@ -154,12 +154,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The remainder by long division in a wide number, with nothing of the code under test.
+    /// Returns the remainder by long division in a wide number, with nothing of the code under test.
     fn divided(polynomial: u64, start: u32, data: u64, bits: u8) -> u32 {
         let degree = 63 - polynomial.leading_zeros();
         let mut rest = u128::from(data) & ((1u128 << bits) - 1);
         rest <<= degree;
-        // A start value is the same as a change of the first bits.
+        // A start value is equivalent to a change of the first bits.
         rest ^= u128::from(start) << bits;
         for at in (degree..u32::from(bits) + degree).rev() {
             if rest >> at & 1 == 1 {
@@ -215,8 +215,8 @@ mod tests {
         }
     }
 
-    /// The check values of the catalogue of parametrised CRC algorithms (reveng), over the text 123456789: those that
-    /// reflect nothing, of any width.
+    /// The check values of the catalogue of parametrised CRC algorithms (reveng), over the text 123456789: those without
+    /// reflection, of any width.
     #[test]
     fn other_polynomials_by_their_published_check_values() {
         let cases = [

@@ -82,11 +82,11 @@ pub struct Procedure {
     pub since: Firmware,
 }
 
-/// A description that cannot be used, and where.
+/// An error in a description, with its position.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct DescriptionError {
-    /// The file's name as it was given.
+    /// The file's name as given.
     pub file: String,
     /// Line, counted from 1.
     pub line: usize,
@@ -96,16 +96,16 @@ pub struct DescriptionError {
     pub problem: String,
 }
 
-/// All kinds of encoders known, the most particular first.
+/// All known kinds of encoders, the most specific first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Descriptions(Vec<Description>);
 
 impl Description {
-    /// Reads a description. `file` is what an error is to call it.
+    /// Parses a description. `file` is its name for errors.
     ///
     /// # Errors
-    /// With line and column: text that is not RON, unknown or missing keys, numbers out of their range, registers that
-    /// overlap.
+    /// Returns line and column: text that is not RON, unknown or missing keys, numbers outside their range, overlapping
+    /// registers.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
         file::parse(text).map_err(|error| DescriptionError {
             file: file.to_owned(),
@@ -125,7 +125,7 @@ impl Description {
         self.identity.as_ref()
     }
 
-    /// The frame of the position data; `None` where the encoder's data sheet or the user has to tell.
+    /// Returns the frame of the position data; `None` if the encoder's data sheet or the user has to supply it.
     pub const fn layout(&self) -> Option<&Layout> {
         self.layout.as_ref()
     }
@@ -135,12 +135,12 @@ impl Description {
         self.lock
     }
 
-    /// The registers, in the order of the file.
+    /// Returns the registers, in the order of the file.
     pub fn registers(&self) -> &[Register] {
         &self.registers
     }
 
-    /// Banks of plain data.
+    /// Returns the banks of plain data.
     pub fn areas(&self) -> &[Area] {
         &self.areas
     }
@@ -151,27 +151,27 @@ impl Description {
         area.or_else(|| self.banks.iter().find(|(own, _)| *own == bank).map(|(_, name)| name))
     }
 
-    /// The guided procedures.
+    /// Returns the guided procedures.
     pub fn procedures(&self) -> &[Procedure] {
         &self.procedures
     }
 
-    /// The register that plays a role.
+    /// Returns the register that plays a role.
     pub fn with_role(&self, role: Role) -> Option<&Register> {
         self.registers.iter().find(|register| register.role == Some(role))
     }
 
-    /// The register to which a byte belongs.
+    /// Returns the register to which a byte belongs.
     pub fn at(&self, address: RegisterAddress) -> Option<&Register> {
         self.registers.iter().find(|register| register.contains(address))
     }
 
-    /// The area to which a byte belongs.
+    /// Returns the area to which a byte belongs.
     pub fn area_at(&self, address: RegisterAddress) -> Option<&Area> {
         self.areas.iter().find(|area| address.bank().is_some_and(|bank| area.contains(bank)))
     }
 
-    /// A procedure, where the encoder has it.
+    /// Returns a procedure, if the encoder has it.
     pub fn procedure(&self, kind: ProcedureKind) -> Option<&Procedure> {
         self.procedures.iter().find(|procedure| procedure.kind == kind)
     }
@@ -225,18 +225,18 @@ impl Descriptions {
                 Err(error) => errors.push(error),
             }
         }
-        // Those that are for one kind of encoder before those that are for any.
+        // Those for one kind of encoder before those for any.
         read.sort_by_key(|description| description.identity.is_none());
         (Descriptions(read), errors)
     }
 
-    /// The built-in ones.
+    /// Creates the built-in ones.
     pub fn built_in() -> Self {
-        // That they can be read is tested.
+        // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0
     }
 
-    /// These, with those of `others` going before their own where both are for the same encoder.
+    /// Returns these descriptions with those of `others`, which take precedence for the same encoder.
     #[must_use]
     pub fn overlaid_with(self, others: Descriptions) -> Self {
         let mut all = others.0;
@@ -245,7 +245,7 @@ impl Descriptions {
         Descriptions(all)
     }
 
-    /// The description of an encoder that says this of itself: its own, else one for any.
+    /// Returns the description of an encoder with this identity: its own, otherwise one for any.
     pub fn find(&self, identity: &Identity) -> Option<&Description> {
         self.0.iter().find(|description| description.check(identity).is_ok())
     }
@@ -255,7 +255,7 @@ impl Descriptions {
         self.0.iter().find(|description| description.name == name)
     }
 
-    /// All of them.
+    /// Returns all of them.
     pub fn iter(&self) -> impl Iterator<Item = &Description> {
         self.0.iter()
     }

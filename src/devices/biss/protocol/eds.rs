@@ -11,9 +11,9 @@ use super::status::ProfileId;
 /// A bank of the data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum EdsBank {
-    /// Bank 2: what every BiSS device says.
+    /// Bank 2: common to every BiSS device.
     Common,
-    /// Bank 3: what an encoder says.
+    /// Bank 3: about the encoder.
     Encoder,
 }
 
@@ -24,7 +24,7 @@ pub struct EdsField {
     pub offset: u8,
     /// Bytes, 1…4.
     pub width: u8,
-    /// As the manual has it.
+    /// Name in the manual.
     pub name: &'static str,
     /// Factory setting of the kit encoder; `None` if the manual leaves it open.
     pub default: Option<u32>,
@@ -52,7 +52,7 @@ pub enum EdsValue {
     Number(u32, &'static str),
     /// A bank's number.
     Bank(u8),
-    /// FFh where a bank's number belongs.
+    /// FFh in place of a bank's number.
     NotAvailable,
     /// A time in units that are not published ([`EDS_TICK`] is a guess).
     Ticks(u8),
@@ -66,7 +66,7 @@ pub enum EdsValue {
     Polynomial(u64),
     /// The profile.
     Profile(ProfileId),
-    /// The meaning of a bit beside the position.
+    /// The meaning of a bit next to the position.
     Feedback(Feedback),
     /// 0: rotary. Other numbers are unknown (`U`).
     EncoderType(u8),
@@ -74,7 +74,7 @@ pub enum EdsValue {
     Code(u32),
 }
 
-/// The meaning of a bit beside the position.
+/// The meaning of a bit next to the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feedback {
     /// 0: there is no such bit.
@@ -83,11 +83,11 @@ pub enum Feedback {
     Error,
     /// 2: a warning, active low.
     Warning,
-    /// A code that is not known.
+    /// An unknown code.
     Unknown(u8),
 }
 
-/// Fits neither of the manual's own tables exactly; nothing better is published (`U`).
+/// The tick of times: it fits neither of the manual's own tables exactly; nothing better is published (`U`).
 pub const EDS_TICK: Duration = Duration::from_nanos(250);
 
 const NUMBER: Meaning = Meaning::Number("");
@@ -144,25 +144,25 @@ pub struct Eds {
     bytes: [u8; 64],
 }
 
-/// Why a data sheet is not reliable.
+/// The reason why a data sheet is not reliable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EdsError {
     /// The last byte is not the sum of the others.
     #[error("EDS bank 0x{bank:02X}: checksum {got:02X} where {expected:02X} was expected")]
     Checksum {
-        /// The bank's number where the manual puts it.
+        /// The bank's number from the manual.
         bank: u8,
         /// The sum.
         expected: u8,
         /// The checksum received.
         got: u8,
     },
-    /// A bit beside the position with a meaning that is not known.
+    /// A bit next to the position with an unknown meaning.
     #[error("EDS: feedback bit {number} has the unknown meaning 0x{code:02X}")]
     Feedback {
         /// 1 or 2.
         number: u8,
-        /// Its code.
+        /// The code of the bit.
         code: u8,
     },
     /// The two banks disagree.
@@ -190,7 +190,7 @@ impl EdsBank {
         }
     }
 
-    /// Its fields, by address.
+    /// Returns its fields, by address.
     pub const fn fields(self) -> &'static [EdsField] {
         match self {
             EdsBank::Common => &COMMON,
@@ -203,7 +203,7 @@ impl Eds {
     /// Offset of the checksum of the others.
     pub const CHECKSUM_OFFSET: u8 = 0x3F;
 
-    /// Reads a bank and checks its sum.
+    /// Parses a bank and checks its sum.
     ///
     /// # Errors
     /// [`EdsError::Checksum`].
@@ -216,7 +216,7 @@ impl Eds {
         Ok(Eds { bank, bytes })
     }
 
-    /// The kit encoder's bank as delivered, 0 where the manual says nothing.
+    /// Returns the kit encoder's bank with factory settings, 0 where the manual has no value.
     pub fn delivered(bank: EdsBank) -> Self {
         let mut bytes = [0; 64];
         for field in bank.fields() {
@@ -234,17 +234,18 @@ impl Eds {
         Eds { bank, bytes }
     }
 
-    /// The bytes of the bank, its sum last.
+    /// Returns the bytes of the bank, its sum last.
     pub const fn emit(&self) -> [u8; 64] {
         self.bytes
     }
 
-    /// Every field with what it says.
+    /// Returns every field with its value.
     pub fn values(&self) -> impl Iterator<Item = (&'static EdsField, EdsValue)> {
         self.bank.fields().iter().map(|field| (field, field.value(&self.bytes)))
     }
 
-    /// The last bank that a user may fill; `None` where there is none, and in the encoder's bank, which does not tell.
+    /// Returns the last bank that a user may fill; `None` if there is none, and in the encoder's bank, which does not
+    /// contain it.
     pub fn last_user_bank(&self) -> Option<u8> {
         match (self.bank, self.byte(0x03)) {
             (EdsBank::Encoder, _) | (EdsBank::Common, 0xFF) => None,
@@ -262,10 +263,10 @@ impl Eds {
     }
 }
 
-/// The frame of the position data, as both banks tell it.
+/// Returns the frame of the position data according to both banks.
 ///
 /// # Errors
-/// [`EdsError`] where they tell none, or not the same.
+/// [`EdsError`] if they contain none, or disagree.
 pub fn layout(common: &Eds, encoder: &Eds) -> Result<Layout, EdsError> {
     let feedback = |number: u8, offset: u8, expected: Feedback| match Feedback::from_byte(encoder.byte(offset)) {
         Feedback::None => Ok(false),
@@ -286,7 +287,7 @@ fn sum(bytes: &[u8; 64]) -> u8 {
 }
 
 impl EdsField {
-    /// The number in the field, high byte first.
+    /// Returns the number in the field, high byte first.
     pub fn raw(&self, bank: &[u8; 64]) -> u32 {
         let first = usize::from(self.offset);
         let bytes = bank.get(first..first + usize::from(self.width)).unwrap_or_default();
@@ -296,7 +297,7 @@ impl EdsField {
     /// Returns the value of the field. The bank's checksum is not verified here: see [`Eds::parse`].
     pub fn value(&self, bank: &[u8; 64]) -> EdsValue {
         let raw = self.raw(bank);
-        // Fields with these meanings have one byte, those of two words of it: nothing is cut off.
+        // Fields with these meanings have one byte, and those of two use one byte of it: nothing is cut off.
         let byte = raw as u8;
         match self.meaning {
             Meaning::Number(unit) => EdsValue::Number(raw, unit),
@@ -316,7 +317,7 @@ impl EdsField {
 }
 
 impl EdsValue {
-    /// Whole degrees Celsius of a temperature.
+    /// Returns whole degrees Celsius of a temperature.
     pub fn celsius(self) -> Option<i32> {
         match self {
             EdsValue::Kelvin(kelvin) => Some(i32::from(kelvin) - 273),
@@ -324,7 +325,7 @@ impl EdsValue {
         }
     }
 
-    /// The time of a number of ticks, with the length of one.
+    /// Returns the time of a number of ticks, with the length of one.
     pub fn duration(self, tick: Duration) -> Option<Duration> {
         match self {
             EdsValue::Ticks(ticks) => Some(tick * u32::from(ticks)),

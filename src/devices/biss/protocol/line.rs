@@ -1,4 +1,4 @@
-//! The data line (SLO) in one cycle, a sample a clock after the latch: acknowledge, start bit, control bit, frame,
+//! The data line (SLO) in one cycle, one sample per clock after the latch: acknowledge, start bit, control bit, frame,
 //! time-out (manual figure 2). The durations of clock and time-out do not matter here.
 
 use super::single_cycle::Layout;
@@ -10,17 +10,17 @@ pub struct Cycle {
     pub acknowledge: usize,
     /// CDS: the bit of the control frame that the encoder sends in this cycle.
     pub control: bool,
-    /// The frame, right-justified, its checksum included.
+    /// The frame, right-justified, including its checksum.
     pub raw: u64,
 }
 
-/// Why samples are not a cycle.
+/// The reason why samples are not a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CycleError {
     /// The line never went low: no encoder, or a broken wire.
     #[error("the encoder does not acknowledge")]
     NoAcknowledge,
-    /// The line never came back to 1.
+    /// The line never returned to 1.
     #[error("the encoder is not ready")]
     NotReady,
     /// The samples end within the frame.
@@ -28,10 +28,10 @@ pub enum CycleError {
     Short {
         /// Control bit and frame.
         expected: usize,
-        /// Bits behind the start bit.
+        /// Bits after the start bit.
         got: usize,
     },
-    /// Behind the frame the line is 1 although the time-out cannot be over.
+    /// After the frame the line is 1 although the time-out cannot be over.
     #[error("the line is high behind the last bit: the frame is longer than {bits} bits")]
     TimeOut {
         /// Bits of the layout.
@@ -40,10 +40,10 @@ pub enum CycleError {
 }
 
 impl Cycle {
-    /// Finds the frame in the samples of a cycle. What follows behind the first sample of the time-out is not looked at.
+    /// Finds the frame in the samples of a cycle. Samples after the first one of the time-out are ignored.
     ///
     /// # Errors
-    /// [`CycleError`]. Whether the frame's checksum is right is [`Layout::parse`]'s matter.
+    /// [`CycleError`]. The frame's checksum is checked by [`Layout::parse`].
     pub fn parse(samples: &[bool], layout: &Layout) -> Result<Self, CycleError> {
         // Before the acknowledge the line is at rest.
         let low = samples.iter().position(|sample| !sample).ok_or(CycleError::NoAcknowledge)?;
@@ -62,7 +62,7 @@ impl Cycle {
         Ok(Cycle { acknowledge, control: *control, raw })
     }
 
-    /// The samples from the acknowledge to the first of the time-out.
+    /// Returns the samples from the acknowledge to the first of the time-out.
     pub fn emit(&self, layout: &Layout) -> Vec<bool> {
         let mut samples = vec![false; self.acknowledge.max(1)];
         samples.extend([true, self.control]);
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(Cycle::parse(&[true; 64], &layout), Err(CycleError::NoAcknowledge));
         assert_eq!(Cycle::parse(&[false; 64], &layout), Err(CycleError::NotReady));
         let long = Layout::new(16, 16, true, true, layout.crc().cloned()).unwrap();
-        // One bit less than the encoder sends: its last one, 1, stands where the time-out should be.
+        // One bit less than the encoder sends: its last one, 1, is in the place of the time-out.
         assert_eq!(Cycle::parse(&samples(SAMPLES), &long), Err(CycleError::TimeOut { bits: 40 }));
     }
 

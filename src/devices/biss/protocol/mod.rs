@@ -1,7 +1,7 @@
-//! BiSS C: position data, the control frame, and what the registers of an encoder mean.
+//! BiSS C: position data, the control frame, and the meaning of an encoder's registers.
 //!
-//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6 ("the manual" below; the project's reference
-//! of it where a section is named so). What the manual leaves open is marked `U` (unknown) and is either tolerated or
+//! Source: POSITAL, *Manual IXARC kit encoders with BiSS C interface* v4.6 ("the manual" below; the project's reference of
+//! it where a section is named so). Facts that the manual leaves open are marked `U` (unknown) and are either tolerated or
 //! can be set.
 
 #![warn(missing_docs)]
@@ -18,7 +18,7 @@ mod single_cycle;
 mod status;
 mod widths;
 
-/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+/// The word for this kind of device: on the command line, in profiles, and in stored data.
 pub const KIND: &str = "biss";
 
 pub use address::{AddressError, RegisterAddress};

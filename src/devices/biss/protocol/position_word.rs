@@ -5,14 +5,14 @@ use super::single_cycle::{Layout, PositionData};
 use crate::buses::ubicom::protocol::PositionWord;
 
 impl Layout {
-    /// The word of a position. Bits of the multiturn for which there is no place are left out.
+    /// Returns the word of a position. Bits of the multiturn beyond its width are left out.
     pub fn position_word(&self, reading: &PositionData) -> PositionWord {
         let [b0, b1, b2, b3, b4, ..] = self.steps(reading).to_le_bytes();
         PositionWord::parse([b0, b1, b2, b3, b4])
     }
 
-    /// The position of a word, with the widths of the frame; `None` where bits above them are set. Error and warning are
-    /// not told.
+    /// Returns the position of a word, with the widths of the frame; `None` if bits above them are set. It contains no
+    /// error and warning.
     pub fn reading_of(&self, word: PositionWord) -> Option<PositionData> {
         let split = |value: u64, bits: u8| (value & ((1 << bits) - 1), value >> bits);
         let (singleturn, above) = split(word.word(), self.singleturn_bits());

@@ -1,5 +1,5 @@
-//! The codes of the guided procedures: what is written into their command registers, what their status registers say
-//! (manual 6.3 to 6.7). Where these registers are is in the encoder's [description](super::Description).
+//! The codes of the guided procedures: those written into their command registers, and those of their status registers
+//! (manual 6.3 to 6.7). The encoder's [description](super::Description) locates these registers.
 
 use std::fmt;
 
@@ -30,7 +30,7 @@ impl ProcedureKind {
     ];
 }
 
-/// Codes of a register as a type: unknown ones keep their number.
+/// Defines the codes of a register as a type: unknown ones keep their number.
 macro_rules! codes {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $code:literal $text:literal,)* }) => {
         $(#[$about])*
@@ -50,7 +50,7 @@ macro_rules! codes {
                 }
             }
 
-            /// The register's value.
+            /// Returns the register's value.
             pub const fn byte(self) -> u8 {
                 match self {
                     $($name::$variant => $code,)*
@@ -80,7 +80,7 @@ codes! {
         StartCounterclockwise = 0x02 "start counterclockwise",
         /// Ends the test, at any time.
         Stop = 0x03 "finish test",
-        /// Keeps the result; it can be seen after a restart.
+        /// Stores the result; it is visible after a restart.
         Save = 0x05 "save result",
     }
 }
@@ -98,9 +98,9 @@ codes! {
         Counterclockwise = 0x04 "pulse collection active, counterclockwise",
         /// Both directions are done.
         Complete = 0x06 "test complete",
-        /// The error code (bank 0, 08h) says why.
+        /// The error code (bank 0, 08h) has the reason.
         Failed = 0x07 "test failed",
-        /// The encoder has noticed that the motor turns the other way.
+        /// The encoder has detected that the motor turns the other way.
         WrongDirection = 0x30 "wrong motor rotation direction",
     }
 }
@@ -110,7 +110,7 @@ codes! {
     CalibrationCommand {
         /// The first run, with the motor turning counterclockwise.
         StartCounterclockwise = 0x01 "start counterclockwise",
-        /// The second run, with the motor turning clockwise. Its success is saved by itself; its failure loses the
+        /// The second run, with the motor turning clockwise. Its success is saved automatically; its failure loses the
         /// table.
         StartClockwise = 0x02 "start clockwise",
     }
@@ -121,7 +121,7 @@ codes! {
     CalibrationStatus {
         /// Nothing has begun.
         Idle = 0x00 "not started",
-        /// A run is under way.
+        /// A run is in progress.
         Running = 0x01 "calibration running",
         /// The first run is done.
         CounterclockwiseDone = 0x02 "calibration finished, counterclockwise",
@@ -145,9 +145,9 @@ codes! {
         OpenMotorData = 0x01 "get write access to EDS motor data",
         /// Opens banks 24h…43h.
         OpenOemData = 0x02 "get write access to OEM data",
-        /// Writes what was entered into the flash.
+        /// Writes the entered values into the flash.
         Save = 0x03 "save data",
-        /// Forgets what was entered.
+        /// Discards the entered values.
         Cancel = 0x04 "cancel write access",
     }
 }
@@ -191,7 +191,7 @@ codes! {
 codes! {
     /// Written to the preset's command register (bank 1, 00h).
     PresetCommand {
-        /// The shaft's place becomes the stored preset value; restarts.
+        /// Sets the shaft's position to the stored preset value; restarts.
         Both = 0x01 "perform preset, singleturn and multiturn",
         /// The preset value may be entered.
         Edit = 0x02 "enable preset value edit",
@@ -227,7 +227,7 @@ impl PresetValue {
     /// The greatest place, and the greatest number of revolutions.
     pub const MAX: u32 = (1 << 24) - 1;
 
-    /// 24 bits each; `None` above. The encoder's widths may allow less.
+    /// Creates a value of 24 bits each; `None` above. The encoder's widths may allow less.
     pub const fn new(singleturn: u32, multiturn: u32) -> Option<Self> {
         if singleturn <= Self::MAX && multiturn <= Self::MAX {
             Some(PresetValue { singleturn, multiturn })
@@ -249,12 +249,12 @@ impl PresetValue {
         [s0, s1, s2, m0, m1, m2]
     }
 
-    /// Place within the revolution.
+    /// Returns the place within the revolution.
     pub const fn singleturn(self) -> u32 {
         self.singleturn
     }
 
-    /// Revolutions.
+    /// Returns the revolutions.
     pub const fn multiturn(self) -> u32 {
         self.multiturn
     }
@@ -279,20 +279,20 @@ pub struct WiegandResult {
 }
 
 impl PulseVoltage {
-    /// The average less four standard deviations has to lie above this: 5.3 V.
+    /// The limit for the average less four standard deviations: 5.3 V.
     pub const LIMIT: PulseVoltage = PulseVoltage(53);
 
-    /// Any byte is a voltage.
+    /// Creates it: any byte is a voltage.
     pub const fn new(tenths: u8) -> Self {
         PulseVoltage(tenths)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Volts, from 0 to 25.5.
+    /// Returns the volts, from 0 to 25.5.
     pub fn volts(self) -> f64 {
         f64::from(self.0) / 10.0
     }
@@ -362,7 +362,7 @@ mod tests {
         assert_eq!(WiegandResult::parse([1, 2, 3, 4]).lowest_ccw.byte(), 4);
     }
 
-    /// The manual's tables, and what is in none of them.
+    /// Codes of the manual's tables, and codes that are in none of them.
     #[test]
     fn codes_are_the_manuals_and_unknown_ones_are_kept() {
         assert_eq!(

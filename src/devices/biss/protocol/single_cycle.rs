@@ -1,5 +1,5 @@
-//! Single-cycle data: what an encoder sends in every cycle. Multiturn, singleturn, error and warning bit (both active
-//! low), checksum; the highest bit first (manual 3.1.1, figure 2). How many bits each has is the encoder's matter.
+//! Single-cycle data, which an encoder sends in every cycle. Multiturn, singleturn, error and warning bit (both active
+//! low), checksum; the highest bit first (manual 3.1.1, figure 2). Each encoder defines the number of bits.
 
 use super::crc::{Crc, CrcError};
 
@@ -13,7 +13,7 @@ pub struct Layout {
     crc: Option<Crc>,
 }
 
-/// Why a layout is not possible.
+/// The reason why a layout is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// More bits than a number has that they are kept in.
@@ -24,7 +24,7 @@ pub enum LayoutError {
         /// Bits asked for.
         bits: u8,
     },
-    /// No position at all.
+    /// No position.
     #[error("multiturn and singleturn must have at least one bit together")]
     Empty,
     /// The whole frame, checksum included, does not fit into 64 bits.
@@ -35,23 +35,23 @@ pub enum LayoutError {
     Crc(#[from] CrcError),
 }
 
-/// A frame whose checksum was right.
+/// The content of a frame with a valid checksum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PositionData {
     /// Revolutions, as many bits as the layout has.
     pub multiturn: u32,
     /// Place within the revolution, in parts of 2 to the power of the layout's singleturn bits.
     pub singleturn: u32,
-    /// The encoder says that the position is invalid (the bit on the line is 0).
+    /// Whether the encoder reports that the position is invalid (the bit on the line is 0).
     pub error: bool,
-    /// The encoder warns; the position is valid (the bit on the line is 0).
+    /// Whether the encoder warns; the position is valid (the bit on the line is 0).
     pub warning: bool,
 }
 
-/// Why bits are not a frame.
+/// The reason why bits are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
-    /// All bits are 0, which is no frame of this layout: no encoder, a short, or one that is not ready.
+    /// All bits are 0, which is no frame of this layout: no encoder, a short circuit, or an encoder that is not ready.
     #[error("the data line stays low")]
     StuckLow,
     /// All bits are 1, which is no frame of this layout: no encoder, or a broken wire.
@@ -74,10 +74,11 @@ pub enum FrameError {
 }
 
 impl Layout {
-    /// A layout of so many bits each; the error bit comes behind the position, the warning bit behind that.
+    /// Creates a layout with these numbers of bits; the error bit follows the position, and the warning bit follows the
+    /// error bit.
     ///
     /// # Errors
-    /// [`LayoutError`] where a number does not fit into 32 bits or the frame into 64.
+    /// [`LayoutError`] if a number does not fit into 32 bits or the frame into 64.
     pub fn new(
         multiturn_bits: u8,
         singleturn_bits: u8,
@@ -98,12 +99,12 @@ impl Layout {
         if bits > 64 { Err(LayoutError::Long(bits)) } else { Ok(layout) }
     }
 
-    /// Bits of the revolutions, 0…32.
+    /// Returns the number of bits of the revolutions, 0…32.
     pub const fn multiturn_bits(&self) -> u8 {
         self.multiturn_bits
     }
 
-    /// Bits within a revolution, 0…32.
+    /// Returns the number of bits within a revolution, 0…32.
     pub const fn singleturn_bits(&self) -> u8 {
         self.singleturn_bits
     }
@@ -118,22 +119,22 @@ impl Layout {
         self.warning_bit
     }
 
-    /// The checksum; `None` where the encoder sends none.
+    /// Returns the checksum; `None` if the encoder sends none.
     pub const fn crc(&self) -> Option<&Crc> {
         self.crc.as_ref()
     }
 
-    /// Position, error and warning bit, without the checksum.
+    /// Returns the number of bits of position, error and warning, without the checksum.
     pub const fn data_bits(&self) -> u8 {
         self.multiturn_bits + self.singleturn_bits + self.error_bit as u8 + self.warning_bit as u8
     }
 
-    /// Bits of the checksum.
+    /// Returns the number of bits of the checksum.
     pub fn crc_bits(&self) -> u8 {
         self.crc.as_ref().map_or(0, Crc::width)
     }
 
-    /// The whole frame, 1…64.
+    /// Returns the number of bits of the whole frame, 1…64.
     pub fn bits(&self) -> u8 {
         self.data_bits() + self.crc_bits()
     }
@@ -141,7 +142,7 @@ impl Layout {
     /// Parses a frame: its bits right-justified, the last one received in bit 0.
     ///
     /// # Errors
-    /// [`FrameError`]; a line that does not change is told apart from a wrong checksum.
+    /// [`FrameError`]; a line that does not change is distinguished from a wrong checksum.
     pub fn parse(&self, raw: u64) -> Result<PositionData, FrameError> {
         let whole = ones(self.bits());
         if raw & !whole != 0 {
@@ -162,7 +163,7 @@ impl Layout {
         }
     }
 
-    /// The frame of a reading, right-justified. Bits that the layout has no place for are left out.
+    /// Returns the frame of a reading, right-justified. Bits without a place in the layout are left out.
     pub fn emit(&self, reading: &PositionData) -> u64 {
         let mut data = u64::from(reading.multiturn) & ones(self.multiturn_bits);
         data = data << self.singleturn_bits | u64::from(reading.singleturn) & ones(self.singleturn_bits);
@@ -178,12 +179,12 @@ impl Layout {
         }
     }
 
-    /// Degrees within the revolution, from 0 up to 360.
+    /// Returns the degrees within the revolution, from 0 up to 360.
     pub fn degrees(&self, reading: &PositionData) -> f64 {
         f64::from(reading.singleturn) * 360.0 / (1u64 << self.singleturn_bits) as f64
     }
 
-    /// Multiturn and singleturn as one number of steps.
+    /// Returns the multiturn and singleturn as one number of steps.
     pub fn steps(&self, reading: &PositionData) -> u64 {
         u64::from(reading.multiturn) << self.singleturn_bits | u64::from(reading.singleturn)
     }
@@ -205,7 +206,7 @@ impl Layout {
 }
 
 impl Default for Layout {
-    /// 16 + 17 bits, error, warning, CRC6 43h inverted: the kit encoder.
+    /// Returns the layout of the kit encoder: 16 + 17 bits, error, warning, CRC6 43h inverted.
     fn default() -> Self {
         let crc = Crc::new(Crc::POSITION, 0, true).ok();
         Layout { multiturn_bits: 16, singleturn_bits: 17, error_bit: true, warning_bit: true, crc }
@@ -262,7 +263,7 @@ mod tests {
             let damaged = 0x024_6980_00CF ^ 1 << bit;
             assert!(matches!(layout.parse(damaged), Err(FrameError::Crc { .. })), "bit {bit}");
         }
-        // A CRC6 finds every two flipped bits too, up to 63 bits of length.
+        // A CRC6 detects every two flipped bits too, up to 63 bits of length.
         for (one, other) in (0..41).flat_map(|one| (0..one).map(move |other| (one, other))) {
             assert!(layout.parse(0x024_6980_00CF ^ 1 << one ^ 1 << other).is_err(), "bits {one}, {other}");
         }
@@ -275,7 +276,7 @@ mod tests {
         assert_eq!(layout.parse((1 << 41) - 1), Err(FrameError::StuckHigh));
         assert_eq!(layout.parse(1 << 41), Err(FrameError::Long { bits: 41 }));
         assert_eq!(layout.parse(0x0FB), Err(FrameError::Crc { expected: 0x3A, got: 0x3B }));
-        // If a frame of all zeros is valid, as with a checksum that is not inverted, it is one.
+        // If a frame of all zeros is valid, as with a checksum that is not inverted, it is a frame.
         let plain = Layout::new(0, 12, false, false, Crc::new(0x43, 0, false).ok()).unwrap();
         assert_eq!(plain.parse(0), Ok(PositionData::default()));
         let bare = Layout::new(0, 12, false, false, None).unwrap();

@@ -28,17 +28,17 @@ impl ErrorRegister {
     /// Bit 4: no magnet, or one too far away.
     pub const FIELD_TOO_LOW: ErrorRegister = ErrorRegister(0x10);
 
-    /// Any byte is an error register; bits that the manual does not use are kept.
+    /// Creates a register: every byte is one; bits that the manual does not use are kept.
     pub const fn new(byte: u8) -> Self {
         ErrorRegister(byte)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// The bits that are set, the lowest first, with what each says.
+    /// Returns the bits that are set, the lowest first, with their meanings.
     pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
         set_bits(self.0, &ERRORS, UNKNOWN_ERROR)
     }
@@ -48,17 +48,17 @@ impl WarningRegister {
     /// Bit 0: set from 125 °C on, cleared below 123 °C.
     pub const TEMPERATURE: WarningRegister = WarningRegister(0x01);
 
-    /// Any byte is a warning register; bits that the manual does not use are kept.
+    /// Creates a register: every byte is one; bits that the manual does not use are kept.
     pub const fn new(byte: u8) -> Self {
         WarningRegister(byte)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// The bits that are set, the lowest first, with what each says.
+    /// Returns the bits that are set, the lowest first, with their meanings.
     pub fn set(self) -> impl Iterator<Item = (u8, &'static str)> {
         set_bits(self.0, &WARNINGS, UNKNOWN_WARNING)
     }
@@ -74,34 +74,34 @@ fn set_bits(
         .map(move |bit| (bit, names.get(usize::from(bit)).copied().unwrap_or(unknown)))
 }
 
-/// The temperature register (66h): 50 more than degrees Celsius. The sensor is right within 5 °C, from −40 to 130 °C.
+/// The temperature register (66h): 50 more than degrees Celsius. The sensor is accurate to 5 °C, from −40 to 130 °C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Temperature(u8);
 
 impl Temperature {
     const OFFSET: i16 = 50;
 
-    /// Any byte is a temperature.
+    /// Creates it: any byte is a temperature.
     pub const fn new(byte: u8) -> Self {
         Temperature(byte)
     }
 
-    /// The nearest temperature that the register can say.
+    /// Returns the nearest temperature that the register can represent.
     pub fn from_celsius(celsius: i16) -> Self {
         Temperature(u8::try_from(celsius.saturating_add(Self::OFFSET).clamp(0, 0xFF)).unwrap_or(0))
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// Whole degrees Celsius, −50…205.
+    /// Returns whole degrees Celsius, −50…205.
     pub fn celsius(self) -> i16 {
         i16::from(self.0) - Self::OFFSET
     }
 
-    /// Degrees Fahrenheit. The manual's formula forgets the 50.
+    /// Returns degrees Fahrenheit. The manual's formula omits the 50.
     pub fn fahrenheit(self) -> f64 {
         1.8 * f64::from(self.celsius()) + 32.0
     }
@@ -112,7 +112,7 @@ impl Temperature {
 pub struct DeviceMode(u8);
 
 impl DeviceMode {
-    /// Positions, and nothing else.
+    /// Positions only.
     pub const OPERATION: DeviceMode = DeviceMode(0x00);
     /// Calibration of the singleturn.
     pub const CALIBRATION: DeviceMode = DeviceMode(0x01);
@@ -128,17 +128,17 @@ impl DeviceMode {
     /// Opens the mode register, written to 6Bh.
     pub const PASSWORD: u8 = 0x2A;
 
-    /// Any byte is a mode.
+    /// Creates it: any byte is a mode.
     pub const fn new(byte: u8) -> Self {
         DeviceMode(byte)
     }
 
-    /// The register's value.
+    /// Returns the register's value.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// The manual knows this mode.
+    /// Returns whether the manual knows this mode.
     pub const fn is_known(self) -> bool {
         matches!(self.0, 0x00 | 0x01 | 0x02 | 0x04 | 0x05 | 0x07)
     }
@@ -162,7 +162,7 @@ impl fmt::Display for DeviceMode {
 /// The filter of the position (6Eh).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Filter {
-    /// 03h, as delivered: little noise.
+    /// 03h, the factory setting: little noise.
     Balanced,
     /// 04h: little latency, more noise.
     Dynamic,
@@ -180,7 +180,7 @@ impl Filter {
         }
     }
 
-    /// Its code, in 6Eh and as a command.
+    /// Returns the code, in 6Eh and as a command.
     pub const fn byte(self) -> u8 {
         match self {
             Filter::Balanced => 0x03,
@@ -202,7 +202,7 @@ pub struct Firmware {
 }
 
 impl Firmware {
-    /// A release.
+    /// Creates a release.
     pub const fn new(major: u8, minor: u8, patch: u8) -> Self {
         Firmware { major, minor, patch }
     }
@@ -214,22 +214,22 @@ impl fmt::Display for Firmware {
     }
 }
 
-/// The profile identification (42h and 43h, high byte first): which electronic data sheet the encoder has.
+/// The profile identification (42h and 43h, high byte first): the kind of the encoder's electronic data sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ProfileId(u16);
 
 impl ProfileId {
-    /// Any two bytes are a profile.
+    /// Creates it: any two bytes are a profile.
     pub const fn new(word: u16) -> Self {
         ProfileId(word)
     }
 
-    /// Both bytes, the first the higher.
+    /// Returns both bytes, the first the higher.
     pub const fn word(self) -> u16 {
         self.0
     }
 
-    /// Bits 15 to 13 are 011: the standard encoder profile BP3, whose data sheet this program reads.
+    /// Returns whether bits 15 to 13 are 011: the standard encoder profile BP3, whose data sheet this program reads.
     pub const fn is_standard_encoder(self) -> bool {
         self.0 >> 13 == 0b011
     }

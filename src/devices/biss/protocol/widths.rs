@@ -8,9 +8,9 @@ const DATA_BITS: std::ops::RangeInclusive<u8> = 10..=48;
 /// Number of consecutive frames that have to fit, each with other data than the one before (`U`).
 const ENOUGH: usize = 8;
 
-/// Bits of data, without the checksum, of frames that are cut out of the first `clocked` bits behind the control bit, the
-/// last of these in bit 0. `None`: no length fits, or too few frames differ. Data that stay the same count once: with the
-/// wrong length, one frame in 64 fits by chance, and would fit as often as it is repeated.
+/// Returns the number of data bits, without the checksum, of frames that are cut out of the first `clocked` bits after the
+/// control bit, the last of these in bit 0. `None`: no length fits, or too few frames differ. Repeated data count once:
+/// with the wrong length, one frame in 64 fits by chance, and would fit as often as it is repeated.
 pub fn data_bits_of(frames: &[u64], clocked: u8, crc: &Crc) -> Option<u8> {
     DATA_BITS.into_iter().find(|bits| fits(frames, clocked, *bits, crc))
 }
@@ -45,12 +45,12 @@ mod tests {
         Crc::new(Crc::POSITION, 0, true).unwrap()
     }
 
-    /// The first 64 bits of a line on which `frame` of `bits` bits goes and 0 follows.
+    /// Returns the first 64 bits of a line on which `frame` of `bits` bits goes and 0 follows.
     fn clocked(frame: u64, bits: u8) -> u64 {
         frame << (64 - bits)
     }
 
-    /// Frames of a shaft that turns by `step`.
+    /// Returns the frames of a shaft that turns by `step`.
     fn turning(layout: &Layout, step: u32, count: u32) -> Vec<u64> {
         let place = |at: u32| 0x155 + at * step;
         let reading = |at| PositionData { multiturn: 3, singleturn: place(at), ..PositionData::default() };
@@ -77,7 +77,7 @@ mod tests {
     }
 
     proptest! {
-        /// High bits that stay the same do not make a shorter frame of it.
+        /// Constant high bits do not result in a shorter frame.
         #[test]
         fn any_length_is_found(multiturn in 0u8..=16, singleturn in 9u8..=30, step in 1u32..40) {
             let layout = Layout::new(multiturn, singleturn, true, true, Some(crc())).unwrap();

@@ -5,7 +5,7 @@ use crate::buses::bridge::sim::{Attachable, Attached, BissDevice};
 use crate::sim::{ConfigError, Faults, Motor};
 use crate::units::Moment;
 
-/// The kit encoder on an adapter's bus, with the settings of its [`Config`].
+/// Kit encoder on an adapter's bus, with the settings of its [`Config`].
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

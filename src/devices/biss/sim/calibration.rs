@@ -1,7 +1,7 @@
 //! The calibration of the singleturn (manual 6.4): two runs, counterclockwise first, each about five seconds. Chosen here
-//! (`U`): a condition that is not met ends a run after a second; a motor that changes its speed ends it at once; the
-//! second run is refused where the first was not done. One that keeps its status shows it until the next run has begun,
-//! over a change of the device mode too.
+//! (`U`): an unmet condition ends a run after a second; a change of speed ends it at once; the second run is refused if the
+//! first was not completed. If the status is kept, it is shown until the next run has begun, even after a change of the
+//! device mode.
 
 use std::time::Duration;
 
@@ -13,7 +13,7 @@ use crate::units::Moment;
 pub(super) struct Conditions {
     /// Above 0 clockwise.
     pub(super) rpm: f64,
-    /// Variation of the speed, in revolutions a minute.
+    /// Variation of the speed, in revolutions per minute.
     pub(super) waver: f64,
     pub(super) celsius: i16,
     pub(super) filter: Filter,
@@ -41,7 +41,7 @@ struct Run {
 pub(super) enum Ended {
     /// Nothing yet.
     No,
-    /// The second run is done: the table is saved.
+    /// The second run is complete: the table is saved.
     Saved,
     /// The second run has failed: the table is lost.
     Lost,
@@ -50,7 +50,7 @@ pub(super) enum Ended {
 impl Calibration {
     const BEGINS_AFTER: Duration = Duration::from_millis(300);
     const FAILS_AFTER: Duration = Duration::from_secs(1);
-    /// Revolutions a minute, either way.
+    /// Revolutions per minute, in either direction.
     const SPEED: std::ops::RangeInclusive<f64> = 300.0..=700.0;
     const MAX_WAVER: f64 = 2.0;
     const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
@@ -63,7 +63,7 @@ impl Calibration {
         self.run.is_some() && self.status == CalibrationStatus::Running
     }
 
-    /// A command is written; `false`: it is refused.
+    /// Handles a command; returns `false` if it is refused.
     pub(super) fn write(&mut self, now: Moment, value: u8, conditions: Conditions) -> bool {
         let clockwise = match CalibrationCommand::from_byte(value) {
             CalibrationCommand::StartCounterclockwise => false,
@@ -86,7 +86,7 @@ impl Calibration {
         true
     }
 
-    /// The motor has changed its speed.
+    /// Notes a change of the motor's speed.
     pub(super) fn disturb(&mut self, now: Moment) {
         if let Some(run) = &mut self.run {
             (run.ends, run.outcome) = (now, CalibrationStatus::Failed);
@@ -109,7 +109,7 @@ impl Calibration {
         }
     }
 
-    /// The mode is left, or power is lost.
+    /// Handles leaving the mode, or a loss of power.
     pub(super) fn abandon(&mut self) -> Ended {
         let lost = self.run.take().is_some_and(|run| run.clockwise);
         self.command = 0;

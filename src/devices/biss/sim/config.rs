@@ -1,5 +1,5 @@
-//! The settings of a virtual encoder, as the query of a `sim:` link gives them: `seed=7&fault=drop:0.01&rpm=-500`. It
-//! opens nothing.
+//! The settings of a virtual encoder, as in the query of a `sim:` link: `seed=7&fault=drop:0.01&rpm=-500`. Nothing is
+//! opened here.
 
 use std::ops::RangeInclusive;
 use std::time::Duration;
@@ -42,16 +42,16 @@ parameters! {
 }
 
 impl Config {
-    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
+    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
-    /// With a sentence that names the key and what is allowed.
+    /// A sentence that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         setting::read(VirtualDevice::Encoder, pairs)
     }
 
-    /// The faults of its line and its flash.
+    /// Returns the faults of its line and its flash.
     pub const fn faults(&self) -> &Faults {
         &self.faults
     }
@@ -61,7 +61,7 @@ impl Config {
         self.seed
     }
 
-    /// Revolutions a minute at the start.
+    /// Revolutions per minute at the start.
     pub const fn rpm(&self) -> f64 {
         self.rpm
     }

@@ -1,11 +1,11 @@
-//! The encoder without any line: what a read or a write does at a moment (manual 4, 6 and appendix).
+//! The encoder without a line: the effects of reads and writes (manual 4, 6 and appendix).
 //!
 //! ```text
 //! operation ── password, mode ──▶ mode m ── mode 00 ──▶ operation
 //!                                   └── save or preset of modes 05, 07 ──▶ restart (silent) ──▶ operation
 //! ```
-//! Chosen here (`U`): a mode is entered from operation only, and left without the password; registers that are nowhere described read 00h and cannot be
-//! written; what is entered is forgotten when the mode is left.
+//! Chosen here (`U`): a mode is entered from operation only, and left without the password; undescribed registers read 00h
+//! and cannot be written; entered values are discarded when the mode is left.
 
 mod registers;
 mod time;
@@ -78,7 +78,7 @@ impl Encoder {
     const PRESET_SINCE: Firmware = Firmware::new(1, 2, 0);
     const FILTER_SINCE: Firmware = Firmware::new(1, 1, 0);
 
-    /// The encoder that `config` wants. It got its power long ago.
+    /// Creates an encoder from `config`, powered for a long time.
     pub fn new(config: &Config) -> Self {
         let flash = Flash { filter: config.filter, ..Flash::delivered(config.cycles) };
         let mut encoder = Encoder {
@@ -116,12 +116,12 @@ impl Encoder {
         &self.flash
     }
 
-    /// The frame of its position data.
+    /// Returns the frame of its position data.
     pub const fn layout(&self) -> &Layout {
         self.shaft.layout()
     }
 
-    /// The device mode it is in.
+    /// Returns its device mode.
     pub const fn mode(&self) -> DeviceMode {
         self.mode
     }
@@ -153,7 +153,7 @@ impl Encoder {
         self.errors = errors;
     }
 
-    /// Power goes and comes back at `now`.
+    /// Switches the power off and on at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.settle(now);
         self.disconnect();
@@ -166,7 +166,7 @@ impl Encoder {
         self.power = Power::Off;
     }
 
-    /// Gives the power back to an encoder that has lost it.
+    /// Restores the power of an encoder that has lost it.
     pub fn connect(&mut self, now: Moment) {
         if self.power == Power::Off {
             self.start(now);
@@ -178,13 +178,14 @@ impl Encoder {
         self.power != Power::Off
     }
 
-    /// Registers can be asked at `now`. It is silent while it starts, and may be while it calibrates.
+    /// Returns whether registers can be read at `now`. It is silent while it starts, and may be while it calibrates.
     pub fn answers(&mut self, now: Moment) -> bool {
         self.settle(now);
         self.power == Power::On && !(self.silent_calibration && self.calibration.is_running())
     }
 
-    /// The position at `now`; `None` without power and while it starts. It is marked as wrong while it calibrates.
+    /// Returns the position at `now`; `None` without power and while it starts. It is marked as invalid while it
+    /// calibrates.
     pub fn reading(&mut self, now: Moment) -> Option<PositionData> {
         self.settle(now);
         let reading = self.shaft.reading(now);
@@ -192,13 +193,13 @@ impl Encoder {
         (self.power == Power::On).then_some(PositionData { error, warning: self.hot, ..reading })
     }
 
-    /// The place of its shaft at `now`, whatever it says of it itself: steps, and how many a revolution has.
+    /// Returns the position of its shaft at `now`, independent of the reported one: steps, and steps per revolution.
     pub fn shaft_place(&mut self, now: Moment) -> (u64, u64) {
         self.settle(now);
         (self.shaft.fine(now), 1 << (self.shaft.layout().singleturn_bits() + FINE))
     }
 
-    /// The bank of the registers 00h…3Fh that is selected.
+    /// Returns the bank of the registers 00h…3Fh that is selected.
     pub const fn bank(&self) -> u8 {
         self.bank
     }
@@ -212,7 +213,7 @@ impl Encoder {
         }
     }
 
-    /// A register's value at `now`; `None` for a bank that there is not.
+    /// Reads a register at `now`; `None` for a bank that does not exist.
     pub fn read(&mut self, now: Moment, address: RegisterAddress) -> Option<u8> {
         self.settle(now);
         let offset = address.address();
@@ -235,7 +236,7 @@ impl Encoder {
         Some(value)
     }
 
-    /// Writes a register at `now`; `false`: the encoder refuses, and nothing has changed.
+    /// Writes a register at `now`; returns `false` if the encoder refuses, with nothing changed.
     pub fn write(&mut self, now: Moment, address: RegisterAddress, value: u8) -> bool {
         self.settle(now);
         let offset = address.address();
@@ -356,7 +357,7 @@ impl Encoder {
         true
     }
 
-    /// Writes the flash once; `whole` is false where power is lost in the middle of it.
+    /// Writes the flash once; `whole` is false if power is lost during it.
     fn store(&mut self, change: impl FnOnce(&mut Flash, bool)) {
         self.stores_begun = self.stores_begun.saturating_add(1);
         self.flash.cycles = self.flash.cycles.saturating_add(1);
@@ -378,7 +379,7 @@ impl Encoder {
         }
     }
 
-    /// Starts: the content of the memory is lost.
+    /// Starts the encoder: the content of the memory is lost.
     fn start(&mut self, now: Moment) {
         self.abandon();
         self.power = Power::Starting { ready: now + Self::START };

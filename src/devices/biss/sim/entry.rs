@@ -1,5 +1,5 @@
-//! The procedures in which something is entered and then saved: data, filter, preset (manual 6.5 to 6.7). They hold what
-//! was entered; saving it is the [`Encoder`](super::Encoder)'s matter. A command out of turn is refused (`U`).
+//! The procedures in which values are entered and then saved: data, filter, preset (manual 6.5 to 6.7). They hold the
+//! entered values; the [`Encoder`](super::Encoder) saves them. A command out of sequence is refused (`U`).
 
 use crate::devices::biss::protocol::{
     DataCommand, DataStatus, Filter, FilterCommand, FilterStatus, Layout, PresetCommand, PresetStatus, PresetValue,
@@ -13,7 +13,7 @@ pub(super) enum Area {
 }
 
 impl Area {
-    /// The area of a bank and where the bank begins in it.
+    /// Returns the area of a bank and the offset of the bank in it.
     pub(super) fn of_bank(bank: u8) -> Option<(Area, usize)> {
         let begin = |first: u8| usize::from(bank - first) * 64;
         match bank {
@@ -27,17 +27,17 @@ impl Area {
 /// The effect of a command.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Then {
-    /// It is refused.
+    /// The command is refused.
     Refused,
     /// Nothing further.
     Nothing,
-    /// An area is opened; its content is to be handed over with [`DataEntry::open`].
+    /// An area is opened; its content must be passed to [`DataEntry::open`].
     Open(Area),
     /// Data goes into the flash.
     SaveData(Area, Vec<u8>),
-    /// The filter goes into the flash; a restart follows.
+    /// The filter is written to the flash; a restart follows.
     SaveFilter(Filter),
-    /// The preset value goes into the flash; a restart follows.
+    /// The preset value is written to the flash; a restart follows.
     SavePreset(PresetValue),
     /// The position becomes the preset value, in its singleturn, its multiturn or both; a restart follows.
     Preset { singleturn: bool, multiturn: bool },
@@ -72,18 +72,18 @@ impl DataEntry {
         then
     }
 
-    /// An area is opened, with what it holds.
+    /// Opens an area with its content.
     pub(super) fn open(&mut self, area: Area, bytes: Vec<u8>) {
         self.open = Some((area, bytes));
     }
 
-    /// A byte as it was entered; `None` while its area is closed.
+    /// Returns an entered byte; `None` while its area is closed.
     pub(super) fn byte(&self, area: Area, at: usize) -> Option<u8> {
         let (_, bytes) = self.open.as_ref().filter(|(open, _)| *open == area)?;
         bytes.get(at).copied()
     }
 
-    /// Enters a byte; `false` while its area is closed.
+    /// Enters a byte; returns `false` while its area is closed.
     pub(super) fn enter(&mut self, area: Area, at: usize, value: u8) -> bool {
         let place = self.open.as_mut().filter(|(open, _)| *open == area).and_then(|(_, bytes)| bytes.get_mut(at));
         place.map(|byte| *byte = value).is_some()
@@ -137,7 +137,7 @@ impl PresetEntry {
         PresetEntry { command: 0, status: PresetStatus::Idle, bytes: stored.emit() }
     }
 
-    /// `parts`: the encoder can preset singleturn or multiturn alone.
+    /// Handles a command. `parts`: the encoder can preset singleturn or multiturn separately.
     pub(super) fn command(&mut self, value: u8, parts: bool, layout: &Layout) -> Then {
         let then = match (PresetCommand::from_byte(value), self.status) {
             (PresetCommand::Edit, _) => {
@@ -165,7 +165,7 @@ impl PresetEntry {
         self.bytes.get(at).copied()
     }
 
-    /// Enters a byte; `false` where none is expected.
+    /// Enters a byte; returns `false` if none is expected.
     pub(super) fn enter(&mut self, at: usize, value: u8) -> bool {
         let open = self.status == PresetStatus::WaitForValue;
         self.bytes.get_mut(at).filter(|_| open).map(|byte| *byte = value).is_some()

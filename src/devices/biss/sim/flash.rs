@@ -16,7 +16,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// Bytes of either area: 32 banks.
+    /// Bytes of each area: 32 banks.
     pub(super) const AREA: usize = 32 * 64;
 
     /// Creates a memory as delivered, after this many write cycles.
@@ -32,12 +32,12 @@ impl Flash {
         }
     }
 
-    /// Banks 04h…23h.
+    /// Returns the banks 04h…23h.
     pub fn motor_data(&self) -> &[u8] {
         &self.motor_data
     }
 
-    /// Banks 24h…43h.
+    /// Returns the banks 24h…43h.
     pub fn oem_data(&self) -> &[u8] {
         &self.oem_data
     }
@@ -47,12 +47,12 @@ impl Flash {
         self.preset
     }
 
-    /// The filter that is in force after a restart.
+    /// Returns the filter that is in force after a restart.
     pub const fn filter(&self) -> Filter {
         self.filter
     }
 
-    /// The table of the calibration is there, from the factory or from a run.
+    /// Returns whether the table of the calibration is there, from the factory or from a run.
     pub const fn is_calibrated(&self) -> bool {
         self.calibrated
     }

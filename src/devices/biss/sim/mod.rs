@@ -1,6 +1,6 @@
 //! The virtual kit encoder with BiSS C: registers, banks, device modes, the guided procedures with their durations and
-//! failures, the flash and its wear, restarts; and the lines to it. Rules that the manual leaves open (`U`) follow one
-//! documented choice each.
+//! failures, the flash and its wear, restarts; and the lines to it. Where the manual leaves a rule open (`U`), one
+//! documented choice is followed.
 //!
 //! | file | what it is |
 //! |---|---|

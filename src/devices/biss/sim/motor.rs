@@ -2,7 +2,7 @@
 
 use crate::sim::Motor;
 
-/// The motor as its encoder has it. A copy of the encoder gets a motor of its own.
+/// Motor as seen by its encoder. A copy of the encoder gets a motor of its own.
 #[derive(Debug)]
 pub(super) struct Drive {
     motor: Motor,
@@ -16,7 +16,7 @@ impl Clone for Drive {
 }
 
 impl Drive {
-    /// `reverses`: it turns round by itself when a procedure waits for the other direction.
+    /// Creates the motor. `reverses`: it changes its direction by itself when a procedure waits for the other one.
     pub(super) fn new(rpm: f64, reverses: bool) -> Self {
         Drive { motor: Motor::at(rpm), reverses }
     }
@@ -25,7 +25,7 @@ impl Drive {
         &self.motor
     }
 
-    /// A procedure waits for the other direction.
+    /// Notes that a procedure waits for the other direction.
     pub(super) fn other_direction(&self) {
         if self.reverses {
             self.motor.set_rpm(-self.motor.rpm());

@@ -27,7 +27,7 @@ impl Shaft {
         &self.layout
     }
 
-    /// Revolutions a minute; above 0 it turns clockwise, and the position rises.
+    /// Returns the revolutions per minute; positive clockwise, with rising positions.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }
@@ -37,7 +37,7 @@ impl Shaft {
         self.rpm = rpm;
     }
 
-    /// The position at a moment; error and warning are not the shaft's matter.
+    /// Returns the position at a moment; error and warning are not set here.
     pub(super) fn reading(&self, at: Moment) -> PositionData {
         let position = (self.whole_steps(at) + self.offset) % self.range();
         let singleturn = position % self.steps();
@@ -47,7 +47,8 @@ impl Shaft {
         PositionData { multiturn, singleturn, error: false, warning: false }
     }
 
-    /// The position at a moment in parts of a step, [`FINE`] bits behind it: what another encoder on this shaft sees.
+    /// Returns the position at a moment in parts of a step, with [`FINE`] additional bits: as seen by another encoder on
+    /// this shaft.
     pub(super) fn fine(&self, at: Moment) -> u64 {
         let whole = (self.whole_steps(at) + self.offset) % self.range();
         // Not negative, below 1.
@@ -67,7 +68,7 @@ impl Shaft {
         self.offset = (self.layout.steps(&wanted) % range + range - self.whole_steps(at)) % range;
     }
 
-    /// Steps in a revolution.
+    /// Returns the steps in a revolution.
     fn steps(&self) -> u64 {
         1 << self.layout.singleturn_bits()
     }
@@ -111,7 +112,7 @@ mod tests {
 
     #[test]
     fn parts_of_a_step_are_seen_too() {
-        // 60 rpm: 2^17 steps a second, 131.072 in a millisecond; 0.072 of 256 parts are 18.4.
+        // 60 rpm: 2^17 steps per second, 131.072 per millisecond; 0.072 of 256 parts are 18.4.
         let shaft = Shaft::new(Layout::default(), 5, 60.0);
         assert_eq!((shaft.fine(at(0)), shaft.fine(at(1))), (5 << 8, 136 << 8 | 18));
     }

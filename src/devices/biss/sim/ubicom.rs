@@ -1,6 +1,6 @@
-//! The configuration pin: UBICOM on a half-duplex line, byte for byte, with its faults. Chosen here (`U`): the encoder
-//! answers a millisecond after the last byte; what it does not understand it does not answer; what comes while it works
-//! or talks is lost.
+//! The configuration pin: UBICOM on a half-duplex line, byte by byte, with its faults. Chosen here (`U`): the encoder
+//! replies a millisecond after the last byte; it does not reply to invalid requests; bytes received while it is busy or
+//! sending are lost.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::sim::Faults;
 use crate::sim::line::{Queue, VirtualLine, Wires};
 use crate::units::Moment;
 
-/// The line with its encoder, seen from the host. Made of a [`Config`].
+/// Line with its encoder, as seen from the host. Created from a [`Config`].
 #[derive(Clone)]
 pub struct Port {
     encoder: Encoder,
@@ -26,7 +26,7 @@ pub struct Port {
     /// Bytes by the moment in which they have arrived.
     to_encoder: Queue<u8>,
     to_host: Queue<u8>,
-    /// When the encoder heard the last byte of a frame that is not complete.
+    /// When the encoder received the last byte of an incomplete frame.
     heard: Option<Moment>,
     work: Option<Work>,
     /// Until then the encoder drives the line.
@@ -41,7 +41,7 @@ struct Work {
     request: Request,
 }
 
-/// Of events at the same moment the first of these happens first.
+/// Event. Of simultaneous events the first of these happens first.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderAnswers,
@@ -53,7 +53,7 @@ pub(crate) enum Event {
 impl Port {
     const PROCESSING: Duration = Duration::from_millis(1);
 
-    /// The virtual line as `config` wants it.
+    /// Creates the virtual line from `config`.
     pub fn new(config: &Config) -> Self {
         Port {
             encoder: Encoder::new(config),
@@ -70,12 +70,12 @@ impl Port {
         }
     }
 
-    /// The encoder.
+    /// Returns the encoder.
     pub const fn encoder(&self) -> &Encoder {
         &self.encoder
     }
 
-    /// The encoder, to turn its shaft or to warm it.
+    /// Returns the encoder, to turn its shaft or to heat it.
     pub const fn encoder_mut(&mut self) -> &mut Encoder {
         &mut self.encoder
     }
@@ -106,7 +106,7 @@ impl Port {
         }
     }
 
-    /// A whole frame has come. Only one request is worked on at a time.
+    /// Takes a whole frame. Only one request is processed at a time.
     fn take(&mut self, at: Moment, frame: &[u8]) {
         let silent = self.wires.faults.silent_after().is_some_and(|frames| frames <= self.frames);
         self.frames = self.frames.saturating_add(1);
@@ -133,7 +133,7 @@ impl Port {
             }
             Request::Position { .. } => None,
         };
-        // A write that cost the encoder its power is not answered any more.
+        // A write that cost the encoder its power is not answered.
         if let Some(reply) = reply.filter(|_| self.encoder.has_power()) {
             self.talks_until = self.drive(at, &reply.emit(), true);
         }
@@ -144,7 +144,7 @@ impl Port {
         let format = if from_encoder { FORMAT } else { self.wires.host };
         let sent = self.wires.send(start, format.baud.time_of_bits(character_bits(format)), bytes);
         for heard in sent.heard {
-            // Between different settings no byte is read as it was sent.
+            // With different settings no byte is received as it was sent.
             let byte = if self.wires.host == FORMAT { heard.byte } else { self.wires.rng.u8(..0x80) };
             let to = if from_encoder { &mut self.to_host } else { &mut self.to_encoder };
             to.insert(heard.end, byte);

@@ -1,6 +1,6 @@
 //! The test of the Wiegand sensor (manual 6.3): pulses are collected for 515 revolutions in each direction. The encoder
-//! does not know which direction is which; chosen here (`U`): it notices that the second run turns as the first did, and
-//! a sensor without pulses fails with code 01h.
+//! does not know which direction is which; chosen here (`U`): it notices that the second run turns in the same direction as
+//! the first, and a sensor without pulses fails with code 01h.
 
 use crate::devices::biss::protocol::{WiegandCommand, WiegandStatus};
 use crate::units::Moment;
@@ -8,7 +8,7 @@ use crate::units::Moment;
 /// The pulses of the sensor, in tenths of a volt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pulses {
-    /// Average; 0: no pulses at all.
+    /// Average; 0: no pulses.
     pub(super) average: u8,
     /// Average less four standard deviations.
     pub(super) lowest: u8,
@@ -44,7 +44,7 @@ impl Wiegand {
         }
     }
 
-    /// A command is written; `false`: it is refused. Saving is the [`Encoder`](super::Encoder)'s matter.
+    /// Handles a command; returns `false` if it is refused. The [`Encoder`](super::Encoder) does the saving.
     pub(super) fn write(&mut self, now: Moment, value: u8) -> bool {
         let status = match (WiegandCommand::from_byte(value), self.status) {
             (WiegandCommand::Stop, _) => WiegandStatus::Stopped,
@@ -94,7 +94,7 @@ impl Wiegand {
         }
     }
 
-    /// The mode is left, or power is lost. The result stays until power is lost.
+    /// Ends the run when the mode is left, or power is lost. The result stays until power is lost.
     pub(super) fn abandon(&mut self) {
         (self.command, self.status) = (0, WiegandStatus::Stopped);
     }

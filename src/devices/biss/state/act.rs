@@ -1,4 +1,4 @@
-//! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
+//! The user's actions on an encoder: edits take effect at once, everything else is a job of the session or a task.
 
 use std::time::Duration;
 
@@ -40,7 +40,7 @@ impl Encoder {
             BissAction::Watch(register, on) => self.watch(*register, on),
             BissAction::ReadBank(bank) => self.read_bank(bank, services),
             BissAction::SeeBank(bank) => {
-                // Only when nothing else is to be done, also no stream that it would interrupt, and only once.
+                // Only if nothing else is to be done, no stream would be interrupted, and only once.
                 let free = self.session.is_ready() && self.streamed().is_none();
                 if free && self.seen.insert(bank) {
                     self.read_bank(bank, services);
@@ -62,7 +62,7 @@ impl Encoder {
         }
     }
 
-    /// Watches a register beside the position, or no more.
+    /// Starts or stops watching a register in addition to the position.
     fn watch(&mut self, register: Register, on: bool) {
         let mut watched = self.record.watched();
         watched.retain(|own| own.address != register.address);
@@ -96,8 +96,8 @@ impl Encoder {
         }
     }
 
-    /// A bank is worth being read when it comes in sight: it was not, nothing runs, no
-    /// stream would be interrupted, and it was not tried in vain.
+    /// Returns whether a bank that becomes visible should be read: it was not read, nothing runs, no stream would be
+    /// interrupted, and no earlier attempt failed.
     pub fn wants(&self, group: &Group) -> bool {
         let free = self.session.is_ready() && self.streamed().is_none();
         free && !group.is_read(&self.memory) && !self.seen.contains(&group.bank)
@@ -113,7 +113,7 @@ impl Encoder {
         if !area.access.writes() {
             return Some(TEXTS.text("data.read_only"));
         }
-        // A profile is a text: what it says about access does not protect it.
+        // A profile is a text: the access that it records does not protect it.
         (self.session.phase != Phase::Offline && self.session.is_writing()).then(|| Text::new("session.busy"))
     }
 
@@ -127,7 +127,7 @@ impl Encoder {
         }
     }
 
-    /// A profile was read for a file.
+    /// Handles a profile that was read for a file.
     pub(super) fn saved(&mut self, profile: BissProfile, services: &mut Services) {
         let edits = self.is_dirty().then(|| self.memory.count());
         let remarks = explained::saved_unsaved(&profile).into_iter().collect();

@@ -19,9 +19,9 @@ pub enum BissAction {
     Watch(Box<Register>, bool),
     /// Read a bank; `None`: the direct registers.
     ReadBank(Option<u8>),
-    /// Read a bank that is in sight and was never read, when nothing else is to be done.
+    /// Read a bank that has become visible and was never read, when nothing else is to be done.
     SeeBank(Option<u8>),
-    /// Read an area of plain data, by its first bank.
+    /// Read a plain data area, by its first bank.
     ReadArea(u8),
     /// Edit bytes of plain data.
     Put {
@@ -35,23 +35,23 @@ pub enum BissAction {
         start: RegisterAddress,
         count: usize,
     },
-    /// Show what a change would do.
+    /// Show the effect of a change.
     Plan(Box<Change>),
-    /// Show what a mounting run would do; the plain data comes from a profile that is open in another session.
+    /// Show the effect of a mounting run; the plain data comes from a profile that is open in another session.
     PlanMounting {
         /// The steps, without the data.
         run: Box<MountingRun>,
         motor: MotorSource,
-        /// Whose data.
+        /// Session of the profile.
         data: Option<SessionId>,
     },
-    /// Answer what a procedure asks.
+    /// Answer the task of a procedure.
     Answer(Task, Answer),
     /// Put a procedure that is over away.
     CloseGuide,
     /// Back to operation, with the password cleared.
     LeadBack,
-    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
     /// Save the profile.
     Save(PathBuf),

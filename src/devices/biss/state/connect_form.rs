@@ -16,26 +16,26 @@ use crate::link::{LinkUrl, Scheme};
 use crate::parameter::Values;
 use crate::units::Parity;
 
-/// The way to the encoder.
+/// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BissLinkKind {
     /// The virtual encoder in this program.
     #[default]
     Virtual,
-    /// Its configuration pin, over a serial line.
+    /// Configuration pin, over a serial port.
     Pin,
-    /// Its bus, over an adapter.
+    /// Bus, over an adapter.
     Bus,
     /// A recorded trace.
     Replay,
 }
 
-/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
-/// for what is usual.
+/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
+/// means the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BissForm {
     pub kind: BissLinkKind,
-    /// The virtual encoder stands behind a virtual adapter; what was recorded passed an adapter.
+    /// Set for a virtual encoder behind a virtual adapter, or a recording through an adapter.
     pub behind_adapter: bool,
     /// Over a network, and not a serial port of this machine.
     pub network: bool,
@@ -46,11 +46,11 @@ pub struct BissForm {
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// Bits a second on the configuration pin; empty: 115200.
+    /// Baud rate of the configuration pin; empty: 115200.
     pub baud: String,
     /// Parity on the configuration pin.
     pub parity: Parity,
-    /// Which byte of a register's number comes first on the configuration pin; `None`: detect it.
+    /// Byte order of register numbers on the configuration pin; `None`: detect it.
     pub order: Option<ByteOrder>,
     /// Whether the line echoes; unknown: detect it.
     pub echo: Echo,
@@ -58,7 +58,7 @@ pub struct BissForm {
     pub clock: String,
     /// The adapter leaves the encoder's supply on at the end.
     pub leave_supply: bool,
-    /// Bits of turns of an encoder that does not tell its frame.
+    /// Turn bits of an encoder that does not report its frame.
     pub turns: String,
     /// Bits of steps of such an encoder.
     pub steps: String,
@@ -66,7 +66,7 @@ pub struct BissForm {
     pub crc: String,
     /// Milliseconds that a reply may come later than usual.
     pub margin: String,
-    /// The virtual encoder's speed in revolutions a minute.
+    /// The virtual encoder's speed in revolutions per minute.
     pub rpm: String,
     /// Injected faults.
     pub fault: String,
@@ -108,7 +108,7 @@ impl Default for BissForm {
 impl FormModel for BissForm {
     type Finder = NoFinder<Self>;
 
-    // The virtual encoder as the window begins with it: behind an adapter, so that everything can be seen.
+    // The virtual encoder initially offered by the window: behind an adapter, so that everything is visible.
     fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set(BRIDGE.0, BRIDGE.1);
@@ -155,7 +155,7 @@ impl FormModel for BissForm {
 }
 
 impl BissForm {
-    /// Fills in the entry of a parameter; false where there is none that can show it.
+    /// Fills in the entry of a parameter; returns false if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfter::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;
@@ -202,12 +202,12 @@ impl BissForm {
         true
     }
 
-    /// The encoder is reached over its bus.
+    /// Returns whether the encoder is reached over its bus.
     pub fn is_on_the_bus(&self) -> bool {
         self.kind == BissLinkKind::Bus || (self.may_say_what_is_between() && self.behind_adapter)
     }
 
-    /// A link of this kind leads to the configuration pin or to the bus.
+    /// Returns whether a link of this kind leads to the configuration pin or to the bus.
     pub fn may_say_what_is_between(&self) -> bool {
         matches!(self.kind, BissLinkKind::Virtual | BissLinkKind::Replay)
     }
@@ -264,8 +264,8 @@ impl BissForm {
         parameters
     }
 
-    /// Returns whether a parameter belongs to this way. Those of other ways are dropped; unknown ones are kept, so that
-    /// they are refused by name.
+    /// Returns whether a parameter belongs to this kind of connection. Those of other kinds are dropped; unknown ones are
+    /// kept, so that they are refused by name.
     fn belongs(&self, name: &str) -> bool {
         let way = if self.is_on_the_bus() { Transport::Adapter } else { Transport::ConfigPin };
         let own = |way: Transport| way.parameters().contains(&name);
@@ -295,7 +295,7 @@ mod tests {
             "tcp:[::1]:4001",
             "bridge:/dev/ttyACM0?clock=2000000",
             "bridge:tcp:adapter:5000",
-            // Issue 22.16: another choice than the check box stays in the link.
+            // Issue 22.16: a value other than that of the check box stays in the link.
             "bridge:/dev/ttyACM0?leave-supply=on",
             "bridge:tcp:adapter:5000?clock=2000000&leave-supply=on",
             "bridge:/dev/ttyACM0?leave-supply=off",

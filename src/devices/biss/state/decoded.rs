@@ -1,5 +1,5 @@
-//! The value of a register in words: as decoded by its description, and beyond that for registers with a role and the
-//! data sheet.
+//! The value of a register as text: as decoded by its description, and in addition for registers with a role and the data
+//! sheet.
 
 use super::encoder::Encoder;
 use super::table::RegisterEntry;
@@ -58,7 +58,7 @@ impl Encoder {
         }
     }
 
-    /// Fields of the data sheet that need more than a description can say: times, banks, polynomials, its sum.
+    /// Returns the meaning of data sheet fields that a description cannot express: times, banks, polynomials, the checksum.
     fn of_data_sheet(&self, register: &Register, bytes: &[u8]) -> Option<Text> {
         let offset = register.address.address();
         let bank = [EdsBank::Common, EdsBank::Encoder]
@@ -78,7 +78,7 @@ impl Encoder {
     }
 }
 
-/// A quantity with its unit, three decimals at most.
+/// Returns a quantity with its unit, with at most three decimals.
 fn quantity(value: f64, unit: &str) -> Text {
     let value = (value * 1000.0).round() / 1000.0;
     TEXTS.text("registers.quantity").with_number("value", value, decimals(value)).with("unit", unit)
@@ -102,7 +102,7 @@ mod tests {
         encoder.meaning(&shown).map(|text| text.words(language)).unwrap_or_default()
     }
 
-    /// Reference 4: every register that needs more than its number to be understood.
+    /// Reference 4: every register whose number alone is not enough to understand it.
     #[test]
     fn every_register_of_the_reference_says_what_it_means() {
         let mut encoder = Encoder::with(Session::at_link(SessionId::default(), "sim:".parse().unwrap()));

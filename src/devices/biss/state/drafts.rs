@@ -1,4 +1,4 @@
-//! Edits of an encoder's plain data, kept over a crash: global address and byte.
+//! Edits of an encoder's plain data, kept after a crash: global address and byte.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;

@@ -1,4 +1,4 @@
-//! A BiSS encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
+//! An open BiSS encoder, or a profile of one: its known data, the user's edits, and the running jobs.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use crate::sim::Motor;
 /// A BiSS encoder, or a profile of one.
 pub struct Encoder {
     pub session: Session<Biss>,
-    /// Everything there is to see of it, as it was found.
+    /// Everything read of it.
     pub survey: Option<Survey>,
     /// The status as last read.
     pub status: Option<Status>,
@@ -30,20 +30,20 @@ pub struct Encoder {
     pub check: Option<Vec<CheckLine>>,
     /// The description of its registers.
     pub description: Option<Arc<Description>>,
-    /// Its registers and the edits beside them.
+    /// Its registers and their edits.
     pub memory: Memory,
     /// Its registers as a table.
     pub table: Table,
     /// The recording from polling.
     pub record: Record,
-    /// A procedure on its way, or as it ended.
+    /// The running procedure, or the last one with its end.
     pub guide: Option<Guide>,
-    /// Why the data could not be read on the last request.
+    /// Why the last request for data was refused.
     pub refusal: Option<Text>,
     /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
     pub(super) meaning: Meaning,
-    /// Banks that were read because they came in sight, or could not be: they are not asked for by themselves again.
+    /// Banks read because they became visible, or that could not be read: they are not requested automatically again.
     pub(super) seen: BTreeSet<Option<u8>>,
     /// Banks that were written, to be read again.
     pub(super) read_after: BTreeSet<u8>,
@@ -77,7 +77,7 @@ impl Encoder {
         self.description = description;
     }
 
-    /// The registers that a profile holds.
+    /// Takes the registers of a profile.
     pub(super) fn take_profile(&mut self, profile: &BissProfile) {
         let sheets = profile.recorded.eds.iter().map(|listed| listed.bank);
         for bank in profile.banks().chain(sheets) {
@@ -85,13 +85,13 @@ impl Encoder {
         }
     }
 
-    /// The profile, where this is one.
+    /// Returns the profile, if this is one.
     pub fn profile(&self) -> Option<&BissProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<BissProfile>()
     }
 
-    /// The profile as the user wants it, where this is one.
+    /// Returns the edited profile, if this is one.
     pub(crate) fn wanted_profile(&self) -> Option<BissProfile> {
         let mut profile = self.profile()?.clone();
         for (at, byte) in self.memory.iter() {
@@ -105,7 +105,7 @@ impl Encoder {
         self.survey.as_ref().map(|survey| &survey.identity)
     }
 
-    /// Its data sheet, common part first: as it was found, or as a profile holds it.
+    /// Returns its data sheet, common part first: as read, or from a profile.
     pub fn data_sheet(&self) -> Option<[Result<Eds, EdsError>; 2]> {
         if let Some(identity) = self.identity() {
             return identity.data_sheet.as_ref().map(|sheet| [sheet.common.eds, sheet.encoder.eds]);
@@ -141,7 +141,7 @@ impl Encoder {
     /// Takes over a reading of the encoder; edits stay, unless they are for another encoder.
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let fresh = std::mem::take(&mut self.session.just_connected);
-        // Without a serial number, it may be any of its type.
+        // Without a serial number, it may be any encoder of its type.
         let unproven = fresh && self.survey.is_some() && survey.identity.serial_number.is_empty();
         if unproven || self.is_another(&survey.identity) {
             self.replaced_by(&survey.identity.serial_number, services);
@@ -168,15 +168,15 @@ impl Encoder {
         self.list_backups(services);
     }
 
-    /// The device mode in which registers were read just now; `None` in operation.
+    /// Takes the device mode in which registers were read just now; `None` in operation.
     pub(super) fn see_mode(&mut self, unsaved: Option<DeviceMode>) {
         if let Some(mode) = self.status.as_mut().and_then(|status| status.mode.as_mut()) {
             *mode = unsaved.unwrap_or(DeviceMode::OPERATION);
         }
     }
 
-    /// The device mode in which its registers may show values that were never saved: of the encoder, or of a profile as it
-    /// was read.
+    /// Returns the text of the device mode in which its registers may show values that were never saved: of the encoder, or
+    /// of a profile when it was read.
     pub fn unsaved(&self) -> Option<Text> {
         if let Some(profile) = self.profile() {
             return words::profile_unsaved(profile);
@@ -192,7 +192,7 @@ impl Encoder {
     }
 }
 
-/// The name by which the log and the jobs call an encoder.
+/// Returns the name by which the log and the jobs call an encoder.
 fn title(identity: &Identity) -> String {
     let name = identity.description.name();
     if identity.serial_number.is_empty() { name.to_owned() } else { format!("{name} · {}", identity.serial_number) }

@@ -135,12 +135,12 @@ impl SessionEvents for Encoder {
                 services.notify(Severity::Good, vec![text], Some(&self.session.name()));
                 self.submit(BissJob::Survey, services);
             }
-            // The survey tells more.
+            // The survey contains more.
             BissOutput::Identity(_) => {}
         }
     }
 
-    /// Neither the encoder nor the adapter answers.
+    /// Returns whether neither the encoder nor the adapter answers.
     fn is_silence(&self, error: &JobError) -> bool {
         let is_lost = match error {
             JobError::Device(cause) => cause.is_lost(),
@@ -162,7 +162,7 @@ impl SessionEvents for Encoder {
         if stands_there || !moves || self.session.save_to.is_some() || self.session.just_connected {
             return stands_there;
         }
-        // It stands on the pages that show data.
+        // It is shown on the pages with data.
         self.refusal = Some(first(texts));
         true
     }

@@ -1,4 +1,4 @@
-//! A BiSS encoder in words: the errors of jobs with it, and what is said on the way.
+//! Texts of a BiSS encoder: the errors of its jobs, and messages of its session.
 
 mod check;
 mod damage;
@@ -32,7 +32,7 @@ pub fn name(name: &Name) -> Text {
     Text::new("plain.words").with_name("words", name.english(), name.german())
 }
 
-/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -44,7 +44,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// The wire itself failed, so that nothing more can be asked over it: why.
+/// Returns why the connection failed, if nothing more can be requested over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
@@ -57,7 +57,7 @@ fn lost(error: &Error) -> Option<&LinkError> {
     }
 }
 
-/// An exchange with a BiSS encoder that failed.
+/// Returns the text for an exchange with a BiSS encoder that failed.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -138,22 +138,22 @@ fn layout(error: &LayoutError) -> Text {
     }
 }
 
-/// An encoder in a device mode, where its registers may show what was never saved.
+/// Returns the text for an encoder in a device mode, in which its registers may show values that were never saved.
 pub fn unsaved(mode: DeviceMode) -> Text {
     in_mode("biss.unsaved", mode)
 }
 
-/// The same of an encoder that was saved just now; `None` where it was in operation.
+/// Returns the same for an encoder that has just been saved; `None` if it was in operation.
 pub fn saved_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(unsaved)
 }
 
-/// A profile that was read in a device mode; `None` where the encoder was in operation.
+/// Returns the text for a profile that was read in a device mode; `None` if the encoder was in operation.
 pub fn profile_unsaved(profile: &BissProfile) -> Option<Text> {
     profile.recorded.device_mode.map(profile_unsaved_in)
 }
 
-/// A profile that was read in this device mode.
+/// Returns the text for a profile that was read in this device mode.
 pub fn profile_unsaved_in(mode: DeviceMode) -> Text {
     in_mode("biss.profile_unsaved", mode)
 }
@@ -162,7 +162,7 @@ fn in_mode(id: &'static str, mode: DeviceMode) -> Text {
     TEXTS.text(id).with_text("mode", self::mode(mode))
 }
 
-/// A shaft that has to stand and does not.
+/// Returns the text for a shaft that must stand still and does not.
 fn moving(rpm: Option<f64>) -> Text {
     let Some(rpm) = rpm.filter(|rpm| rpm.abs() >= 0.05) else { return TEXTS.text("biss.moving") };
     let id = if rpm > 0.0 { "biss.moving_cw" } else { "biss.moving_ccw" };
@@ -179,7 +179,7 @@ pub fn item_text(requested: RequestedItem) -> Text {
     }
 }
 
-/// An encoder that is not the one of the description that comes nearest.
+/// Returns the text for an encoder that differs from the best matching description.
 pub fn mismatch(mismatch: &Mismatch) -> Text {
     TEXTS
         .text("biss.mismatch")
@@ -197,7 +197,7 @@ pub fn remark(remark: &DeviceMessage) -> Vec<Text> {
     }
 }
 
-/// A description of the user's own that cannot be read or used.
+/// Returns the text for a description of the user's own that cannot be read or used.
 fn description(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<DescriptionError>() {

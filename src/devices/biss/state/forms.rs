@@ -21,37 +21,37 @@ impl Default for PresetForm {
 }
 
 impl PresetForm {
-    /// The entries that stand for a value.
+    /// Creates the entries of a value.
     pub fn of(value: PresetValue, layout: &Layout) -> Self {
         let steps = (1_u64 << layout.singleturn_bits()) as f64;
         let degrees = f64::from(value.singleturn()) * 360.0 / steps;
         PresetForm { degrees: format!("{}", (degrees * 1e6).round() / 1e6), turns: value.multiturn().to_string() }
     }
 
-    /// The step that the degrees stand for: the nearest one.
+    /// Returns the step nearest to the entered degrees.
     ///
     /// # Errors
-    /// A sentence that names what would do.
+    /// A sentence that names the valid entries.
     pub fn singleturn(&self, layout: &Layout) -> Result<u32, Text> {
         let degrees = within(TEXTS.text("preset_card.degrees"), &self.degrees, 0.0, 359.999_999)?;
         let steps = 1_u64 << layout.singleturn_bits();
-        // Below the number of steps, which fits into 32 bits.
+        // Less than the number of steps, which fits into 32 bits.
         Ok(((degrees / 360.0 * steps as f64).round() as u64 % steps) as u32)
     }
 
-    /// The revolutions.
+    /// Returns the revolutions.
     ///
     /// # Errors
-    /// A sentence that names what would do.
+    /// A sentence that names the valid entries.
     pub fn multiturn(&self, layout: &Layout) -> Result<u32, Text> {
         let last = u32::try_from((1_u64 << layout.multiturn_bits()) - 1).unwrap_or(u32::MAX);
         whole(TEXTS.text("preset_card.turns"), &self.turns, 0, last.min(PresetValue::MAX))
     }
 
-    /// The value that the entries stand for.
+    /// Returns the value of the entries.
     ///
     /// # Errors
-    /// A sentence that names what would do; of two bad entries it is about the first.
+    /// A sentence that names the valid entries; of two invalid ones, for the first.
     pub fn value(&self, layout: &Layout) -> Result<PresetValue, Text> {
         let (singleturn, multiturn) = (self.singleturn(layout)?, self.multiturn(layout)?);
         PresetValue::new(singleturn, multiturn).ok_or_else(|| TEXTS.text("preset_card.too_wide"))

@@ -7,11 +7,11 @@ use crate::devices::biss::procedures::procedure::{
 };
 use crate::devices::biss::profile::Op;
 
-/// A procedure on its way, or as it ended.
+/// The running procedure, or its end.
 pub struct Guide {
     ops: Vec<Op>,
     progress: Option<ProcedureProgress>,
-    /// The step that it was at when it was cut off: what is told last is the way back from there.
+    /// The step at which it was interrupted: the step reported last is of the return to operation.
     pub(super) cut: Option<ProcedureStep>,
     pub(super) seat: OperatorChannel,
     /// The skipped tasks, with their operations.
@@ -23,17 +23,17 @@ pub struct Guide {
 /// The end of a procedure.
 #[derive(Clone, Debug)]
 pub enum End {
-    /// To its end: what came of each operation.
+    /// Run to its end: the result of each operation.
     Done(Vec<Outcome>),
-    /// Early: what happened, in which state the encoder was left, and what to do.
+    /// Ended early: what happened, the state in which the encoder was left, and what to do.
     Failed {
-        /// In words.
+        /// What happened, as texts.
         texts: Vec<Text>,
         /// The results of the operations before.
         before: Vec<Outcome>,
         /// The encoder may not be in operation.
         may_lead_back: bool,
-        /// A person wanted it.
+        /// The user cancelled.
         cancelled: bool,
     },
 }
@@ -41,18 +41,18 @@ pub enum End {
 /// The progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
-    /// It is over.
+    /// The step is done.
     Done,
-    /// It waits for a person.
+    /// It waits for the operator.
     Waits,
     Runs,
-    /// It was left out.
+    /// It was skipped.
     Skipped,
     /// It ended the procedure.
     Failed,
-    /// A person ended the procedure in it.
+    /// The user cancelled the procedure in this step.
     Cancelled,
-    /// It comes later, or not any more.
+    /// It comes later, or not at all.
     Ahead,
 }
 
@@ -61,7 +61,7 @@ pub enum Reached {
 pub struct GuideStep<'a> {
     /// The operation that it belongs to.
     pub op: &'a Op,
-    /// It is the first of its operation.
+    /// First step of its operation.
     pub is_first: bool,
     pub step: ProcedureStep,
     pub reached: Reached,
@@ -91,7 +91,7 @@ impl Guide {
         self.progress.as_ref().filter(|_| self.is_running()).map(|news| &news.detail)
     }
 
-    /// Returns the present task of the person.
+    /// Returns the present task of the operator.
     pub fn demand(&self) -> Option<&Demand> {
         match self.detail()? {
             Detail::Demand(demand) => Some(demand),
@@ -99,7 +99,7 @@ impl Guide {
         }
     }
 
-    /// Answers what is being asked.
+    /// Answers the present task.
     pub(super) fn answer(&mut self, task: Task, answer: Answer) {
         if self.is_running() {
             if let Some(op) = self.progress.as_ref().map(|news| news.op).filter(|_| answer == Answer::Skip) {
@@ -109,7 +109,7 @@ impl Guide {
         }
     }
 
-    /// All steps, in their order.
+    /// Returns all steps in order.
     pub fn steps(&self) -> Vec<GuideStep<'_>> {
         let at = self.progress.as_ref().map(|news| (news.op, self.cut.unwrap_or(news.step)));
         let mut steps = Vec::new();
@@ -158,13 +158,13 @@ impl Guide {
                 steps.iter().position(|step| *step == ProcedureStep::Await(task))
             }
         }?;
-        // It is led back where its mode was entered.
+        // It is returned to operation if its mode was entered.
         let entered = steps.iter().take(from).any(|step| matches!(step, ProcedureStep::Enter(_)));
         let led_back = steps.iter().position(|step| *step == ProcedureStep::LeadBack).filter(|_| entered);
         Some(from..led_back.unwrap_or(steps.len()))
     }
 
-    /// This is the way back from where it was cut off, and it was gone to its end.
+    /// Returns whether this step is of the return to operation after an interruption, and was completed.
     fn was_led_back(&self, op: usize, step: ProcedureStep) -> bool {
         let was_reported = self.progress.as_ref().is_some_and(|news| (news.op, news.step) == (op, step));
         let in_operation = matches!(self.end, Some(End::Failed { may_lead_back: false, .. }));
@@ -221,11 +221,11 @@ mod tests {
         let led = [&told[..], &[ProcedureStep::LeadBack]].concat();
         assert_eq!(reached(&led, Some(run), false), [Done, Done, Done, Failed, Ahead, Ahead, Done]);
         assert_eq!(reached(&led, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
-        // The link is gone: nothing is told of a way back.
+        // The link is lost: no return to operation is reported.
         assert_eq!(reached(&told, Some(run), true), [Done, Done, Done, Failed, Ahead, Ahead, Ahead]);
         // It has never left operation.
         assert_eq!(reached(&told[..2], Some(turn), false), [Done, Failed, Ahead, Ahead, Ahead, Ahead, Ahead]);
-        // The way back itself.
+        // The return to operation itself.
         assert_eq!(reached(&led, Some(ProcedureStep::LeadBack), true), [Done, Done, Done, Done, Done, Done, Failed]);
         assert_eq!(reached(&[], None, false), [Ahead; 7]);
     }

@@ -19,11 +19,11 @@ impl Encoder {
         self.session.log_answer(vec![transport_text(identity), identity_text(identity)], services);
     }
 
-    /// A write has begun: what it changes, old and new.
+    /// Logs that a write has begun, with its changes, old and new.
     pub(super) fn log_operations(&self, what: &Text, prepared: &Prepared, services: &mut Services) {
         let identity = &prepared.identity;
         let operations = prepared.plan.ops.iter().flat_map(|op| match op {
-            // Of long runs the first registers.
+            // For many consecutive registers, only the first.
             Op::StoreData { .. } => vec![explain::plain(op.note(&identity.description))],
             op => {
                 let OpWords { item, changes } = words::op(op, &identity.layout);
@@ -42,7 +42,7 @@ impl Encoder {
     }
 }
 
-/// One thing that an operation changes, old and new.
+/// Returns the text for one thing that an operation changes, old and new.
 fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     let text = match part {
         None => TEXTS.text("log.operation"),
@@ -51,7 +51,7 @@ fn operation(item: &Text, ChangeWords { part, old, new }: ChangeWords) -> Text {
     text.with_text("item", item.clone()).with_text("old", old).with_text("new", new)
 }
 
-/// Returns the way to the encoder in words.
+/// Returns the text of the connection to the encoder.
 fn transport_text(identity: &Identity) -> Text {
     match (&identity.adapter, identity.order) {
         (Some(hello), _) => Text::new("log.adapter")
@@ -63,7 +63,7 @@ fn transport_text(identity: &Identity) -> Text {
     }
 }
 
-/// Returns the reported identity in words.
+/// Returns the reported identity as text.
 fn identity_text(identity: &Identity) -> Text {
     let firmware = identity.firmware.map_or_else(|| Text::new("encoder_card.not_told"), explain::plain);
     TEXTS

@@ -1,5 +1,5 @@
-//! The validity of the last position: from the position itself, or, if the way does not carry it, from the registers of
-//! errors and warnings when the status was last read.
+//! The validity of the last position: from the position itself, or, if the connection does not transmit it, from the
+//! registers of errors and warnings when the status was last read.
 
 use super::encoder::Encoder;
 use crate::devices::biss::procedures::Bits;
@@ -7,7 +7,7 @@ use crate::devices::biss::procedures::Bits;
 /// A mark on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// It is not valid.
+    /// The position is invalid.
     Invalid,
     /// The encoder warns.
     Warned,

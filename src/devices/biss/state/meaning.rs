@@ -13,13 +13,13 @@ use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Reads frames in the order in which they went over the line.
+/// Decoder of frames, in the order in which they were transmitted.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
-    /// Which byte of a register's number comes first, once known.
+    /// Byte order of register numbers, once known.
     pub(super) order: Option<ByteOrder>,
     requested: Option<Request>,
-    /// The last request went over the configuration pin.
+    /// The last request was sent over the configuration pin.
     is_pin: bool,
     bank: Option<u8>,
 }
@@ -128,8 +128,8 @@ mod tests {
         (said.fault, words.join(" "))
     }
 
-    /// Issue 22.11: frames of the configuration pin (reference UBICOM 6), broken by hand, have a meaning and a mark; the reply may
-    /// still come behind them.
+    /// Issue 22.11: damaged frames of the configuration pin (reference UBICOM 6) have a meaning and a mark; the reply may
+    /// still follow.
     #[test]
     fn a_broken_reply_has_a_meaning_and_a_mark() {
         let request = "80 01 01 02 00 26 00 55";
@@ -153,7 +153,7 @@ mod tests {
         let mut meaning = Meaning::default();
         said(&mut meaning, Direction::Sent, "80 01 02 03 00 2B 00 2A 24");
         assert_eq!(said(&mut meaning, Direction::Received, "80 01 02 01 00 A0 DB").0, Some(TraceFault::Reported));
-        // Behind an adapter: a packet whose checksum is wrong.
+        // Behind an adapter: a packet with a wrong checksum.
         let sent = bridge::Request::Hello.emit(1).emit();
         let mut broken = sent.clone();
         broken[2] ^= 1;

@@ -1,8 +1,8 @@
-//! The registers of an encoder as they were read, and beside them as the user wants them. Nothing here is written to an
-//! encoder; a plan is made of the difference.
+//! The registers of an encoder as read, and the edited values. Nothing is written to an encoder here; a plan is made from
+//! the difference.
 //!
-//! Only plain data can be edited: the areas that the description says may be written. What else is written — a filter, a
-//! preset, a command — has a review of its own and stands nowhere as an edit.
+//! Only plain data can be edited: the areas that the description marks as writable. Other writes (a filter, a preset, a
+//! command) have their own review and are no edits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,22 +29,22 @@ impl EditBase for Registers {
 /// Registers with the user's edits.
 pub type Memory = Edits<Registers>;
 
-/// Why an edit cannot be made.
+/// Why an edit is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum MemoryError {
-    /// It has not been read, so the value to be replaced is not known.
+    /// The register has not been read, so the value to be replaced is not known.
     #[error("{0} has not been read")]
     NotRead(RegisterAddress),
-    /// It is no plain data.
+    /// It is not plain data.
     #[error("{0} is no plain data")]
     NoData(RegisterAddress),
 }
 
-/// Runs of bytes: where each begins, as the encoder has it, as it is wanted.
+/// Runs of bytes: start, bytes in the encoder, edited bytes.
 pub type Runs = Vec<(RegisterAddress, Vec<u8>, Vec<u8>)>;
 
 impl Memory {
-    /// Takes bytes that were read, from `start` on. Edits stay, unless they are what the encoder has now.
+    /// Takes bytes read from `start` on. Edits stay unless they equal the encoder's present values.
     pub fn take(&mut self, start: RegisterAddress, bytes: &[u8]) {
         self.read_again(|own| {
             for (at, byte) in (start.global()..).zip(bytes) {
@@ -57,28 +57,28 @@ impl Memory {
         });
     }
 
-    /// A register as it was read; `None`: it was not.
+    /// Returns a register as read; `None` if it was not.
     pub fn read(&self, at: RegisterAddress) -> Option<u8> {
         self.base().read.get(&at).copied()
     }
 
-    /// A register as the user wants it.
+    /// Returns a register as edited.
     pub fn wanted(&self, at: RegisterAddress) -> Option<u8> {
         self.get(at).or_else(|| self.read(at))
     }
 
-    /// Bytes as they were read; `None` unless all were.
+    /// Returns bytes as read; `None` unless all were.
     pub fn bytes(&self, start: RegisterAddress, count: usize) -> Option<Vec<u8>> {
         let place = |at| RegisterAddress::from_global(at).and_then(|at| self.read(at));
         (start.global()..).take(count).map(place).collect()
     }
 
-    /// The bytes of a register of the description, as they were read; `None` unless all were.
+    /// Returns the bytes of a described register as read; `None` unless all were.
     pub fn register(&self, register: &Register) -> Option<Vec<u8>> {
         self.bytes(register.address, register.width.into())
     }
 
-    /// The bytes of an area, as read and as wanted; `None` unless all were read.
+    /// Returns the bytes of an area, as read and as edited; `None` unless all were read.
     pub fn area(&self, area: &Area) -> Option<(Vec<u8>, Vec<u8>)> {
         let places: Vec<RegisterAddress> = places(area).collect();
         let read = places.iter().map(|at| self.read(*at)).collect::<Option<Vec<u8>>>()?;
@@ -86,8 +86,8 @@ impl Memory {
         Some((read, wanted))
     }
 
-    /// The banks of an area that were read, as many as follow each other: a profile may hold some of them only. `None`:
-    /// not one was read whole.
+    /// Returns the consecutive banks of an area that were read, since a profile may contain only some of them; `None` if no
+    /// bank was read completely.
     pub fn part(&self, area: &Area) -> Option<Area> {
         let is_read = |bank: u8| {
             let mut places = (0..RegisterAddress::BANK_SIZE).map(|offset| RegisterAddress::banked(bank, offset));
@@ -111,7 +111,7 @@ impl Memory {
         self.base().changed.contains(&at)
     }
 
-    /// The user wants another value here than the encoder has.
+    /// Returns whether the edited value differs from the encoder's.
     pub fn is_edited(&self, at: RegisterAddress) -> bool {
         self.get(at).is_some()
     }
@@ -140,7 +140,7 @@ impl Memory {
         self.take_back(|at| range.contains(&at.global()));
     }
 
-    /// Runs of edited bytes; none reaches beyond its bank.
+    /// Returns the runs of edited bytes; none extends beyond its bank.
     pub fn changes(&self) -> Runs {
         let mut runs: Runs = Vec::new();
         for (at, byte) in self.iter() {
@@ -157,7 +157,7 @@ impl Memory {
         runs
     }
 
-    /// The edits, for a draft on disk: global address and byte.
+    /// Returns the edits for a draft on disk: global address and byte.
     pub fn edits(&self) -> Vec<(u16, u8)> {
         self.iter().map(|(at, byte)| (at.global(), byte)).collect()
     }
@@ -169,7 +169,7 @@ impl Memory {
     }
 }
 
-/// The registers of an area in their order.
+/// Returns the registers of an area in their order.
 pub fn places(area: &Area) -> impl Iterator<Item = RegisterAddress> + use<> {
     area.banks().flat_map(|bank| {
         (0..RegisterAddress::BANK_SIZE).filter_map(move |offset| RegisterAddress::banked(bank, offset))

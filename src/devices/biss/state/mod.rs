@@ -1,4 +1,4 @@
-//! BiSS C: an encoder on the desk, its registers beside what the user has made of them.
+//! BiSS C: an open encoder, its registers and the user's edits.
 
 mod act;
 mod action;

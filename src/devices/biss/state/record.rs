@@ -15,14 +15,14 @@ use crate::devices::biss::procedures::{Error, FrameRun, PositionReading, Sample,
 use crate::devices::biss::protocol::{Decoded, Decoding, Register};
 use crate::devices::biss::state::explain as words;
 
-/// Positions of the same widths that came one after the other.
+/// Consecutive positions of the same widths.
 #[derive(Default)]
 struct Batch {
     widths: Option<Widths>,
     sightings: Vec<PositionSample>,
 }
 
-/// Bits of turns and of steps, and whether it is known which are which.
+/// Bits of turns and of steps, and whether the split between them is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Widths {
     multiturn: u8,
@@ -37,14 +37,14 @@ impl From<&PositionReading> for Widths {
     }
 }
 
-/// The recorder of an encoder, and what it said last.
+/// Recorder of an encoder, and the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     track: Track<Register>,
     last: Option<PositionReading>,
     crc_errors: u64,
     lost: u64,
-    /// The stream that came last.
+    /// The latest stream.
     stream: Option<Streamed>,
 }
 
@@ -56,19 +56,19 @@ pub struct Streamed {
     period_ns: i64,
     /// The clock of the bus in hertz.
     pub clock_hz: u32,
-    /// More frames were wished than the clock allows.
+    /// More frames were requested than the clock allows.
     pub is_limited: bool,
 }
 
 impl Streamed {
-    /// Frames a second.
+    /// Returns the frames per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
 }
 
 impl Record {
-    /// A session has begun; what was recorded before stays.
+    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.crc_errors, self.stream) = (None, 0, None);
         self.track.begin(began);
@@ -76,11 +76,11 @@ impl Record {
 
     pub(super) fn add(&mut self, samples: Vec<Sample>, dropped: u64) {
         match self.stream {
-            // Whatever was dropped, the numbers of the frames show how many there were.
+            // Even if frames were dropped, their numbers show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
             _ => self.track.note_dropped(dropped),
         }
-        // Thousands a second, with the same widths: recorded together.
+        // Thousands per second, with the same widths: recorded together.
         let mut batch = Batch::default();
         for sample in samples {
             match sample {
@@ -159,7 +159,7 @@ impl Record {
         *batch = Batch::default();
     }
 
-    /// Frames with a wrong checksum came.
+    /// Adds frames with a wrong checksum.
     pub(super) fn add_crc_errors(&mut self, count: u32) {
         self.crc_errors += u64::from(count);
     }
@@ -177,12 +177,12 @@ impl Record {
         self.track.add_watched(&register, &watching);
     }
 
-    /// Records these registers too, and no others beside the position.
+    /// Records these registers, and no others, in addition to the position.
     pub(super) fn watch(&mut self, watched: &[Register]) {
         self.track.watch(watched);
     }
 
-    /// The registers that are recorded beside the position.
+    /// Returns the registers that are recorded in addition to the position.
     pub fn watched(&self) -> Vec<Register> {
         self.track.watched()
     }
@@ -191,17 +191,17 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Frames with a wrong CRC since the link was opened.
+    /// Returns the number of frames with a wrong CRC since the link was opened.
     pub fn crc_errors(&self) -> u64 {
         self.crc_errors
     }
 
-    /// The stream that came last; `None` where positions came one by one since.
+    /// Returns the latest stream; `None` if positions arrived one by one since.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
 
-    /// Positions that are recorded.
+    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }
@@ -222,7 +222,7 @@ impl Recording for Record {
         &mut self.track.recorder
     }
 
-    // Frames that an adapter could not send count as well.
+    // Frames that an adapter could not send are included.
     fn dropped(&self) -> u64 {
         self.track.dropped().saturating_add(self.lost)
     }
@@ -317,7 +317,7 @@ mod tests {
         assert_eq!((last.raw().to_string(), last.error, last.warning), ("00A".to_owned(), None, None));
     }
 
-    /// Issue 22.20: a position of which nothing tells what a turn is has no turns and no degrees.
+    /// Issue 22.20: a position with unknown steps per turn has no turns and no degrees.
     #[test]
     fn what_is_not_known_to_be_an_angle_is_recorded_in_steps() {
         let mut record = Record::default();
@@ -366,7 +366,7 @@ mod tests {
         assert_eq!((record.positions(), record.dropped()), (190, 10), "at the adapter");
         add(&mut record, run(500, 10, 0), 3);
         assert_eq!((record.positions(), record.dropped()), (200, 310), "nobody took three runs of them");
-        // Another stream begins at zero.
+        // Another stream starts at zero.
         let later = FrameRun { at: Moment::after_start(Duration::from_secs(1)), ..run(5, 5, 5) };
         add(&mut record, later, 0);
         assert_eq!((record.positions(), record.dropped()), (205, 315));

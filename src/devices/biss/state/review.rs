@@ -1,4 +1,4 @@
-//! The review of a write into a BiSS encoder: what its plan needs, warns of and costs.
+//! The review of a write to a BiSS encoder: the permissions, warnings and costs of its plan.
 
 use crate::app::explain::plain;
 use crate::app::review::{self, ExecutionMode, OpWords, Permit, Reviewed};
@@ -9,11 +9,11 @@ use crate::devices::biss::profile::Op;
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::explain as words;
 
-/// A write on its way.
+/// Review of a write.
 pub type Review = review::Review<Biss>;
 pub type ReviewState = review::ReviewState<Biss>;
 
-/// A person has to be there for it, or may lead it.
+/// Returns whether an operation requires an operator, or may be guided by one.
 pub(super) fn is_guided(op: &Op) -> bool {
     op.turns() || matches!(op, Op::FirePreset { .. })
 }

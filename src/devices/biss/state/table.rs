@@ -1,5 +1,5 @@
-//! The registers of an encoder as a table: the direct ones, then bank after bank, each register of the description in one
-//! row and every other byte in a row of its own.
+//! The registers of an encoder as a table: the direct ones, then bank after bank, each described register in one row and
+//! every other byte in a row of its own.
 
 use super::memory::Memory;
 use crate::bits::ByteOrder;
@@ -26,27 +26,27 @@ pub struct Group {
 
 #[derive(Clone, Debug)]
 pub struct Row {
-    /// The register; a byte that is not described is one of a width of 1, without a name.
+    /// The register; an undescribed byte is one of width 1, without a name.
     pub register: Register,
-    /// It belongs to an area of plain data.
+    /// It belongs to a plain data area.
     pub is_data: bool,
 }
 
-/// A row with its value.
+/// Row with its value.
 #[derive(Clone, Debug)]
 pub struct RegisterEntry<'a> {
     /// The register.
     pub row: &'a Row,
-    /// Its bytes in the order of their addresses, as the user wants them; `None`: not read.
+    /// Its bytes in the order of addresses, as edited; `None`: not read.
     pub bytes: Option<Vec<u8>>,
-    /// It has another value than at the reading before.
+    /// Its value has changed since the previous reading.
     pub has_changed: bool,
-    /// The user wants another value than the encoder has.
+    /// Its edited value differs from the encoder's.
     pub is_edited: bool,
 }
 
 impl Table {
-    /// The rows of an encoder. `last` is its last bank, where the data sheet tells it.
+    /// Creates the rows of an encoder. `last` is its last bank, if known from the data sheet.
     pub(super) fn of(description: &Description, last: Option<u8>) -> Self {
         let registers = description.registers().iter().filter_map(|own| own.address.bank());
         let areas = description.areas().iter().map(|area| area.last);
@@ -56,12 +56,12 @@ impl Table {
         Table { groups: groups.map(|bank| Group::of(description, bank)).collect() }
     }
 
-    /// The direct registers, then the banks.
+    /// Returns the direct registers, then the banks.
     pub fn groups(&self) -> &[Group] {
         &self.groups
     }
 
-    /// The group of a bank, or of the direct registers.
+    /// Returns the group of a bank, or of the direct registers.
     pub fn position(&self, bank: Option<u8>) -> Option<usize> {
         self.groups.iter().position(|group| group.bank == bank)
     }
@@ -87,17 +87,17 @@ impl Group {
         &self.rows
     }
 
-    /// Its first register.
+    /// Returns its first register.
     pub fn start(&self) -> Option<RegisterAddress> {
         addresses(self.bank).next()
     }
 
-    /// All of its registers have been read.
+    /// Returns whether all of its registers have been read.
     pub fn is_read(&self, memory: &Memory) -> bool {
         self.rows.iter().all(|row| memory.read(row.register.address).is_some() || row.register.access == Access::W)
     }
 
-    /// A row with its value.
+    /// Returns a row with its value.
     pub fn entry<'a>(&'a self, row: usize, memory: &Memory) -> Option<RegisterEntry<'a>> {
         let row = self.rows.get(row)?;
         let places = || {
@@ -120,7 +120,7 @@ impl RegisterEntry<'_> {
         !default.is_empty() && self.bytes.as_ref().is_some_and(|own| own != default)
     }
 
-    /// Its bytes as a number.
+    /// Returns its bytes as a number.
     pub fn number(&self) -> Option<u64> {
         self.row.register.number(self.bytes.as_ref()?)
     }

@@ -1,4 +1,4 @@
-//! The data and the jobs of a BiSS encoder in words.
+//! The data and the jobs of a BiSS encoder as text.
 
 use std::sync::LazyLock;
 
@@ -37,7 +37,7 @@ pub(super) fn not_edited(error: MemoryError) -> Text {
     }
 }
 
-/// A filter of the position.
+/// Returns the text for a filter of the position.
 pub fn filter(filter: Filter) -> Text {
     match filter {
         Filter::Balanced => TEXTS.text("biss_status.balanced"),
@@ -102,7 +102,7 @@ pub fn eds_name(bank: EdsBank, field: &EdsField) -> Text {
     described.map_or_else(|| plain(field.name), |register| words::name(&register.name))
 }
 
-/// The description with the manual's names, in both languages, of what every data sheet has.
+/// The description with the manual's names, in both languages, for the fields that every data sheet has.
 static KIT: LazyLock<Option<Description>> =
     LazyLock::new(|| Descriptions::built_in().iter().find(|own| own.identity().is_some()).cloned());
 

@@ -1,5 +1,5 @@
-//! Writing to an encoder: the edits or a profile as a request, its jobs, a person at the motor where needed, and what
-//! is read again afterwards.
+//! Writing to an encoder: the edits or a profile as a request, its jobs, an operator at the motor if required, and what is
+//! read again afterwards.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use crate::devices::biss::state::explain as words;
 use crate::profile::{Body, PlanId, ProfileError};
 use crate::worker::EndedEarly;
 
-/// How long to wait for a shaft to stand still if no one is asked to stop it.
+/// How long to wait for a shaft to stand still without an operator.
 const UNATTENDED: Unattended = Unattended { patience: Duration::from_secs(3) };
 
 impl Encoder {
@@ -29,7 +29,7 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Answers what a procedure asks.
+    /// Answers the task of a procedure.
     pub(super) fn answer(&mut self, task: Task, answer: Answer) {
         if let Some(guide) = &mut self.guide {
             guide.answer(task, answer);
@@ -43,14 +43,14 @@ impl Encoder {
         }
     }
 
-    /// The encoder was led back into operation: nothing is left to be done about it.
+    /// Notes that the encoder was returned to operation: nothing remains to be done about it.
     pub(super) fn led_back(&mut self) {
         if let Some(Guide { end: Some(End::Failed { may_lead_back, .. }), .. }) = &mut self.guide {
             *may_lead_back = false;
         }
     }
 
-    /// A procedure that is followed step by step has ended early; true where one runs.
+    /// Ends the display of a guided procedure that ended early; returns true if one was running.
     pub(super) fn cut_guide(&mut self, how: &EarlyEnd<JobError>, texts: &[Text]) -> bool {
         let error = match how {
             EarlyEnd::Failed(error) | EarlyEnd::Cancelled(error) => Some(*error),
@@ -106,7 +106,7 @@ impl WithMemory for Encoder {
         commit(agreed, OperatorPresence::Unattended(UNATTENDED))
     }
 
-    /// Starts a write; one that needs a person at the motor is followed step by step from here on.
+    /// Starts a write; one that needs an operator at the motor is followed step by step from here on.
     fn write(&mut self, shown: PlanId, services: &mut Services) {
         let Some(agreed) = self.agree(shown) else { return };
         let ops = &agreed.prepared.plan.ops;

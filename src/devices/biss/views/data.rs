@@ -1,4 +1,4 @@
-//! Motor and OEM data: the bytes of an area in the hex editor, what they mean, and the way to write the edits.
+//! Motor and OEM data: the bytes of an area in the hex editor, their meaning, and the bar for writing the edits.
 
 use egui::{RichText, ScrollArea, Ui};
 
@@ -105,14 +105,14 @@ fn bytes(
         });
     } else {
         ScrollArea::vertical().id_salt("area").auto_shrink(false).show(ui, |ui| {
-            // Room for the ring around what has the keyboard.
+            // Space for the focus ring.
             ui.add_space(theme.space.inside);
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             place_ui(ui, theme, area, view);
             typed_view(ui, theme, view.hex.to_read(wanted));
         });
     }
-    // The buttons at the foot undo as well as the keys do.
+    // The buttons of the edit bar undo like the keys do.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.follow(wanted);
     }

@@ -1,4 +1,4 @@
-//! The single-cycle frame as it came last: a cell a bit, and what its fields say.
+//! The latest single-cycle frame: one cell per bit, and the meaning of its fields.
 
 use egui::Ui;
 
@@ -51,7 +51,7 @@ fn as_sent(reading: &PositionReading) -> PositionData {
     }
 }
 
-/// The fields of a frame with their bits. Over the configuration pin only the position comes.
+/// Draws the fields of a frame with their bits. Over the configuration pin only the position is transmitted.
 fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (Vec<StripField>, Vec<Option<bool>>) {
     let mut fields = Vec::new();
     let mut bits = Vec::new();
@@ -96,7 +96,7 @@ fn strip(theme: &Theme, layout: &Layout, reading: Option<&PositionReading>) -> (
         }
     }
     if layout.crc_bits() > 0 {
-        // Only frames whose checksum fits are shown: what it says follows from the rest.
+        // Only frames with a matching checksum are shown: it follows from the other bits.
         let crc = reading.map(|own| layout.emit(&as_sent(own)) & ((1 << layout.crc_bits().min(63)) - 1));
         let value = crc.map(|crc| format!("0x{crc:02X}")).unwrap_or_default();
         add(StripField { value, ..field("CRC", layout.crc_bits(), 3) }, crc);

@@ -1,4 +1,4 @@
-//! The position of a BiSS encoder, large, and the registers that are read beside it.
+//! The large display of a BiSS position, and the registers that are read with it.
 
 use egui::{RichText, Ui};
 
@@ -34,7 +34,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     if !is_angle {
         row(ui, theme, &theme.say("unit.steps"), theme.mono(reading.position().to_string()));
     } else if ui.available_height() < LOW {
-        // In a low window the plot needs the room.
+        // In a low window the plot needs the space.
         let (turns, steps) = (theme.say("live.turns"), theme.say("live.step"));
         let words = format!("{turns} {} · {steps} {}", reading.turns, reading.steps);
         ui.add(egui::Label::new(theme.caption(words)).truncate().selectable(true));

@@ -1,4 +1,4 @@
-//! The BiSS tab: its pages, each about one thing that a person wants of an encoder.
+//! The BiSS tab: its pages, one per task.
 
 mod connect_form;
 mod data;
@@ -32,7 +32,7 @@ pub(crate) enum Page {
     Data,
     /// Calibration, Wiegand test, preset, filter: step by step.
     Procedures,
-    /// Profiles, backups and what was written.
+    /// Profiles, backups and the logbook.
     Backups,
 }
 
@@ -53,7 +53,7 @@ impl Page {
     }
 }
 
-/// The state of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct BissUiState {
     registers: registers::RegistersUiState,
@@ -71,7 +71,7 @@ fn refusal_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     motor::turning_ui(ui, theme, encoder, actions);
 }
 
-/// Registers that may show what was never saved, with the way back to operation.
+/// Draws the warning that registers may show values that were never saved, with the button that returns to operation.
 fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(why) = encoder.unsaved() else { return };
     ui.horizontal_top(|ui| {
@@ -84,7 +84,7 @@ fn unsaved_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<A
     ui.add_space(theme.space.inside);
 }
 
-/// The button that leads back to operation.
+/// Draws the button that returns to operation.
 fn lead_back_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let word = theme.say("lead_back_card.button");
     if enabled_button(ui, encoder.session.is_ready(), icons::ARROW_U_UP_LEFT, &word).clicked() {
@@ -127,7 +127,7 @@ impl TypedDeviceView for BissView {
         actions: &mut Vec<Action>,
     ) {
         if page.is_fixed() {
-            // Tables fill what there is.
+            // Tables fill the available space.
             let frame = egui::Frame::NONE.inner_margin(egui::Margin::symmetric(16, 8));
             frame.show(ui, |ui| match page {
                 Page::Data => data::page_ui(ui, theme, (studio, device), encoder, &mut view.data, actions),
@@ -151,7 +151,7 @@ impl TypedDeviceView for BissView {
         actions: &mut Vec<Action>,
     ) {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
-        // How far it is stands below, step by step: here, what ending it does.
+        // The progress is shown below, step by step: this tells the effect of cancelling.
         let instead = is_led.then(|| say(theme, "guide.cancel_note"));
         workspace::running_ui(ui, theme, device, instead, actions);
     }
@@ -165,7 +165,7 @@ impl TypedDeviceView for BissView {
     }
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -1,4 +1,4 @@
-//! The motor of the virtual encoder, on every page where it matters, with a note while it turns.
+//! The motor of the virtual encoder, on every page on which it matters, with a note while it turns.
 
 use egui::{RichText, Ui};
 
@@ -12,7 +12,7 @@ use crate::ui::{Theme, icons};
 /// Speeds that the procedures ask for, and rest.
 const SPEEDS: [f64; 5] = [-1000.0, -500.0, 0.0, 500.0, 1000.0];
 
-/// The motor and its speed.
+/// Draws the motor and its speed.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Motor, actions: &mut Vec<Action>) {
     card(ui, theme, "motor_card.title", |ui| {
         paragraph(ui, theme.caption(theme.say("motor_card.words")));
@@ -27,7 +27,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, motor: &Mot
     });
 }
 
-/// The virtual motor turns still, and a way to stop it; a motor of the world only its person can stop.
+/// Draws that the virtual motor still turns, with a button to stop it; a real motor can only be stopped by its operator.
 pub(super) fn turning_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let Some(motor) = &encoder.motor else { return };
     if motor.rpm() == 0.0 {

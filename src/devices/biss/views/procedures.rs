@@ -1,5 +1,5 @@
-//! Guided procedures: what is to be done, what turns the motor, and then step by step what to do now, how it stands, and
-//! what came of it. Filter and preset beside them.
+//! Guided procedures: the task, what turns the motor, and then step by step the present task, the progress, and the result.
+//! Filter and preset are on the same page.
 
 use egui::{RichText, Ui};
 
@@ -90,7 +90,7 @@ struct Mounting<'v> {
     form: &'v mut PresetForm,
 }
 
-/// The stored preset value, to begin with.
+/// Returns the stored preset value, to begin with.
 fn stored(encoder: &Encoder) -> PresetForm {
     let value = encoder.survey.as_ref().and_then(|survey| survey.preset);
     let layout = encoder.identity().map(|identity| &identity.layout);
@@ -221,7 +221,7 @@ fn preset_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut PresetFor
         paragraph(ui, theme.label(say(theme, "preset_card.words")));
         let Some(identity) = encoder.identity() else { return };
         let layout = &identity.layout;
-        // Problems of an entry are drawn below it.
+        // Errors of an entry are drawn below it.
         labelled_entry(ui, theme, TEXTS.text("preset_card.degrees"), &mut form.degrees, 96.0, "270");
         problem(ui, theme, form.singleturn(layout).err().as_ref());
         labelled_entry(ui, theme, TEXTS.text("preset_card.turns"), &mut form.turns, 96.0, "0");

@@ -21,8 +21,8 @@ pub(super) struct RegistersUiState {
     folded: bool,
 }
 
-/// Width of the list of banks, and the width of the page from which it stands beside the table; below that a choice above
-/// the table does the same.
+/// Width of the list of banks, and the width of the page from which it is beside the table; in a narrower one a choice
+/// above the table replaces it.
 const BANKS: f32 = 176.0;
 const BESIDE: f32 = 860.0;
 
@@ -42,7 +42,7 @@ pub(super) fn page_ui(
     }
     let groups: Vec<RegisterGroup> = encoder.table.groups().iter().map(|own| group(theme, encoder, own)).collect();
     if !std::mem::replace(&mut view.folded, true) {
-        // One bank at a time is what a person looks for; the direct registers are what everybody does.
+        // Users look for one bank at a time, and for the direct registers most often.
         (1..groups.len()).for_each(|at| view.table.fold(at, true));
     }
     let beside = ui.available_width() >= BESIDE;
@@ -106,7 +106,7 @@ fn read_words(bank: Option<u8>) -> Text {
     }
 }
 
-/// Watching the register that is selected, and what is watched.
+/// Draws the watch button of the selected register, and the watched ones.
 fn watching(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &RegistersUiState, actions: &mut Vec<Action>) {
     let selected = view.table.selected();
     let group = selected.and_then(|place| encoder.table.groups().get(place.group));
@@ -211,7 +211,7 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
     let register = &shown.row.register;
     let name =
         if register.name.is_empty() { say(theme, "registers.byte") } else { theme.words(&words::name(&register.name)) };
-    // A code is no quantity.
+    // A code is not a quantity.
     let is_quantity = matches!(register.decoding, Decoding::Number | Decoding::Scaled { .. });
     RegisterRow {
         address: register.address.to_string(),
@@ -236,7 +236,7 @@ fn row_of(theme: &Theme, encoder: &Encoder, shown: &RegisterEntry<'_>, elsewhere
     }
 }
 
-/// The bits of a register that has names for them.
+/// Returns the bits of a register with named bits.
 fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     let Decoding::Bits(names) = &shown.row.register.decoding else { return Vec::new() };
     let number = shown.number();
@@ -255,7 +255,7 @@ fn fields(theme: &Theme, shown: &RegisterEntry<'_>) -> Vec<RegisterBits> {
     names.iter().map(bit).collect()
 }
 
-/// A byte as a person types it: hexadecimal, as it is shown.
+/// Parses a byte as displayed: hexadecimal.
 fn parse(text: &str) -> Result<u8, Text> {
     let digits = text.trim().trim_start_matches("0x").trim_end_matches(['h', 'H']);
     let byte = u8::from_str_radix(digits, 16).ok().filter(|_| !digits.starts_with('+'));

@@ -1,4 +1,4 @@
-//! A guided procedure on its way: its steps, what to do now, what is measured against what is allowed, and the end with its
+//! A running guided procedure: its steps, the present task, the measured and the allowed values, and the end with its
 //! report.
 
 use egui::{RichText, Ui};
@@ -82,7 +82,7 @@ fn step(
     let mut step = StepRow { title, state, word: say(theme, word), ..StepRow::default() };
     match (reached, guide.detail()) {
         (Reached::Waits, Some(Detail::Demand(demand))) => {
-            // The best speed is in the gauges, which do not come and go.
+            // The best speed is in the gauges, which stay in place.
             let lasting = demand.advice.iter().filter(|own| !matches!(own, Advice::Speed { .. }));
             let notes: Vec<String> = lasting.map(|own| theme.words(&says::advice(*own))).collect();
             step.note = notes.join("\n");
@@ -101,7 +101,7 @@ fn step(
     step
 }
 
-/// Returns the gauges while a person turns the motor. The marks use the same limits as the start.
+/// Returns the gauges while the operator turns the motor. The marks use the same limits as the start.
 fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     let Task::Turn(run) = demand.task else { return Vec::new() };
     let mut gauges = vec![speed(theme, run, demand)];
@@ -135,11 +135,11 @@ fn gauges(theme: &Theme, demand: &Demand) -> Vec<Gauge> {
     gauges
 }
 
-/// The speed in the direction that is asked for.
+/// Returns the gauge of the speed in the requested direction.
 fn speed(theme: &Theme, run: Run, demand: &Demand) -> Gauge {
     let sign = if run.is_clockwise() { 1.0 } else { -1.0 };
     let (allowed, accepted, best) = (run.allowed(), run.allowed().measured(), run.recommended());
-    // Standing is 0, whichever way it is looked at.
+    // Standstill is 0, whatever the sign.
     let rpm = demand.motion.map(|own| if own.rpm.abs() < 0.05 { 0.0 } else { own.rpm * sign });
     let is_best = best != allowed;
     let limits = TEXTS
@@ -202,7 +202,7 @@ fn end_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ops: &[Op], end: &End, 
     });
 }
 
-/// A line of the end: how much it matters, and what it is.
+/// Draws a line of the end with its severity.
 fn line(ui: &mut Ui, theme: &Theme, own: Severity, words: &str) {
     let (icon, ink) = severity(theme, own);
     ui.horizontal_top(|ui| {

@@ -1,4 +1,4 @@
-//! The electronic data sheet: what its two banks say, each field with its unit, and whether their sums fit.
+//! The electronic data sheet: the content of its two banks, each field with its unit, and whether their checksums match.
 
 use egui::{RichText, Ui};
 

@@ -11,7 +11,7 @@ use crate::ui::wiring::wires_ui;
 /// Width of the column of pins.
 const PIN: f32 = 84.0;
 
-/// A pin of the JST BM08B-GHS, and what is on it (manual 2).
+/// Pins of the JST BM08B-GHS and their signals (manual 2).
 const PINS: [(&str, &str); 8] = [
     ("1 GND", "biss_wiring.ground"),
     ("2 PRESET", "biss_wiring.preset"),
@@ -25,7 +25,7 @@ const PINS: [(&str, &str); 8] = [
 
 const NOTES: [&str; 3] = ["biss_wiring.line", "biss_wiring.speed", "biss_wiring.others"];
 
-/// Width of the card from which the pins stand in two columns.
+/// Width of the card from which the pins are in two columns.
 const BESIDE: f32 = 640.0;
 
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme) {

@@ -84,7 +84,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     Ok(done)
 }
 
-/// The drives that are plugged in.
+/// Returns the drives that are plugged in.
 fn drives(runner: &mut Runner) -> Result<Vec<DriveIdentity>> {
     Ok(result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity.drives))
 }

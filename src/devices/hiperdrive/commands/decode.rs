@@ -29,7 +29,7 @@ enum Captured {
     Bytes(Vec<u8>),
 }
 
-/// Arguments of 4 digits are words each; others are bytes.
+/// Parses the arguments: one of 4 digits is a word, others are bytes.
 fn captured(arguments: &[String]) -> Result<Vec<Captured>> {
     let word = |text: &String| {
         let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
@@ -69,7 +69,8 @@ fn lines(readings: &[WordMeaning]) -> DecodedBytes {
     DecodedBytes { lines: readings.iter().flat_map(WordMeaning::lines).collect(), more, data: None }
 }
 
-/// A packet, or process data by their length. What is said to have gone one way, and may be process data, is that.
+/// Returns the meaning of a packet, or of process data by their length. Bytes with a known direction that may be process
+/// data are taken as such.
 fn of_bytes(bytes: &[u8], known: &BytesContext) -> std::result::Result<DecodedBytes, String> {
     let fits = Layout::of_length(bytes.len()).next().is_some();
     let packet =

@@ -1,4 +1,4 @@
-//! Process data and parameter words in words.
+//! Process data and parameter words as text.
 
 use serde_json::{Value as Json, json};
 
@@ -9,15 +9,16 @@ use crate::devices::hiperdrive::protocol::{
     Value, turns,
 };
 
-/// Process data that are of a length that there is: what they may be, or the one that they are.
+/// Returns the meanings of process data: one per possible layout, or only those of the known direction. Empty if no layout
+/// has this length.
 ///
 /// # Errors
-/// Why they cannot have gone the way that is known.
+/// Returns why they cannot have gone in the known direction.
 pub(super) fn of_bytes(bytes: &[u8], known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let mut readings = Vec::new();
     let words = parameter_word(bytes, known);
     for layout in layouts(bytes.len(), known) {
-        // A word that cannot be a status word is one only where nothing else fits.
+        // A word that cannot be a status word is shown as one only if nothing else fits.
         let from = || from_drives(bytes, layout).filter(|_| words.is_empty() || is_of_drives(bytes, layout));
         match (to_drives(bytes, layout), known.direction) {
             (Err(why), Some(Direction::Out)) if words.is_empty() => return Err(why),
@@ -38,7 +39,7 @@ fn layouts(length: usize, known: &BytesContext) -> impl Iterator<Item = Layout> 
     Layout::of_length(length).map(|layout| Layout { order: known.order, ..layout })
 }
 
-/// A control word is not 0: as a status word it would be none of a drive.
+/// Returns whether a control word is not 0: read as a status word it would belong to no drive.
 fn is_anything(bytes: &[u8], layout: Layout) -> bool {
     OutImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().any(|drive| drive.control != 0))
 }
@@ -48,7 +49,8 @@ fn is_of_drives(bytes: &[u8], layout: Layout) -> bool {
     InImage::parse(bytes, layout).is_ok_and(|image| image.drives.iter().all(|drive| drive.status.is_plausible()))
 }
 
-/// Process data of a cyclic packet, which tells the way itself where nothing else is said. Nothing of a length that there is not.
+/// Returns the meanings of the process data in a cyclic packet. Its direction is used if none is known. Empty if no layout
+/// has this length.
 pub(super) fn cyclic(data: &[u8], to_target: bool, known: &BytesContext) -> Vec<WordMeaning> {
     let to_target = known.direction.map_or(to_target, |direction| direction == Direction::Out);
     let reading = |layout: Layout| {
@@ -125,7 +127,7 @@ fn in_turns(position: i32) -> String {
     format!(" (turn {turn}, {:.3}° at 65536 steps a turn)", f64::from(steps) * 360.0 / 65536.0)
 }
 
-/// Eight bytes as a parameter word, where the manual has the parameter. Texts alone have elements.
+/// Returns the meaning of eight bytes as a parameter word, if the manual has the parameter. Only texts have elements.
 fn parameter_word(bytes: &[u8], known: &BytesContext) -> Vec<WordMeaning> {
     let Ok(bytes) = <[u8; 8]>::try_from(bytes) else { return Vec::new() };
     let pkw = Pkw::parse(bytes, known.order);
@@ -180,7 +182,7 @@ fn answer_words(pkw: Pkw) -> String {
     format!("parameter word: {answer}")
 }
 
-/// An answer has the width of its parameter's type.
+/// Returns whether the answer has the width of its parameter's type.
 fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
     match pkw.answer() {
         Answer::Word(_) => is_of_width(row, true),
@@ -189,7 +191,8 @@ fn answer_fits(pkw: Pkw, row: &ParameterRow) -> bool {
     }
 }
 
-/// A number that comes as a word, or as a double word, is one of this parameter. Of a text four characters are a double word.
+/// Returns whether a word, or a double word, can be a number of this parameter. Four characters of a text are a double
+/// word.
 fn is_of_width(row: &ParameterRow, word: bool) -> bool {
     row.kind.length().map_or(!word, |bytes| (bytes < 4) == word)
 }
@@ -200,7 +203,7 @@ fn written_words(pkw: Pkw, raw: u32, word: bool) -> String {
     format!("write {} to {}{warning}", value_words(pkw, raw, word), parameter_name(pkw.number()))
 }
 
-/// A number in the parameter's unit; four characters of a text.
+/// Returns a number in the parameter's unit, or four characters of a text.
 fn value_words(pkw: Pkw, raw: u32, word: bool) -> String {
     match row(pkw) {
         None => raw.to_string(),

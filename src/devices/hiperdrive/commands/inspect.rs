@@ -1,4 +1,4 @@
-//! Commands that only look: `identify`, `status`, `read`.
+//! Commands that only read: `identify`, `status`, `read`.
 
 use serde_json::{Value as Json, json};
 
@@ -109,11 +109,11 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
 enum FactSeverity {
     Error,
     Warning,
-    /// It was once, and is in the buffer alone.
+    /// An error of the past that is only in the buffer.
     Earlier,
 }
 
-/// Something that a drive says of itself.
+/// Fact that a drive reports.
 struct DriveFact {
     drive: u8,
     code: u16,
@@ -127,9 +127,9 @@ impl DriveFact {
     }
 }
 
-/// Returns the facts that a drive reports. As many of its newest errors as it counts since the acknowledgement are
-/// errors, and at least one in a fault; the rest are older, as the buffer keeps them over power-up (reference 4), and
-/// say nothing about now. A drive outside its limits is a warning, and so is a message of its communication.
+/// Returns the facts that a drive reports. The newest entries of its error buffer, as many as it counts since the
+/// acknowledgement and at least one in a fault, are errors. Older entries survive a power cycle (reference 4) and do not
+/// describe the present state. A drive outside its limits and a message of its communication are warnings.
 fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
     let number = drive.number.get();
     let is_fault = drive.status.has(StatusBit::Fault);
@@ -147,7 +147,7 @@ fn facts_of(drive: &DriveStatus) -> Vec<DriveFact> {
         let text = "the drive is outside its limits (158, 160)".to_owned();
         facts.push(DriveFact { drive: number, code: drive.status.word(), text, severity: FactSeverity::Warning });
     }
-    // 118: 0 is well, FFFFh no drive.
+    // 118: 0 is no error, FFFFh no drive.
     let [_, _, communication] = drive.words;
     if !matches!(communication, 0 | 0xFFFF) {
         let text = format!("the RS-485 link to the drive has errors (parameter 118: 0x{communication:04X})");
@@ -161,7 +161,7 @@ pub(super) fn error_text(code: ErrorCode) -> String {
     format!("{}: {} {}", words.name.terminal(), words.cause.terminal(), words.remedy.terminal())
 }
 
-/// A state for scripts.
+/// Returns a state for scripts.
 pub(super) fn state_word(state: State) -> &'static str {
     match state {
         State::NotReady => "not-ready",
@@ -175,7 +175,7 @@ pub(super) fn state_word(state: State) -> &'static str {
 }
 
 fn volts(status: &Status) -> f64 {
-    // A few hundred tenths.
+    // At most a few hundred tenths.
     status.supply_tenths as f64 / 10.0
 }
 
@@ -204,7 +204,7 @@ fn status_text(status: &Status, facts: &[DriveFact]) -> String {
     lines.text()
 }
 
-/// A number of a parameter for a person: words in hexadecimal and with their meaning, tenths of something as such and whole.
+/// Returns a number of a parameter as text: words in hexadecimal and with their meaning, tenths also as whole units.
 fn number_text(item: Item, number: i64) -> String {
     let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
     let word = u16::try_from(number).ok();
@@ -227,10 +227,10 @@ fn number_text(item: Item, number: i64) -> String {
     }
 }
 
-/// The speed as it is scaled, by the number of drive 1.
+/// Speed in scaled units, by the parameter number of drive 1.
 const SPEED: u16 = 106;
 
-/// The speed scale of a drive (162, 164); `None` where it has a 0 in it.
+/// Returns the speed scale of a drive (162, 164); `None` if it contains a 0.
 fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
     let mut part = |base| match ParameterNumber::of_drive(base, drive).map(|number| value(runner, number)) {
         Some(Ok(Value::Number(number))) => Ok(u16::try_from(number).unwrap_or(0)),
@@ -240,7 +240,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
     Ok(SpeedScale::new(part(162)?, part(164)?).ok())
 }
 
-/// A text of a parameter for a person: with the number that it tells, where it tells one.
+/// Returns a text of a parameter as shown, with the number in it if there is one.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal(text).filter(|_| !unit.is_empty()) {
         Some(number) => format!("{text} = {number} {unit}"),
@@ -253,7 +253,7 @@ pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
     let mut runner = Runner::open(common)?;
     let value = value(&mut runner, item.0)?;
     let unit = item.0.row().map_or("", |row| row.unit);
-    // Tenths of rpm is what a speed is with the scale of the factory (manual 6.2).
+    // The speed is in tenths of rpm with the factory scale (manual 6.2).
     let scale = item.0.drive().filter(|_| item.0.base() == SPEED).map(|drive| speed_scale(&mut runner, drive));
     let scale = scale.transpose()?.flatten().filter(|scale| *scale != SpeedScale::FACTORY);
     let unit = if scale.is_some() { "" } else { unit };
@@ -267,7 +267,7 @@ pub(super) fn read(common: &Common, output: &Output, read: &Read) -> Result {
     };
     let is_number = own.is_number();
     let mut json = json!({"item": item.to_string(), "value": own, "name": item.name()});
-    // Of a text the unit says nothing: it may be tenths.
+    // The unit does not apply to a text: its number may be in tenths.
     if let (true, false, Some(keys)) = (is_number, unit.is_empty(), json.as_object_mut()) {
         keys.insert("unit".to_owned(), json!(unit));
     }

@@ -1,4 +1,4 @@
-//! The meaning of control words, status words and parameters in words.
+//! The meaning of control words, status words and parameters as text.
 
 use serde_json::{Value as Json, json};
 
@@ -10,13 +10,13 @@ use crate::devices::hiperdrive::protocol::{
     Travel, Value, Variant,
 };
 
-/// Known facts about bytes besides themselves.
+/// Facts known about bytes besides the bytes themselves.
 pub(super) struct BytesContext {
     pub(super) direction: Option<Direction>,
     pub(super) order: ByteOrder,
 }
 
-/// One of the things that bytes may say.
+/// A possible meaning of bytes.
 pub(super) struct WordMeaning {
     pub(super) direction: &'static str,
     pub(super) lines: Vec<String>,
@@ -39,11 +39,11 @@ impl WordMeaning {
     }
 }
 
-/// A word: what it may be, or the one that it is. Bit 11 mostly tells: a control word never has it, a drive that was found
-/// always.
+/// Returns the possible meanings of a word, or the one of the known direction. Bit 11 usually decides: a control word never
+/// has it set, a detected drive always has.
 ///
 /// # Errors
-/// That a control word must not be sent, where it is said to be one.
+/// Returns why the word must not be sent, if it is a control word by its direction.
 pub(super) fn of_word(word: u16, known: &BytesContext) -> Result<Vec<WordMeaning>, String> {
     let (control, status) = (ControlWord::parse(word), StatusWord::new(word));
     match (known.direction, control) {
@@ -107,7 +107,7 @@ fn purpose(control: ControlWord) -> &'static str {
     }
 }
 
-/// The state, then its bits.
+/// Returns the state, then the bits.
 pub(super) fn status_words(status: StatusWord) -> String {
     let bits: Vec<String> = status.set().map(|bit| format!("{} {}", bit.number(), bit.name())).collect();
     let bits = if bits.is_empty() { "no bit".to_owned() } else { format!("bits {}", bits.join(", ")) };
@@ -119,7 +119,8 @@ pub(super) fn status_words(status: StatusWord) -> String {
     format!("{}{present}: {bits}", status.state().name())
 }
 
-/// The parameter of an attribute with the value that is written; why there is none where the data are not of its kind.
+/// Returns the parameter of an attribute with the value to be written, or why there is no value if the data do not have its
+/// type.
 pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option<(String, Result<String, String>)> {
     let number = ParameterNumber::of_attribute(class, attribute)?;
     let row = number.row();
@@ -132,7 +133,7 @@ pub(super) fn parameter_words(class: u16, attribute: u16, data: &[u8]) -> Option
     Some((parameter_name(number.get()), value))
 }
 
-/// Its number, what it is, and of which drive.
+/// Returns the number of a parameter, its name, and its drive.
 pub(super) fn parameter_name(own: u16) -> String {
     let Some(number) = ParameterNumber::new(own) else {
         return format!("parameter {own}, which there is not");
@@ -142,7 +143,7 @@ pub(super) fn parameter_name(own: u16) -> String {
     format!("parameter {own} ({name}{drive})")
 }
 
-/// A number as its parameter means it.
+/// Returns a number as its parameter defines it.
 pub(super) fn number_words(row: &ParameterRow, number: i64) -> String {
     let word = u16::try_from(number).ok();
     match (row.number, word) {

@@ -137,7 +137,7 @@ impl OwnCommand for MoveCommand {
     }
 }
 
-/// All parameters with their numbers, a line each: for the help, since a number alone says nothing.
+/// Returns all parameters with their numbers, one per line, for the help.
 fn listed_parameters() -> String {
     let mut text = "\
 Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201 of drive 2, up to drive 8):
@@ -150,7 +150,7 @@ Parameters of HIPERDRIVE: below 100 of the device, from 101 of drive 1 (from 201
     text
 }
 
-/// The parameter that a user names, of the drive that is named beside it.
+/// Parses the parameter that the user names; `of` names the drive.
 fn item(text: &str, of: &OfDrive) -> Result<Item> {
     let item = text.parse::<Item>().and_then(|item| match (of.drive, Item::number(text)) {
         (Some(drive), Some(number)) => Item::of(number, Some(drive)),

@@ -1,5 +1,5 @@
-//! `move`: a drive goes to a position, and whatever ends that leaves it standing and off. Nothing else on the command line
-//! moves anything.
+//! `move`: moves a drive to a position. However it ends, the drive is stopped and switched off. No other command moves a
+//! drive.
 
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -28,7 +28,7 @@ use crate::units::Moment;
 
 /// Interval at which a motion is refreshed.
 const REFRESH: Duration = Duration::from_millis(20);
-/// The ladder, and the way to off.
+/// Maximum time for the stop ladder and switching off.
 const END: Duration = Duration::from_secs(3);
 
 /// The end of a motion.
@@ -54,7 +54,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     let drive = drive(&wanted.of);
     let identity = result_of!(runner.run(HiperdriveJob::Identify)?, HiperdriveOutput::Identity(identity) => identity);
     let (permit, scale) = permit(&mut runner, &identity, drive)?;
-    // An impossible target is refused before anything is opened.
+    // An impossible target is refused before a connection is opened.
     let target = within(&permit, target)?;
     permit.check(MotionRequest::Move { target, effort }, Some(target)).map_err(refused)?;
     if let Some((low, high)) = permit.limits {
@@ -64,7 +64,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     let came =
         carry_out(&runner, drive, MotionRequest::Move { target, effort }, Duration::from_secs(wanted.timeout.into()));
     let stood = lead_off(&runner, drive);
-    // Given back also where it was lost: what there is to be told has been said then.
+    // Control is given up even if the connection was lost: the loss has been reported then.
     let given = runner.run(HiperdriveJob::Give);
     let position = stood.map(|view| view.actual.position);
     let reached = matches!(came, MotionOutcome::Ended(Ended::Arrived));
@@ -88,7 +88,7 @@ pub(crate) fn drive_to(common: &Common, output: &Output, wanted: &Move) -> Resul
     Err(Failure::Failed(lines))
 }
 
-/// The error for which the drive stands, as far as it still tells.
+/// Reads the error for which the drive has stopped, if it still reports one.
 fn newest_error(runner: &mut Runner, drive: DriveNumber) -> Option<ErrorCode> {
     let newest = value(runner, ParameterNumber::of_drive(108, drive)?).ok()?;
     let Value::Number(code) = newest else { return None };
@@ -115,13 +115,13 @@ fn permit(runner: &mut Runner, identity: &Identity, drive: DriveNumber) -> Resul
         }
     }
     let rules = Rules::by(|base| values.iter().find(|(own, _)| *own == base).map(|(_, value)| *value));
-    // They were read just now.
+    // They have just been read.
     let now = Moment::START;
     let limits = DriveLimits::of(rules, (identity.topology, variant), now);
     Ok((limits.permit(now, false), limits.scale()))
 }
 
-/// A target beyond what 32 bits hold is beyond the limits too, whichever they are.
+/// Checks a target against the limits. A target that does not fit into 32 bits is outside any limits.
 fn within(permit: &Permit, target: i64) -> Result<i32> {
     let (low, high) = permit.limits.unwrap_or((i32::MIN, i32::MAX));
     i32::try_from(target).map_err(|_| {
@@ -139,13 +139,13 @@ fn refused(refusal: Refusal) -> Failure {
     failed(&words::refusal(refusal, place))
 }
 
-/// Wants it until it has ended, is interrupted, or the time is up.
+/// Refreshes the motion until it ends, is interrupted, or the time is up.
 fn carry_out(runner: &Runner, drive: DriveNumber, wish: MotionRequest, patience: Duration) -> MotionOutcome {
     let motion = &runner.kept;
     let until = Instant::now() + patience;
     let act = motion.intend(drive, wish);
     loop {
-        // The motion is not refreshed any more: Ctrl-C has stopped the drive itself.
+        // The motion is no longer refreshed: the Ctrl-C handler has stopped the drive.
         if runner.is_interrupted() {
             motion.stop();
             return MotionOutcome::Interrupted;
@@ -187,7 +187,7 @@ fn lead_off(runner: &Runner, drive: DriveNumber) -> Option<DriveView> {
         motion.refresh();
         sleep(REFRESH);
     }
-    // Without a report it is not known where it is.
+    // Without a report the position is not known.
     stood.filter(|own| own.actual.status.is_present())
 }
 

@@ -1,4 +1,4 @@
-//! A plan for an adapter or a hub: shown, agreed to, carried out.
+//! The plan for an adapter or a hub: shown, confirmed, carried out.
 
 use serde_json::{Value as Json, json};
 
@@ -15,7 +15,7 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Makes a plan for a change; nothing is written. What it brings along is told.
+/// Makes a plan for a change and prints its warnings. Writes nothing.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let asked = match &change {
         Change::SetPosition { position, .. } => Some(i64::from(*position)),
@@ -37,7 +37,7 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     Ok(prepared)
 }
 
-/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+/// Asks for consent if required, and carries out the plan. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -60,7 +60,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// The plan for a person and for a script: each parameter old → new, and what it costs.
+/// Returns the report of the plan as text and JSON: each parameter old → new, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     let mut lines = Lines::default();

@@ -1,4 +1,4 @@
-//! `position`: where a drive is, with what its scale makes of it.
+//! `position`: the position of a drive, converted by its scale.
 
 use serde_json::json;
 
@@ -14,7 +14,7 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Positio
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::result_of;
 
-/// The scale is read once, since a position is nothing without it; from then on 105 to 107 alone.
+/// Prints the position. The scale is read once; after that only 105 to 107 are read.
 pub(super) fn position(common: &Common, output: &Output, position: &Position) -> Result {
     let mut runner = Runner::open(common)?;
     let drive = drive(&position.own.read()?);
@@ -31,7 +31,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     })
 }
 
-/// A part of the scale.
+/// Returns a part of the scale.
 fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u16>> {
     let Some(number) = ParameterNumber::of_drive(number, drive) else { return Ok(None) };
     Ok(match value(runner, number)? {
@@ -43,9 +43,9 @@ fn part(runner: &mut Runner, number: u16, drive: DriveNumber) -> Result<Option<u
 /// The location of a position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct TurnPosition {
-    /// Whole turns; −1 step lies in turn −1.
+    /// Whole turns; −1 step is in turn −1.
     turns: i64,
-    /// Within the turn; not always whole, since a turn is not always whole steps.
+    /// Steps within the turn. Not always whole, because a turn is not always a whole number of steps.
     steps: f64,
     /// Within the turn.
     degrees: f64,
@@ -70,7 +70,7 @@ impl TurnPosition {
     }
 }
 
-/// The drive is there and has its reference.
+/// Returns whether the drive is present and has its reference.
 fn is_valid(reading: &DriveReading) -> bool {
     let status = reading.actual.status;
     status.is_present() && status.has(StatusBit::ReferenceSet)
@@ -117,7 +117,7 @@ fn row(reading: &DriveReading, place: Option<TurnPosition>) -> String {
 mod tests {
     use super::*;
 
-    /// 65536 steps a turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
+    /// 65536 steps per turn: −1 is turn −1, 65535; 163840 are 2.5 turns. 400 of 0.01 mm: 1000 are 2.5 turns. 256 · 10 / 3 =
     /// 853.33: −1 is turn −1, 852.33.
     #[test]
     fn a_position_has_turns_and_a_place_in_its_turn() {

@@ -1,4 +1,4 @@
-//! The commands about profiles of an adapter or a hub: `save`, `restore`, and reading it for a comparison.
+//! The commands for profiles of an adapter or a hub: `save`, `restore`, and reading the device for a comparison.
 
 use serde_json::json;
 
@@ -24,7 +24,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// The device as it is, for a comparison: all of it.
+/// Reads the whole device for a comparison.
 pub(super) fn present(common: &Common, _output: &Output, _profile: Option<&Body>) -> Result<Body> {
     Ok(Body::new(saved(common)?))
 }
@@ -33,7 +33,7 @@ fn saved(common: &Common) -> Result<HiperdriveProfile> {
     Ok(result_of!(Runner::open(common)?.run(HiperdriveJob::Save)?, HiperdriveOutput::Saved(profile) => *profile))
 }
 
-/// Returns a message if two profiles are not of the same device, or of the same drives. One without a serial number
+/// Returns a message if two profiles are not of the same device or the same drives. A profile without a serial number
 /// matches none.
 pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     let error =
@@ -47,7 +47,7 @@ pub(super) fn other_device(profile: &Body, device: &Body) -> Option<String> {
     })
 }
 
-/// Returns what the device lacks of the profile: a place without a drive once, not each of its parameters.
+/// Returns the items of the profile that the device lacks. A place without a drive is one item, whatever its parameters.
 fn absent(prepared: &Prepared) -> Vec<String> {
     let missing = prepared.missing.iter().map(|name| (name, name.parse::<Item>().ok().and_then(|item| item.0.drive())));
     let words = missing.map(|(name, drive)| match drive.filter(|drive| prepared.identity.drive(*drive).is_none()) {

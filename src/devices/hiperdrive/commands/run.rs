@@ -19,7 +19,7 @@ use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 use crate::worker::Session;
 
-/// Some of the longest intervals: a stop word is out before the program may end.
+/// Several of the longest intervals: a stop word is sent before the program may end.
 const STOPPED: Duration = Duration::from_millis(500);
 /// The drives are off, and their connection is closed.
 const RELEASED: Duration = Duration::from_secs(1);
@@ -80,7 +80,7 @@ pub(super) fn value(runner: &mut Runner, number: ParameterNumber) -> Result<Valu
     Ok(result_of!(runner.run(HiperdriveJob::Read(number))?, HiperdriveOutput::Value(_, value) => value))
 }
 
-/// The drive that is meant: the first, where none is named.
+/// Returns the drive to use: the first if none is named.
 pub(super) fn drive(of: &OfDrive) -> DriveNumber {
     of.drive.and_then(DriveNumber::new).unwrap_or(DriveNumber::FIRST)
 }

@@ -21,7 +21,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     let item = item(&write.item, &write.own.read()?)?;
     let change = change(item, &write.value)?;
     require_consent(&write.consent)?;
-    // A number says little of what it does.
+    // The number alone does not tell what it does.
     if let Change::Do(_) = change {
         output.remark(&words::change(&change).terminal());
     }
@@ -47,7 +47,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     if (row.number, value) == (47, 0) {
         return Err(failed(&TEXTS.text("hd_cli.no_service")));
     }
-    // The plan checks the limits of the drive's turns: with its scale both limits can be named.
+    // The plan checks travel: it needs the scale to name both limits.
     if row.reach.is_none() || row.number == REFERENCE {
         row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
     }

@@ -42,8 +42,8 @@ impl Planned for Prepared {
         self.cycles_seen
     }
 
-    /// Returns no limit, since none is known (`U`): saves are counted and reported, and refused only where they cannot
-    /// be counted.
+    /// Returns no limit, since none is known (`U`). Saves are counted and reported, and refused only if they cannot be
+    /// counted.
     fn wear_limit(&self) -> u64 {
         u64::MAX
     }
@@ -52,7 +52,7 @@ impl Planned for Prepared {
         op.note()
     }
 
-    /// All that the device keeps.
+    /// Returns everything that the device stores.
     fn before_image(&self) -> String {
         backup_of(Body::new(HiperdriveProfile::of(self.identity.profile(), self.image.clone()))).emit()
     }

@@ -1,5 +1,5 @@
-//! The cyclic connection of a session: it is opened and closed by a person, and what the drives may do comes from their
-//! parameters, as they were read last.
+//! The cyclic connection of a session. The user opens and closes it; the permits of the drives come from the parameters
+//! read last.
 
 use std::sync::Arc;
 
@@ -20,9 +20,9 @@ pub(super) struct Control {
     clock: Arc<dyn Clock>,
     motion: Motion,
     open: Option<Open>,
-    /// The device and its drives, as they were when it was opened last.
+    /// The device and its drives as of the last opening.
     identity: Option<Identity>,
-    /// When what rules them could not be read.
+    /// State of reading the limits.
     pub(super) rules_refresh: RulesRefresh,
 }
 
@@ -54,12 +54,12 @@ impl Control {
         view.drives.iter().find(|own| speaks && own.number == drive).map(|own| own.actual)
     }
 
-    /// The device and its drives, while drives may be moved.
+    /// Returns the device and its drives while drives may be moved.
     pub(super) fn controlled_device(&self) -> Option<Identity> {
         self.open.as_ref().and(self.identity.clone())
     }
 
-    /// The explicit messages are gone: drives stop.
+    /// Handles the loss of explicit messages: the drives stop.
     pub(super) fn lose_session(&self) {
         if let Some(open) = &self.open {
             open.cyclic.lose(CyclicLost::Session);
@@ -77,12 +77,12 @@ impl Control {
         }
     }
 
-    /// Forgets everything about what a drive may do.
+    /// Forgets the permit of a drive.
     pub(super) fn forget(&mut self, drive: DriveNumber) {
         self.motion.with_limits(drive, DriveLimits::forget);
     }
 
-    /// Publishes what a drive may do by its parameters, and when they were read.
+    /// Publishes the limits of a drive from its parameters, with the time of reading.
     pub(super) fn limit(&self, identity: &Identity, drive: DriveNumber, rules: Rules, times: [Moment; GROUPS]) {
         let Some(variant) = identity.drive(drive).map(|drive| drive.variant) else { return };
         self.motion.with_limits(drive, |limits| limits.take(rules, (identity.topology, variant), times));
@@ -90,7 +90,7 @@ impl Control {
 }
 
 impl Hiperdrive {
-    /// Opens the cyclic connection. Nothing moves by that.
+    /// Opens the cyclic connection. This moves nothing.
     pub(super) fn take(
         &mut self,
         context: &mut SessionContext,
@@ -139,25 +139,25 @@ impl Hiperdrive {
         closed
     }
 
-    /// The session ends: drives that are in control are stopped and let go, and a device that had a master is told.
+    /// Ends the session: stops and releases drives under control, and unregisters at the device if it was controlled.
     pub(super) fn end(&mut self, context: &mut SessionContext) {
         let had_control = self.control.identity.is_some();
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
-        // Nothing answers that, and a device that is gone needs not to know.
+        // There is no reply to this, and it does not matter if the device is disconnected.
         if had_control && let Err(why) = self.master(context).unregister() {
             tracing::debug!("{why}");
         }
     }
 
-    /// The program ends, and drives are in control still.
+    /// Returns whether the program ends, and drives are in control still.
     pub(super) fn is_to_end(&self) -> bool {
         self.control.open.is_some() && self.control.motion.is_shutting_down()
     }
 
-    /// Closes a lost cyclic connection at the other end as well, and reports it once. It is also lost when explicit
-    /// messages are: motion is not allowed without access to parameters.
+    /// Closes a lost cyclic connection at the target as well, and reports it once. It is also lost when explicit messages
+    /// are: motion is not allowed without access to parameters.
     pub(super) fn let_go_of_lost(&mut self, context: &mut SessionContext) {
         if self.control.open.is_some() && self.wire.check().is_err() {
             self.control.lose_session();
@@ -169,13 +169,13 @@ impl Hiperdrive {
             return;
         }
         self.remark = Some(DeviceMessage::ControlLost);
-        // It may have ended there already, or there is no answer: it then ends there by itself.
+        // The target may have closed it already, or may not reply: it then ends by its own time-out.
         if let Err(why) = self.release(context) {
             tracing::warn!("{why}");
         }
     }
 
-    /// Carries a plan out, and looks again at what drives may do: until that is known, nothing.
+    /// Carries out a plan and reads the limits of the drives again. Until they are known, nothing may move.
     pub(super) fn commit(
         &mut self,
         context: &mut SessionContext,
@@ -184,7 +184,7 @@ impl Hiperdrive {
     ) -> Result<Committed, JobError> {
         let identity = &commit.prepared.identity;
         for drive in &identity.drives {
-            // As they are before the plan: a scale that it changes is told from this one.
+            // The values before the plan: a changed scale is detected by comparison with these.
             let rules = Rules::by(|base| commit.prepared.image.of_drive(drive.number, base));
             let now = context.clock.now();
             self.control.motion.with_limits(drive.number, |limits| {
@@ -194,7 +194,7 @@ impl Hiperdrive {
         }
         let ended = carry_through(self, context, commit, tell);
         let lost = ended.as_ref().err().and_then(JobError::device).is_some_and(Error::is_lost);
-        // A lost device is not asked again.
+        // A lost device is not queried again.
         if !lost && let Err(why) = self.read_rules(context, identity) {
             tracing::warn!("{why}");
         }

@@ -1,9 +1,9 @@
-//! The thread of a cyclic connection: it sends at absolute deadlines, takes what comes in between, and asks the dead-men for
-//! each packet. A stop is on the wire with the next packet, one interval later at most.
+//! The thread of a cyclic connection: it sends at absolute deadlines, receives in between, and asks the dead-men for each
+//! packet. A stop is sent with the next packet, at most one interval later.
 //!
-//! It ends when it is asked to, when the program ends, when its handle goes, when the connection is lost, and with the program: the drives are told
-//! to stop, then to be off; then nothing is sent any more. Where it fails, nothing is sent any more at once, and the target's
-//! watchdog stops the drives.
+//! The thread ends on request, when its handle is dropped, when the connection is lost, and with the program: the drives
+//! are stopped, then switched off; then nothing more is sent. If sending or receiving fails, nothing more is sent at once,
+//! and the target's watchdog stops the drives.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -18,7 +18,8 @@ use crate::devices::hiperdrive::procedures::cyclic::{CyclicLost, Drives};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::link::{Clock, Datagrams, wake_before_others};
 
-/// A cyclic connection on its thread. Dropped, it stops the drives and ends by itself; [`close`](Self::close) waits for that.
+/// Cyclic connection on its own thread. Dropping it stops the drives and ends the thread; [`close`](Self::close) waits for
+/// that.
 pub struct Cyclic {
     motion: Motion,
     commands: Arc<CyclicCommands>,
@@ -32,10 +33,10 @@ struct CyclicCommands {
     lost: Mutex<Option<CyclicLost>>,
 }
 
-/// Nothing of this kind is ever sent: its channel tells by its end that the thread has ended.
+/// Type of a channel on which nothing is sent: it disconnects when the thread ends.
 enum Never {}
 
-/// A cyclic connection without a thread: the owner runs it, in virtual time in a test.
+/// Cyclic connection without a thread: the owner runs it, in tests in virtual time.
 pub struct Pump {
     drives: Drives,
     port: Box<dyn Datagrams>,
@@ -45,7 +46,7 @@ pub struct Pump {
     packet: Vec<u8>,
 }
 
-/// The ladder, three packets that say off, and some time for the system.
+/// The stop ladder, three packets with drives off, and a margin for the system.
 const PATIENCE: Duration = Duration::from_millis(1500);
 /// Most packets handled after the next one was due: flooding the port must not delay sending.
 const AT_ONCE: usize = 64;
@@ -54,7 +55,7 @@ impl Cyclic {
     /// Starts the thread. The connection was opened, and `port` is aimed at the target.
     ///
     /// # Errors
-    /// When the system has no thread left: nothing was sent.
+    /// If the system has no thread left: nothing was sent.
     pub fn start(
         port: Box<dyn Datagrams>,
         opened: &Opened,
@@ -86,12 +87,13 @@ impl Cyclic {
         self.motion.lost()
     }
 
-    /// The session knows that it is lost: the drives are told to stop.
+    /// Reports the loss from the session: the drives are stopped.
     pub fn lose(&self, why: CyclicLost) {
         *self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
     }
 
-    /// Stops the drives, switches them off and ends; what is left is to close the connection. Why it was lost, where it was.
+    /// Stops the drives, switches them off and ends the thread; the connection itself remains to be closed. Returns why it
+    /// was lost, if it was.
     pub fn close(self) -> Option<CyclicLost> {
         self.commands.end.store(true, Ordering::SeqCst);
         // The channel ends with the thread; a later end is not awaited.
@@ -107,7 +109,7 @@ impl Drop for Cyclic {
 }
 
 impl Pump {
-    /// A connection that was opened just now, through a port that is aimed at the target.
+    /// Creates a connection that was opened just now, through a port that is aimed at the target.
     pub fn new(
         port: Box<dyn Datagrams>,
         opened: &Opened,
@@ -121,12 +123,12 @@ impl Pump {
         Pump { drives, port, clock, motion, commands, packet: Vec::new() }
     }
 
-    /// The drives are to stop and the connection is to end; [`turn`](Self::turn) does it.
+    /// Requests a stop of the drives and the end of the connection; [`turn`](Self::turn) carries it out.
     pub fn end(&self) {
         self.commands.end.store(true, Ordering::SeqCst);
     }
 
-    /// Receives until the next packet is due, and sends it. False: the connection is over.
+    /// Receives until the next packet is due, and sends it. Returns false when the connection is over.
     pub fn turn(&mut self) -> bool {
         let due = self.drives.poll_at();
         let mut late = 0;

@@ -12,11 +12,11 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, ParameterNumber, V
 use crate::store::DeviceKey;
 use crate::worker::commit::wear;
 
-/// Saves from which a person should know that they may be numbered: an assumption, since the manual names no limit (`U`).
+/// Number of saves from which the user is warned of wear: an assumption, since the manual gives no limit (`U`).
 pub const WEAR_WARNING: u64 = 50_000;
 
-/// A job of a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take)
-/// and [`Give`](Self::Give), by the session's `Motion`.
+/// Job of a session with an adapter or a hub. Reading changes nothing; drives move only between [`Take`](Self::Take) and
+/// [`Give`](Self::Give), through the session's `Motion`.
 #[derive(Debug)]
 pub enum HiperdriveJob {
     /// Identifies the device after connecting, for a window.
@@ -40,43 +40,43 @@ pub enum HiperdriveJob {
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
-    /// Opens the cyclic connection. Nothing moves by that.
+    /// Opens the cyclic connection. This moves nothing.
     Take,
     /// Stops all drives and closes it.
     Give,
-    /// From now on this drive is polled.
+    /// Polls this drive from now on.
     Watch(DriveNumber),
 }
 
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Make the device as the profile says.
+    /// Restores a profile.
     Restore { profile: Box<HiperdriveProfile>, options: RestoreOptions },
-    /// Make it like this, and save it; what the image says nothing about stays as it is.
+    /// Writes these values and saves them; parameters that are not in the image stay as they are.
     Write(Box<Image>),
     /// Make it like this, and save nothing.
     Try(Box<Image>),
     /// The drive's place becomes this position.
     SetPosition {
         drive: DriveNumber,
-        /// In steps as scaled; it is rounded to 64 of them.
+        /// Position in scaled steps, to be rounded to a multiple of 64.
         position: i32,
         /// Save it, and all that was not saved before.
         save: bool,
     },
     /// The device does something.
     Do(Service),
-    /// The device gets its address in another way.
+    /// Changes the source of the IP address.
     Network(NetworkSettings),
 }
 
-/// Kinds of change that differ in what completes one that was cut off.
+/// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// A profile is restored: doing it again completes it.
+    /// Restore of a profile: repeating it completes it.
     Restore,
-    /// Edits are written: those that are not yet stay edited.
+    /// Edits: those not yet written remain edits.
     Edits,
     /// Values are written for now.
     Try,
@@ -100,16 +100,16 @@ impl Change {
     }
 }
 
-/// A plan, ready to be looked at.
+/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperdrivePlan,
-    /// The device it is for.
+    /// The device that it is for.
     pub identity: Identity,
     /// The stored values of the device, as read for the plan.
     pub image: Image,
-    /// Saves that this computer has seen the device take; `None` where the logbook does not tell.
+    /// Number of saves of the device recorded on this computer; `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
     /// Items that are as they should be already.
     pub unchanged: u64,
@@ -117,9 +117,9 @@ pub struct Prepared {
     pub missing: Vec<String>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<Item>,
-    /// The profile is of another type of device or drive: each difference.
+    /// Differences of type if the profile is of another type of device or drive.
     pub other_types: Vec<OtherType>,
-    /// Values of another device's mounting that are written: they have to be set up again.
+    /// Values of another device's mounting that are written: they must be set up again.
     pub mounting_written: Vec<Item>,
 }
 
@@ -130,7 +130,7 @@ impl Prepared {
     }
 }
 
-/// A plan that a person consented to.
+/// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 /// The result of a commit.
@@ -139,21 +139,21 @@ pub type Committed = crate::worker::Committed<Written>;
 /// A message during a job.
 #[derive(Clone, Debug, PartialEq)]
 pub enum DeviceMessage {
-    /// The cyclic connection was lost, and drives stop; what the session's `Motion` says of it tells why.
+    /// The cyclic connection was lost and the drives stop; the session's `Motion` has the cause.
     ControlLost,
     /// The limits of a drive under control cannot be read, and are requested again repeatedly.
     RulesUnread(Box<Error>),
-    /// It could be read again.
+    /// The limits could be read again.
     RulesRead,
 }
 
-/// The step that a job is at. Its text is the command line's.
+/// Step of a running job. Its text is that of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     Parameter(ParameterNumber),
     /// A step of the check.
     Step(CheckStep),
-    /// An operation of a plan is carried out: what it changes.
+    /// Operation of a plan, with the item it changes.
     Operation(String),
 }
 
@@ -198,8 +198,8 @@ impl From<PlanError> for JobError {
     }
 }
 
-/// Returns the key of a device for backups and the logbook: saves are those of the adapter or hub, whatever is plugged
-/// into it.
+/// Returns the key of a device for backups and the logbook: saves count for the adapter or hub, whichever drives are
+/// connected.
 pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, &identity.category, &identity.serial_number, is_virtual)
 }

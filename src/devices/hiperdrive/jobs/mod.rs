@@ -1,5 +1,5 @@
-//! HIPERDRIVE drives behind an adapter or a hub, at the end of a session: its jobs, the cyclic connection that moves them and
-//! the handle for it.
+//! HIPERDRIVE drives behind an adapter or a hub as seen by a session: its jobs, the cyclic connection that moves them, and
+//! the handle for motion.
 
 mod commit;
 mod control;
@@ -61,7 +61,7 @@ const IDLE_IN_CONTROL: Duration = Duration::from_millis(20);
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Hiperdrive {
-    /// The host's side of explicit messages.
+    /// Returns the host's side of explicit messages.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
@@ -71,16 +71,17 @@ impl Hiperdrive {
 pub struct DeviceConnection {
     /// Explicit messages.
     pub wire: Box<dyn ByteLink>,
-    /// Port of cyclic data; `None` for a link without any.
+    /// Port for cyclic data; `None` for a link without one.
     pub port: Option<Box<dyn DatagramPort>>,
     /// The known state of the device.
     pub station: Station,
-    /// The device, where it lives in this process.
+    /// The virtual device, if it runs in this process.
     pub target: Option<Target>,
 }
 
 impl Session<Hiperdrive> {
-    /// A session on open wires. With a target the device lives in this process, and its wear counts apart.
+    /// Creates a session on an open connection. With `target` the device is a virtual one in this process, and its saves
+    /// are counted separately.
     pub fn to_target(way: DeviceConnection, clock: Arc<dyn Clock>, store: Store) -> Self {
         let DeviceConnection { wire, port, station, target } = way;
         let is_virtual = target.is_some();
@@ -101,7 +102,7 @@ impl Session<Hiperdrive> {
         &self.device.station
     }
 
-    /// The device, where it lives in this process.
+    /// Returns the virtual device, if it runs in this process.
     pub fn target(&self) -> Option<Target> {
         self.device.target.clone()
     }
@@ -193,7 +194,7 @@ impl Device for Hiperdrive {
         self.remark.take()
     }
 
-    /// Drives that are in control are stopped and let go.
+    /// Stops the drives that are in control and releases them.
     fn leave(&mut self, context: &mut SessionContext) {
         self.end(context);
     }

@@ -1,5 +1,5 @@
-//! The handle that moves drives: the request goes into a cell of which the latest value counts, and the state of the
-//! drives comes back. The thread of the cyclic connection reads the one and fills the other; neither side waits.
+//! The handle that moves drives. A request goes into a cell that holds only the latest one; the state of the drives comes
+//! back the same way. The thread of the cyclic connection reads requests and writes the state; neither side waits.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -13,7 +13,7 @@ use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, Setpoint};
 use crate::link::Clock;
 use crate::units::Moment;
 
-/// The motion of a session's drives. Clones share it.
+/// Motion of a session's drives. Clones share it.
 #[derive(Clone)]
 pub struct Motion(Arc<Shared>);
 
@@ -24,21 +24,21 @@ struct Shared {
 
 struct Cell {
     intent: Intent,
-    /// The limits of each drive: this is their only place.
+    /// The limits of each drive, stored only here.
     limits: BTreeMap<DriveNumber, DriveLimits>,
-    /// Drives for which a person has allowed an endless run.
+    /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// Whether explicit messages are answered.
+    /// The watch over explicit messages.
     session: SessionWatch,
     punctual: bool,
     view: MotionSnapshot,
-    /// The program ends: nothing moves any more.
+    /// The program ends: no motion is allowed.
     is_shutting_down: bool,
     /// The target holds a cyclic connection that was opened here.
     connected: bool,
 }
 
-/// The drives at one moment: what they do, and what they may do.
+/// Snapshot of the drives: their state and their limits.
 #[derive(Clone, Debug)]
 pub struct DrivesSnapshot {
     pub at: Moment,
@@ -52,11 +52,11 @@ pub struct DrivesSnapshot {
 pub struct MotionSnapshot {
     /// The cyclic connection is there.
     pub open: bool,
-    /// The drives that have a place in it, as they were last; in the order of their numbers.
+    /// The drives of the connection with their latest state, by number.
     pub drives: Vec<DriveView>,
     /// The connection.
     pub link: LinkFigures,
-    /// The system wakes its thread before all ordinary ones.
+    /// If set, the system gives the connection's thread priority over all ordinary ones.
     pub punctual: bool,
     /// Why it was lost without being closed.
     pub lost: Option<CyclicLost>,
@@ -68,13 +68,13 @@ pub struct DriveView {
     pub number: DriveNumber,
     /// The data received last.
     pub actual: Actual,
-    /// When it said that; `None` before it has said anything.
+    /// Time of the data in `actual`; `None` before the first.
     pub heard_at: Option<Moment>,
     /// The setpoint sent last.
     pub sent: Setpoint,
     /// The phase of its motion.
     pub phase: Phase,
-    /// The act that is under way, or the last one; 0 for none.
+    /// The running act, or else the last one; 0 for none.
     pub act: u64,
     /// The last act that ended, and how.
     pub ended: Option<(u64, Ended)>,
@@ -97,8 +97,8 @@ impl Motion {
         Motion(Arc::new(Shared { clock, cell: Mutex::new(cell) }))
     }
 
-    /// A person wants something of a drive: an act of its own, whose number comes back. It replaces the one before; what
-    /// moved by that stops. It has to be kept [fresh](Self::refresh). Without a cyclic connection nothing comes of it.
+    /// Requests a motion of a drive and returns the number of this new act. It replaces the previous one, whose motion
+    /// stops. It must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
     pub fn intend(&self, drive: DriveNumber, wish: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
@@ -117,13 +117,13 @@ impl Motion {
         }
     }
 
-    /// All drives stop.
+    /// Stops all drives.
     pub fn stop(&self) {
         let drive = self.lock().intent.drive;
         self.intend(drive, MotionRequest::Stop);
     }
 
-    /// The act of this number is the latest.
+    /// Returns whether the act of this number is the latest.
     pub fn is_latest(&self, number: u64) -> bool {
         self.lock().intent.number == number
     }
@@ -133,7 +133,7 @@ impl Motion {
         self.lock().view.clone()
     }
 
-    /// The cyclic connection is there.
+    /// Returns whether the cyclic connection is there.
     pub fn is_open(&self) -> bool {
         self.lock().view.open
     }
@@ -150,7 +150,7 @@ impl Motion {
         self.lock().limits.get(&drive).cloned().unwrap_or_default()
     }
 
-    /// Publishes what a drive may do; a session does so by itself.
+    /// Publishes the limits of a drive. A session does this by itself.
     pub fn publish_limits(&self, drive: DriveNumber, limits: DriveLimits) {
         self.with_limits(drive, |own| *own = limits);
     }
@@ -160,30 +160,29 @@ impl Motion {
         change(self.lock().limits.entry(drive).or_default())
     }
 
-    /// The limits of a drive are to be read before its next motion: another master may have changed them.
+    /// Requires the limits of a drive to be read before its next motion: another master may have changed them.
     pub fn doubt_limits(&self, drive: DriveNumber) {
         let now = self.0.clock.now();
         self.with_limits(drive, |limits| limits.doubt(now));
     }
 
-    /// The drive of which something was wanted last.
+    /// Returns the drive of the latest request.
     pub(super) fn wanted_drive(&self) -> DriveNumber {
         self.lock().intent.drive
     }
 
-    /// The limits of a drive are to be confirmed before it moves.
+    /// Requires that the limits of a drive are confirmed before it moves.
     pub fn unconfirm_limits(&self, drive: DriveNumber) {
         self.with_limits(drive, DriveLimits::unconfirm);
     }
 
-    /// A person confirms the limits of a drive as they were shown. Returns whether that counts: not where the drive has others
-    /// by now.
+    /// Confirms the limits of a drive as shown to the user. Returns whether this took effect: it does not if the limits
+    /// have changed since.
     pub fn confirm_limits(&self, drive: DriveNumber, seen: LimitsSeen) -> bool {
         self.with_limits(drive, |limits| limits.confirm(seen))
     }
 
-    /// A person allows an endless run of a drive, or does not any more. It is possible only where limits and scaling are the
-    /// factory's.
+    /// Allows or forbids an endless run of a drive. It is possible only with the factory's limits and scaling.
     pub fn allow_endless(&self, drive: DriveNumber, allowed: bool) {
         let mut cell = self.lock();
         if allowed {
@@ -199,7 +198,7 @@ impl Motion {
         self.lock().permitted(drive, now)
     }
 
-    /// A connection begins: no act up to the number that comes back moves anything over it.
+    /// Starts a connection. Returns the number up to which no act moves anything over it.
     pub(super) fn open(&self) -> u64 {
         let now = self.0.clock.now();
         let mut cell = self.lock();
@@ -221,7 +220,7 @@ impl Motion {
         note(&mut self.lock().session);
     }
 
-    /// A drive was sent a word with which it moves, or is led to where it may.
+    /// Returns whether a drive is moving, or is being led to another state.
     pub(super) fn is_under_way(&self) -> bool {
         let cell = self.lock();
         cell.view.open && cell.view.drives.iter().any(|drive| drive.phase != Phase::Idle)
@@ -256,7 +255,7 @@ impl Motion {
         self.lock().punctual = punctual;
     }
 
-    /// The connection's thread has failed, or never began.
+    /// Notes that the connection's thread has failed, or never began.
     pub(super) fn fail(&self) {
         let mut cell = self.lock();
         (cell.view.open, cell.view.lost) = (false, Some(CyclicLost::Failed));
@@ -266,39 +265,41 @@ impl Motion {
         self.lock().view.lost.clone()
     }
 
-    /// The program ends: all drives stop, are switched off, and their connection is closed. Nothing moves any more.
+    /// Ends motion with the program: all drives stop, are switched off, and their connection is closed. Nothing moves after
+    /// that.
     pub fn leave(&self) {
         self.lock().is_shutting_down = true;
     }
 
-    /// The program ends.
+    /// Returns whether the program ends.
     pub(super) fn is_shutting_down(&self) -> bool {
         self.lock().is_shutting_down
     }
 
-    /// The target holds a cyclic connection that was opened here and has not been closed.
+    /// Returns whether the target holds a cyclic connection that was opened here and has not been closed.
     pub fn is_connected(&self) -> bool {
         self.lock().connected
     }
 
-    /// The cyclic connection was opened, or closed at both ends.
+    /// Notes that the cyclic connection was opened, or closed at both ends.
     pub(super) fn set_connected(&self, connected: bool) {
         self.lock().connected = connected;
     }
 
-    /// The session is gone: nothing else has a handle to its drives.
+    /// Returns whether the session has ended: nothing else holds a handle to its drives.
     pub fn is_left_over(&self) -> bool {
         Arc::strong_count(&self.0) == 1
     }
 
-    /// Returns whether no drive was sent a word with which it moves: a requested stop is on the wire.
+    /// Returns whether the word sent last to every drive stops it: a requested stop has been sent. True without a
+    /// connection.
     pub fn is_standing(&self) -> bool {
         let cell = self.lock();
         !cell.view.open || cell.view.drives.iter().all(|drive| drive.sent.control.is_standing())
     }
 
     fn lock(&self) -> MutexGuard<'_, Cell> {
-        // Each change is complete: a panic leaves nothing half done.
+        // Each change is complete: a panic leaves the cell consistent.
         self.0.cell.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -327,7 +328,7 @@ mod tests {
     use crate::devices::hiperdrive::procedures::dead_man::Effort;
     use crate::link::VirtualClock;
 
-    /// If the window and the thread of the connection stood still together, the window may wake up first.
+    /// If the window and the connection's thread were both suspended, the window may resume first.
     #[test]
     fn what_nobody_said_for_too_long_is_not_said_again() {
         let clock = Arc::new(VirtualClock::default());

@@ -1,4 +1,4 @@
-//! From a link URL to a session with an adapter or a hub.
+//! Opening a session with an adapter or a hub from a link URL.
 
 use std::net::Ipv4Addr;
 use std::sync::{Arc, Mutex};
@@ -17,13 +17,13 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to an adapter or a hub without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
+/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an adapter or a hub: `enip:` leads to it, `sim:` to a virtual one, `replay:` to a recording of one, which
-/// has no cyclic connection.
+/// Opens a link to an adapter or a hub: `enip:` to a real one, `sim:` to a virtual one, `replay:` to a recording of one,
+/// which has no cyclic connection.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -46,7 +46,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperdrive>, OpenErro
     Ok(Session::to_target(way, clock, store))
 }
 
-/// The way to a virtual device in this process.
+/// Returns the connection to a virtual device in this process.
 fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> DeviceConnection {
     let target = Target::new(config);
     let connection = target.connection(Ipv4Addr::UNSPECIFIED);
@@ -55,7 +55,7 @@ fn virtually(config: &Config, station: Station, clock: Arc<dyn Clock>) -> Device
     DeviceConnection { wire, port: Some(port), station, target: Some(target) }
 }
 
-/// The device as the link says, and the virtual one, which counts for a link to it alone.
+/// Reads the settings of the station and of the virtual device. The latter apply to a link to it only.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Enip | Scheme::Replay) {
         return Err(leads_elsewhere(url.scheme, "sim:, enip:, replay:"));
@@ -70,7 +70,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Sessions and requests have other numbers every day: a recording answers whatever they are.
+/// Removes the numbers of sessions and requests, which differ each time, so that a recording answers any.
 fn without_number(entry: TraceEntry) -> TraceEntry {
     const NUMBERS: [usize; 12] = [4, 5, 6, 7, 12, 13, 14, 15, 16, 17, 18, 19];
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };

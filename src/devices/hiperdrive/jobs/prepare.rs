@@ -1,4 +1,4 @@
-//! From a change that a user wants to a plan. Reads; writes nothing.
+//! Makes a plan from a change. Reads; writes nothing.
 
 use super::{Change, Hiperdrive, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::hiperdrive::procedures::write::{Remedy, remedy};
@@ -57,7 +57,7 @@ pub(super) fn prepare(
                     Remedy::Nothing => plan.ops.clear(),
                     Remedy::Acknowledgement => {}
                     Remedy::Reset => {
-                        // It concerns all drives, and is shown as what it is.
+                        // It concerns all drives, and the plan shows it as a reset.
                         plan = plan_service(&state.image, Service::Reset);
                         plan.ops.push(Op::Service(*service));
                     }

@@ -10,22 +10,23 @@ use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::units::Moment;
 use crate::worker::SessionContext;
 
-/// The time is cut into turns of this length, which belong to one group after the other of the parameters that rule a drive:
-/// all of them have one each second.
+/// Length of a time slot while no drive moves. The groups of limit parameters take the slots in turn: each group has one
+/// per second.
 const TURN: Duration = Duration::from_millis(250);
-/// As long is a turn while a drive moves: each is a request, and a device that does not answer ends the motion.
+/// Length of a slot while a drive moves. Each slot sends a request, and a device that does not answer ends the motion.
 const TURN_IN_MOTION: Duration = REQUEST;
-/// Behind a look that failed.
+/// Pause after a failed reading.
 const REST: Duration = Duration::from_millis(500);
 
-/// Whether the limits of the drives could be read.
+/// State of reading the limits of the drives.
 #[derive(Debug, Default)]
 pub(super) struct RulesRefresh {
-    /// Until when nothing is asked, behind a look that failed.
+    /// End of the pause after a failed reading.
     rests: Option<Moment>,
 }
 
-/// The groups that are to be read now, by when each was read last, the oldest first: those one of whose turns has begun since.
+/// Returns the groups that are due, the one read longest ago first: those with a slot that has begun since their last
+/// reading.
 fn due(read: [Moment; GROUPS], now: Moment, turn: Duration) -> Vec<usize> {
     let is_due = |(group, at): &(usize, Moment)| turns(*group, now, turn) > turns(*group, *at, turn);
     let mut groups: Vec<(usize, Moment)> = read.into_iter().enumerate().filter(is_due).collect();
@@ -55,7 +56,7 @@ impl Hiperdrive {
             }
             match self.look_at(context, &identity, drive) {
                 Ok(()) => {}
-                // A job goes first, or another wish has come.
+                // A job takes precedence, or a newer request has arrived.
                 Err(error) if error.is_cancelled() => return,
                 Err(error) => return self.cannot_look(context, drive, error),
             }
@@ -92,10 +93,10 @@ impl Hiperdrive {
 
     fn cannot_look(&mut self, context: &mut SessionContext, drive: DriveNumber, error: Error) {
         tracing::warn!("{error}");
-        // All of it is read before anything moves again.
+        // All limits are read before anything moves again.
         self.control.motion().doubt_limits(drive);
         if matches!(error, Error::Link(_)) || self.wire.check().is_err() {
-            // Nothing more can be asked: that is told as a loss.
+            // Nothing can be queried any more: this is reported as a loss.
             return self.control.lose_session();
         }
         if self.control.rules_refresh.rests.replace(context.clock.now() + REST).is_none() {
@@ -104,7 +105,7 @@ impl Hiperdrive {
         }
     }
 
-    /// Reads all that rules a drive before anything else: it is shown from now on.
+    /// Reads the limits of a drive before anything else, because it is shown from now on.
     pub(super) fn look_anew(&mut self, context: &mut SessionContext, drive: DriveNumber) {
         self.control.motion().doubt_limits(drive);
         self.look_at_rules(context);

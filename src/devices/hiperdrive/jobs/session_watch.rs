@@ -1,5 +1,5 @@
-//! The watch over explicit messages while drives are in control: how long the device has left a request without an answer. A
-//! device that is silent there ends a motion as fast as any other loss, though its cyclic packets go on.
+//! The watch over explicit messages while drives are under control: how long the device has left a request without an
+//! answer. A device that is silent here ends a motion as fast as any other loss, though its cyclic packets continue.
 //!
 //! | what | time |
 //! |---|---|
@@ -7,8 +7,8 @@
 //! | without an answer, at most ([`PATIENCE`]), or twice what the device took recently | 130 ms |
 //! | together | 190 ms |
 //!
-//! What counts is how long the thread has listened: a thread that a busy computer kept from listening cannot
-//! conclude that there was no answer. Beyond [`UNHEARD`] it counts as none.
+//! The time counted is the time the thread has listened: a thread that a busy computer kept from listening cannot conclude
+//! that there was no answer. After [`UNHEARD`] more, it counts as no answer.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -18,23 +18,23 @@ use crate::buses::ethernet_ip::protocol::Receiver;
 use crate::link::{ByteLink, Clock, LinkError};
 use crate::units::{CharacterFormat, Moment};
 
-/// While a drive moves, something is asked at least so often.
+/// Maximum interval between requests while a drive moves.
 pub(super) const REQUEST: Duration = Duration::from_millis(60);
 /// How long a device may leave a request unanswered while a drive moves.
 const PATIENCE: Duration = Duration::from_millis(130);
-/// Without a look at the line for so much longer, there is no answer either.
+/// Additional time without listening after which a request counts as unanswered.
 const UNHEARD: Duration = Duration::from_millis(250);
-/// While an answer is awaited, the line is looked at so often.
+/// Interval of listening while a reply is awaited.
 const LOOK: Duration = Duration::from_millis(10);
-/// No device is given more, however slow it was.
+/// Longest time allowed to a device, however slow it was.
 const MOST_PATIENCE: Duration = Duration::from_secs(1);
 
 /// Requests and answers over one connection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct SessionWatch {
-    /// When the first request was sent that has no answer yet.
+    /// When the oldest unanswered request was sent.
     requested: Option<Moment>,
-    /// When the line was looked at last without finding anything.
+    /// When the line was last checked and nothing had arrived.
     looked: Moment,
     /// The slowest answer, fading with each faster one.
     slowest: Duration,
@@ -43,17 +43,17 @@ pub(super) struct SessionWatch {
 }
 
 impl SessionWatch {
-    /// A request goes out.
+    /// Notes that a request is sent.
     pub(super) const fn ask(&mut self, now: Moment) {
         if self.requested.is_none() {
             self.requested = Some(now);
         }
     }
 
-    /// A frame came.
+    /// Notes that a frame arrived.
     pub(super) fn answer(&mut self, now: Moment) {
         self.broken = false;
-        // A parameter that takes seconds says nothing of the others.
+        // A parameter that takes seconds does not make the others slow.
         if let Some(took) = self.requested.take().map(|asked| now.since(asked)).filter(|took| *took <= MOST_PATIENCE) {
             self.slowest = took.max(self.slowest * 7 / 8);
         }
@@ -64,12 +64,12 @@ impl SessionWatch {
         self.looked = now;
     }
 
-    /// Bytes came that are no frame.
+    /// Notes bytes that are not a frame.
     pub(super) const fn break_off(&mut self) {
         self.broken = true;
     }
 
-    /// The device has not answered for too long to move anything, or with bytes that are no frame.
+    /// Returns whether the device has not answered for too long to move anything, or with bytes that are no frame.
     pub(super) fn is_silent(&self, now: Moment) -> bool {
         let patience = (self.slowest * 2).clamp(PATIENCE, MOST_PATIENCE);
         let is_late = |asked| self.looked.since(asked) > patience || now.since(asked) > patience + UNHEARD;
@@ -109,7 +109,7 @@ impl ByteLink for WatchedWire {
                 break;
             }
             self.motion.with_session(|session| session.look(now));
-            // A line whose time does not go on has nothing more to give.
+            // If the clock does not advance, no more bytes will arrive.
             if now >= until || now <= began {
                 return Ok(());
             }
@@ -151,7 +151,7 @@ mod tests {
         Moment::START + Duration::from_millis(ms)
     }
 
-    /// Issue 21.13: 130 ms of listening in silence are too long, counted from the first request without an answer.
+    /// Issue 21.13: 130 ms of listening without a reply are too long, counted from the first unanswered request.
     #[test]
     fn silence_counts_from_the_first_request_without_an_answer() {
         let mut watch = SessionWatch::default();
@@ -170,7 +170,7 @@ mod tests {
         assert!(!watch.is_silent(at(1001)));
     }
 
-    /// A line on which nothing comes but what is put there.
+    /// Line that yields only the bytes put into it.
     #[derive(Default)]
     struct Line(Vec<u8>);
 
@@ -193,8 +193,8 @@ mod tests {
         }
     }
 
-    /// Issue 21.13: a motion is locked by a request without an answer, and by bytes that are no frame; a reply frees it. The
-    /// reply is the reference's to RegisterSession (9), which comes in two portions.
+    /// Issue 21.13: an unanswered request locks motion, and so do bytes that are not a frame; a reply unlocks it. The reply
+    /// is the reference's to RegisterSession (9), which arrives in two parts.
     #[test]
     fn a_silent_session_locks_motion() {
         let mut reply = vec![0x65, 0, 4, 0, 0x78, 0x56, 0x34, 0x12];
@@ -230,7 +230,7 @@ mod tests {
         assert!(!locked());
     }
 
-    /// A device that takes 300 ms for each answer is given 600, and less again when it has become fast.
+    /// A device that takes 300 ms for each reply is allowed 600, and less again when it has become faster.
     #[test]
     fn a_slow_device_is_given_more_time() {
         let mut watch = SessionWatch::default();
@@ -248,7 +248,7 @@ mod tests {
         }
         watch.look(at(12_090 + 131));
         assert!(watch.is_silent(at(12_090 + 131)), "{watch:?}");
-        // A presence test takes eight seconds on a hub, and says nothing of what comes behind it.
+        // A presence test takes eight seconds on a hub, and does not count for later requests.
         let mut watch = SessionWatch::default();
         watch.ask(at(0));
         watch.answer(at(8000));

@@ -1,4 +1,5 @@
-//! The device check: what an adapter or a hub and its drives say, with a verdict a line. It sets nothing and moves nothing.
+//! The device check: the findings about an adapter or a hub and its drives, each with a verdict. It sets nothing and moves
+//! nothing.
 
 use std::fmt;
 use std::time::Duration;
@@ -32,7 +33,7 @@ pub enum CheckStep {
     Temperature,
     /// Source of its address.
     Address,
-    /// Parameter 47: what was saved is whole, and nothing is being saved.
+    /// Parameter 47: the memory is intact, and no save is in progress.
     Memory,
     /// The drives plugged in.
     Drives,
@@ -73,7 +74,7 @@ impl fmt::Display for CheckStep {
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// A value was read so often, within so long a reply each.
+    /// Number of readings of a value, and the longest reply time.
     Replies {
         /// Number of requests.
         requested: u32,
@@ -84,7 +85,7 @@ pub enum CheckFinding {
     },
     Category(String),
     SerialNumber(String),
-    /// Its software.
+    /// Software version of the device.
     Version(String),
     /// Tenths of a volt.
     Supply(i64),
@@ -92,13 +93,13 @@ pub enum CheckFinding {
     Temperature(i64),
     /// Setting of the address switches.
     Switch(AddressSwitch),
-    /// The address switches say what there is not.
+    /// The address switches have an undefined setting.
     UnknownSwitch(i64),
     /// Source of the address with the switches at 0.
     Source(AddressSource),
-    /// Nothing is being saved, and what was saved is whole.
+    /// The memory is intact and no save is in progress.
     Saved,
-    /// Parameter 47 is not 0: the memory is bad, or the device is busy.
+    /// Parameter 47 is not 0: the memory is faulty, or the device is busy.
     NotSaved(i64),
     /// A drive is plugged in.
     Drive {
@@ -106,31 +107,31 @@ pub enum CheckFinding {
         variant: Variant,
         serial_number: String,
     },
-    /// No drive is plugged in.
+    /// No drive is connected.
     NoDrives,
     /// Parameter 152 is 1.
     Requested,
     /// Parameter 152 is 0.
     NotRequested,
-    /// Of a hub switch S3 has to be at 0 for drives to move; it cannot be read.
+    /// Switch S3 of a hub must be at 0 for drives to move; it cannot be read.
     LookAtS3,
     /// Parameter 118 is 0.
     LineGood,
-    /// Parameter 118: FFFFh for no drive, or what went wrong.
+    /// Parameter 118: FFFFh for no drive, or an error.
     LineWord(u16),
     /// Parameter 186: tenths of a second.
     Timeout(i64),
-    /// Parameter 186 is no time: a drive that is left alone goes on.
+    /// Parameter 186 is not a time: a drive without communication continues to move.
     NoTimeout,
     /// State in the state machine.
     State(State),
-    /// Its status word cannot be: process data may have another byte order.
+    /// Its status word is implausible: process data may have the other byte order.
     StrayStatus(u16),
     /// Parameter 116 is not 0.
     DriveWord(u16),
     /// Parameter 117 is not 0.
     MotionWord(u16),
-    /// An error in its buffer.
+    /// Error in its buffer.
     Error(ErrorCode),
     /// Faults since the last acknowledgement.
     Faults(u8),
@@ -159,18 +160,18 @@ pub enum CheckFinding {
         /// Parameter 160.
         upper: i64,
     },
-    /// A limit lies farther from 0 than the drive turns.
+    /// A limit is farther from 0 than the drive's travel.
     BeyondTravel {
         /// Parameter 158 or 160.
         limit: i64,
-        /// Its place in turns.
+        /// The limit in turns.
         turns: f64,
-        /// The turns that it has either way.
+        /// The travel in turns either way.
         most: i32,
     },
     /// The position lies between the limits.
     Within(i64),
-    /// The position lies outside of the limits.
+    /// The position is outside the limits.
     Outside {
         position: i64,
         /// Parameter 158.
@@ -180,17 +181,17 @@ pub enum CheckFinding {
     },
 }
 
-/// How often a value is read to measure the device.
+/// Number of readings for measuring the reply time.
 const LOOKS: u32 = 20;
 /// Tenths of a volt: 24 V, 15 % less or 20 % more (`U`).
 const SUPPLIES: std::ops::RangeInclusive<i64> = 204..=288;
-/// Degrees that a device or a drive stands (`U`: the manual contradicts itself, reference 8.9).
+/// Degrees Celsius that a device or a drive tolerates (`U`: the manual contradicts itself, reference 8.9).
 const TEMPERATURES: std::ops::RangeInclusive<i64> = -10..=70;
 
-/// Carries out the check. It ends early only when the device fails.
+/// Runs the check. It ends early only if the device fails.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; the way.
+/// [`Error::NotHiperdrive`]; errors of the exchange.
 pub fn check(
     master: &mut Master<'_>,
     progress: &mut dyn FnMut(u64, u64, CheckStep),
@@ -319,7 +320,7 @@ fn errors(status: &DriveStatus) -> Vec<(Verdict, CheckFinding)> {
     }
     findings.extend((*drive != 0).then_some((Verdict::Attention, CheckFinding::DriveWord(*drive))));
     findings.extend((*motion != 0).then_some((Verdict::Attention, CheckFinding::MotionWord(*motion))));
-    // Entries of the buffer may be old: the count of faults shows whether they matter.
+    // Entries of the buffer may be old: the count of faults tells whether they matter.
     let of_buffer = if *faults == 0 { Verdict::Good } else { Verdict::Attention };
     findings.extend(buffer.iter().map(|code| (of_buffer, CheckFinding::Error(*code))));
     findings.extend((*faults != 0).then_some((Verdict::Attention, CheckFinding::Faults(*faults))));

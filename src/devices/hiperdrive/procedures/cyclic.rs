@@ -1,13 +1,12 @@
-//! The cyclic connection as seen by its originator: sending, receiving, counting, and loss. Pure: packets and moments
-//! are arguments, and nothing waits here.
+//! The cyclic connection as seen by its originator: sending, receiving, counting, and loss. Pure: packets and times are
+//! arguments, and nothing waits here.
 //!
 //! ```text
 //! drives: a dead-man each ── connection: counts, layout, intervals ──▶ packets (sent by the owner of a clock and a port)
 //! ```
 //!
 //! If nothing has arrived for three intervals, motion stops. After that time of uninterrupted listening, the connection is
-//! lost: the drives are stopped, for as long as that takes, then switched off, and it ends. It never comes back; the user
-//! opens another.
+//! lost: the drives are stopped, then switched off, and the connection ends. It is never restored; the user opens another.
 
 mod connection;
 mod drives;

@@ -1,16 +1,16 @@
-//! The dead-man: it alone makes the control word of a drive, interval by interval, from what the drive says, what a person
-//! wants and what the drive may do (reference 3). Pure: time is handed in, nothing is waited for.
+//! The dead-man. It alone makes the control word of a drive, in every interval, from the drive's report, the user's request
+//! and the drive's permit (reference 3). Pure: time is an argument, and nothing waits.
 //!
-//! What holds whatever is handed in:
-//! - a word that could begin a motion is sent only while a fresh act of a person asks for that motion. All others stand
-//!   ([`ControlWord::is_standing`]): nothing begins with them whatever the drive says, also where it says it late;
-//! - with the call that learns of a reason to stop, the word is one that stands;
-//! - an act that has ended never begins again, nor does one that was not refreshed until it could begin;
-//! - a motion that leads beyond the limits, or away from its target, is stopped with the report that shows it (`watch`);
-//! - a drive that has run in speed mode is led through 0400 before anything else, which makes it forget the job that
-//!   clearing bit 12 would be; the target is where it stands whenever no job is under way.
+//! Invariants, for any input:
+//! - A word that could start a motion is sent only while a fresh act of the user requests that motion. All others are
+//!   standing words ([`ControlWord::is_standing`]): they start nothing, whatever the drive reports and however late.
+//! - The call that learns of a reason to stop returns a standing word.
+//! - An act that has ended never starts again. Neither does one that was not refreshed until it could start.
+//! - A motion beyond the limits, or away from its target, is stopped with the report that shows it (`watch`).
+//! - A drive that has run in speed mode is led through 0400 before anything else. This makes it discard the job that
+//!   clearing bit 12 would start. While no job is running, the target is the present position.
 //!
-//! A motion leads up to *enabled* by itself, but never out of a fault or the lock.
+//! A motion leads the drive up to *enabled* by itself, but never out of a fault or the lock.
 
 mod act;
 mod cause;
@@ -39,7 +39,7 @@ use crate::units::Moment;
 pub struct DeadMan {
     drive: DriveNumber,
     heard: Option<(Moment, Actual)>,
-    /// When it was heard first.
+    /// Time of the first report.
     first: Option<Moment>,
     /// Number of reports received.
     reports: u64,
@@ -48,22 +48,22 @@ pub struct DeadMan {
     /// The goal at rest.
     level: Goal,
     act: Option<Act>,
-    /// No act up to this one begins any more.
+    /// Acts up to this number no longer start.
     spent: u64,
-    /// Of the last motion.
+    /// Effort of the last motion.
     effort: Effort,
-    /// Speed mode was entered, and the drive may remember it: it has to go below operational.
+    /// Speed mode was entered, and the drive may remember the run: it must first go below operational.
     after_run: bool,
-    /// It is not heard at the moment: nothing that moves begins.
+    /// No reports at the moment: no motion starts.
     deaf: bool,
     ended: Option<(u64, Ended)>,
 }
 
-/// The act that is under way.
+/// The running act.
 #[derive(Clone, Copy, Debug)]
 struct Act {
     number: u64,
-    /// As it was said last: a pause of a job is an act too.
+    /// The latest request of the act: pausing a job counts as one, too.
     said: MotionRequest,
     /// The motion, if any.
     motion: Option<Motion>,
@@ -73,7 +73,7 @@ struct Act {
 
 #[derive(Clone, Copy, Debug)]
 struct Motion {
-    /// As it was asked for.
+    /// The request that started it.
     wish: MotionRequest,
     motive: Motive,
 }
@@ -84,13 +84,13 @@ pub const RUNG: Duration = Duration::from_millis(200);
 const STEP: Duration = Duration::from_secs(2);
 /// Time for a drive to begin a motion.
 const START: Duration = Duration::from_secs(1);
-/// Without a word from the drive for so long, nothing moves: beyond three of the longest intervals.
+/// Without a report for this time, nothing moves: more than three of the longest intervals.
 const DEAF: Duration = Duration::from_millis(350);
 /// How late a report may be behind what it reports, between a hub and its drives (`U`).
 pub const SETTLE: Duration = Duration::from_millis(100);
 /// How long positions have to arrive before they count as the drive's (`U`: a hub first queries all its drives).
 pub const HEARD: Duration = Duration::from_millis(250);
-/// It stands without having arrived.
+/// Time after which a drive at standstill counts as not having reached its target.
 const SHORT: Duration = Duration::from_millis(500);
 
 impl DeadMan {
@@ -142,7 +142,7 @@ impl DeadMan {
         self.heard.map(|(_, actual)| actual).unwrap_or_default()
     }
 
-    /// Returns the time of the drive's last status; `None` before the first.
+    /// Returns the time of the data received last; `None` before the first.
     pub fn heard_at(&self) -> Option<Moment> {
         self.heard.map(|(at, _)| at)
     }
@@ -152,12 +152,12 @@ impl DeadMan {
         self.sent
     }
 
-    /// The act that is under way, or else the last one that is over; 0 for none.
+    /// Returns the running act, or else the last one that ended; 0 for none.
     pub fn act(&self) -> u64 {
         self.act.map_or(self.ended.map_or(0, |(number, _)| number), |act| act.number)
     }
 
-    /// The last act that ended, and how.
+    /// Returns the last act that ended, and how.
     pub const fn ended(&self) -> Option<(u64, Ended)> {
         self.ended
     }
@@ -175,17 +175,18 @@ impl DeadMan {
         }
     }
 
-    /// Returns whether nothing helped: the connection is to be closed, so that the drives' watchdog stops them.
+    /// Returns whether no rung of the ladder helped: the connection is to be closed, so that the drives' watchdog stops
+    /// them.
     pub const fn gives_up(&self) -> bool {
         matches!(self.stage, Stage::Stop { rung: Rung::Close, .. })
     }
 
-    /// Returns whether nothing is under way and the drive need not be stopped.
+    /// Returns whether no act is running and the drive need not be stopped.
     pub const fn is_idle(&self) -> bool {
         matches!(self.stage, Stage::Rest { moves: None })
     }
 
-    /// The connection ends, or is gone: what was under way has ended so, and the drive is to stand.
+    /// Handles the end or loss of the connection: ends the running act, and stops the motion.
     pub fn lose(&mut self, now: Moment) {
         if self.stage.has_motion() {
             self.stop(now, Ended::Lost);
@@ -215,8 +216,8 @@ impl DeadMan {
         }
     }
 
-    /// Forgets requests that could not begin while they were fresh, and those before a stop or an act for another
-    /// drive.
+    /// Marks the request as spent if it is a rest or a stop, is for another drive, or was not refreshed in time: neither it
+    /// nor an earlier one starts any more.
     fn forget_what_is_void(&mut self, now: Moment, intent: &Intent) {
         let rests = matches!(intent.wish, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
@@ -237,10 +238,10 @@ impl DeadMan {
         }
     }
 
-    /// A new act is taken where there is one, and where the last one has come to its end.
+    /// Starts a new act if there is one and the last one has ended.
     fn take(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
         self.forget_what_is_void(now, intent);
-        // A step counts from where the drive is.
+        // A step counts from the present position.
         let is_heard = self.first.is_some_and(|first| now.since(first) >= HEARD);
         let has_place = is_heard || !matches!(intent.wish, MotionRequest::Step { .. });
         let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
@@ -291,7 +292,7 @@ impl DeadMan {
         Ok(())
     }
 
-    /// The last line of defence: no word that could begin a motion leaves without an act that moves.
+    /// Applies the last safeguard: replaces any word that could start a motion unless an act with a motion is running.
     fn guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
         let meant = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
         if meant || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
@@ -311,5 +312,5 @@ impl Motive {
     }
 }
 
-/// Before a drive was heard: it is left alone.
+/// Setpoint before the first report of a drive: no control.
 const NONE: Setpoint = Setpoint { control: ControlWord::OFF, speed: Percent::NONE, torque: Percent::NONE, target: 0 };

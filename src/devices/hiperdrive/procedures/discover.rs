@@ -8,7 +8,7 @@ use crate::buses::ethernet_ip::protocol::{Body, Command, Frame, IdentityItem};
 use crate::devices::hiperdrive::protocol::VENDOR;
 use crate::link::{Broadcast, Cancel, Clock};
 
-/// A device that has answered.
+/// Device that has replied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DiscoveredDevice {
     /// Address of the reply.
@@ -27,13 +27,13 @@ impl DiscoveredDevice {
 
 /// How long replies are collected: a device may delay its reply within the requested limit, but none is requested.
 const GATHER: Duration = Duration::from_secs(1);
-/// A wish to end is heard at least so often.
+/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
 
-/// Asks who is there, and gathers answers for a second; each device once, in the order of their addresses.
+/// Broadcasts a request and collects replies for a second; each device once, in the order of addresses.
 ///
 /// # Errors
-/// The network; [`Error::Cancelled`].
+/// Network errors; [`Error::Cancelled`].
 pub fn discover(shout: &mut dyn Broadcast, clock: &dyn Clock, cancel: &Cancel) -> Result<Vec<DiscoveredDevice>, Error> {
     shout.broadcast(&Frame::list_identity([0; 8]).emit())?;
     let until = clock.now() + GATHER;

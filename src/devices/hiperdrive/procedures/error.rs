@@ -17,7 +17,7 @@ pub enum RequestedItem {
     Session,
     /// A parameter's value.
     Parameter(ParameterNumber),
-    /// To take a parameter's value.
+    /// Set a parameter's value.
     Set(ParameterNumber),
     /// The identity object.
     Identity,
@@ -25,11 +25,11 @@ pub enum RequestedItem {
     Network {
         attribute: u16,
     },
-    /// To take an attribute of the TCP/IP object.
+    /// Set an attribute of the TCP/IP object.
     SetNetwork {
         attribute: u16,
     },
-    /// The address of its network card.
+    /// MAC address.
     Mac,
     /// The cyclic connection.
     Open,
@@ -57,16 +57,16 @@ impl fmt::Display for RequestedItem {
 /// A reply that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Damage {
-    /// It is no packet.
+    /// Not a packet.
     #[error(transparent)]
     Packet(#[from] PacketError),
-    /// It is no value of its parameter.
+    /// Not a value of its parameter.
     #[error(transparent)]
     Value(#[from] ValueError),
-    /// There is no message in it.
+    /// No message in it.
     #[error("a frame without a message")]
     Empty,
-    /// It answers another service.
+    /// Reply to another service.
     #[error("a reply to service {got:02X}h where one to {requested:02X}h was expected")]
     Service {
         /// The service that was asked.
@@ -74,7 +74,7 @@ pub enum Damage {
         /// The one that is answered.
         got: u8,
     },
-    /// Its end did not come.
+    /// Incomplete packet.
     #[error("a frame that was cut off after {bytes} bytes")]
     Cut {
         /// Number of bytes received.
@@ -85,7 +85,7 @@ pub enum Damage {
 /// Replies that arrived after their time limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Late {
-    /// The slowest of them.
+    /// Time of the slowest reply.
     pub took: Duration,
     /// Time limit of a reply, besides the margin of the line.
     pub waited: Duration,
@@ -97,7 +97,7 @@ pub struct Refusal {
     /// The service requested.
     pub service: Service,
     pub status: GeneralStatus,
-    /// The words behind it.
+    /// The words after the status.
     pub extended: Vec<u16>,
 }
 
@@ -124,25 +124,25 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// A parameter's number that came with another length than its type has: it is shown nowhere.
+/// Number of a parameter with another length than its type. It is not shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("parameter {number} ({name}) has the wrong length (bytes received: {got}, expected: {expected})")]
 pub struct WrongLength {
     pub number: ParameterNumber,
     pub name: &'static str,
-    /// Bytes of its type.
+    /// Bytes of the type.
     pub expected: usize,
-    /// Bytes that came.
+    /// Bytes received.
     pub got: usize,
 }
 
-/// Why something failed.
+/// Why an exchange or a check failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Error {
     /// The wire.
     #[error(transparent)]
     Link(LinkError),
-    /// The user wished it.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
     /// Bytes keep coming that are no frames.
@@ -153,10 +153,10 @@ pub enum Error {
         requested: RequestedItem,
         /// Number of attempts.
         tries: u32,
-        /// It did, but too late; `None` where nothing came.
+        /// A reply that arrived too late; `None` if none arrived.
         late: Option<Late>,
     },
-    /// It answers, and not as it should.
+    /// Invalid reply.
     #[error("{requested}: {cause} (attempts: {tries})")]
     Damaged {
         requested: RequestedItem,
@@ -174,10 +174,11 @@ pub enum Error {
     /// Another master has the cyclic connection.
     #[error("another master is connected: 0x{extended:04X}")]
     OtherMaster {
-        /// The word behind the status: 0100h or 0106h.
+        /// The word after the status: 0100h or 0106h.
         extended: u16,
     },
-    /// The device wants to send or to hear more seldom than was asked for: too seldom to stop a drive in time.
+    /// The interval that the device offers for sending or receiving is longer than requested: too long to stop a drive in
+    /// time.
     #[error("the device answers every {got_ms} ms where every {asked_ms} ms was asked for")]
     TooSlow {
         /// The interval that was asked for, in milliseconds.
@@ -188,7 +189,7 @@ pub enum Error {
     /// This session has the cyclic connection.
     #[error("the cyclic connection is open")]
     InControl,
-    /// There is no cyclic connection over such a link: a recording has none.
+    /// Such a link has no cyclic connection, for example a recording.
     #[error("this link has no cyclic connection")]
     NoCyclic,
     /// The manual has no such parameter.
@@ -200,12 +201,12 @@ pub enum Error {
     /// The place does not exist.
     #[error("there is no drive {}: {} has {}", drive.get(), topology.category(), topology.drives())]
     NoPlace {
-        /// The drive that was meant.
+        /// The drive addressed.
         drive: DriveNumber,
         /// The topology of the device.
         topology: Topology,
     },
-    /// No drive is plugged in there.
+    /// No drive is connected at this place.
     #[error("no drive is connected to port {}", drive.get())]
     NoDrive {
         /// The place.
@@ -214,28 +215,28 @@ pub enum Error {
     /// Parameter 152 is 0.
     #[error("drive {} is not requested: parameter 152 is 0", drive.get())]
     NotRequested { drive: DriveNumber },
-    /// A value that it may not be; nothing was sent.
+    /// Value out of range; nothing was sent.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A value that the device refuses, with what it may be at the moment.
+    /// Value refused by the device, with the present range.
     #[error("{0}")]
     Refuses(OutOfRange),
-    /// A parameter's number came with another length than its type has.
+    /// The number of a parameter has another length than its type.
     #[error(transparent)]
     Length(#[from] WrongLength),
     /// The value does not fit its parameter; nothing was sent.
     #[error("parameter {number}: {cause}")]
     Value { number: ParameterNumber, cause: ValueError },
-    /// It can only be read; nothing was sent.
+    /// Read-only parameter; nothing was sent.
     #[error("parameter {number} ({name}) can only be read")]
     ReadOnly { number: ParameterNumber, name: &'static str },
-    /// It can only be written.
+    /// Write-only parameter.
     #[error("parameter {number} ({name}) can only be written")]
     WriteOnly { number: ParameterNumber, name: &'static str },
-    /// It moves the drive: over the cyclic connection alone; nothing was sent.
+    /// The parameter moves the drive, which is allowed over the cyclic connection only; nothing was sent.
     #[error("parameter {number} ({name}) is not written: drives move over the cyclic connection alone")]
     Motion { number: ParameterNumber, name: &'static str },
-    /// The drive moves where it must stand still.
+    /// The drive moves but must stand still.
     #[error("drive {} moves", drive.get())]
     Moving { drive: DriveNumber },
     /// Its identity is not that of a HIPERDRIVE.
@@ -299,12 +300,12 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// The device can no longer be reached: trying anything else makes no sense.
+    /// Returns whether the device can no longer be reached, so that further attempts are useless.
     pub const fn is_lost(&self) -> bool {
         matches!(self, Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent)
     }
 
-    /// The user wished it.
+    /// Returns whether the user cancelled it.
     pub const fn is_cancelled(&self) -> bool {
         matches!(self, Error::Cancelled)
     }
@@ -314,7 +315,7 @@ impl Error {
         matches!(self, Error::Refused { .. } | Error::NotRequested { .. } | Error::NoDrive { .. })
     }
 
-    /// The device has answered, and does not do it.
+    /// Returns the refusal if the device has answered and does not do it.
     pub const fn refusal(&self) -> Option<&Refusal> {
         match self {
             Error::Refused { refusal, .. } => Some(refusal),

@@ -1,4 +1,4 @@
-//! Reads the identity, the status, and everything else that can be read (reference 4). Nothing is set for it.
+//! Reads the identity, the status, and everything else that can be read (reference 4). Sets nothing.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +32,7 @@ pub struct Identity {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveIdentity {
-    /// Its place.
+    /// Place of the drive.
     pub number: DriveNumber,
     /// Parameter 120.
     pub variant: Variant,
@@ -44,7 +44,7 @@ pub struct DriveIdentity {
     pub serial_number: String,
     /// Parameter 125.
     pub version: String,
-    /// Parameter 152: it takes part.
+    /// Parameter 152: the drive is requested.
     pub requested: bool,
 }
 
@@ -52,11 +52,11 @@ pub struct DriveIdentity {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Survey {
     pub identity: Identity,
-    /// Its address and where it has it from.
+    /// IP address and its source.
     pub network: Network,
-    /// Every parameter of the device and of its drives; what it refuses is left out.
+    /// Every parameter of the device and of its drives. Those that the device refuses are missing.
     pub values: BTreeMap<ParameterNumber, Value>,
-    /// Parameters whose numbers came with another length than their types have; they are in no values.
+    /// Parameters whose numbers have another length than their types. They are not in `values`.
     pub wrong_lengths: Vec<WrongLength>,
 }
 
@@ -67,25 +67,25 @@ pub struct Status {
     pub drives: Vec<DriveStatus>,
     /// Parameter 9: tenths of a volt of the control supply.
     pub supply_tenths: i64,
-    /// Parameter 11: degrees Celsius in the device.
+    /// Parameter 11: temperature in the device in degrees Celsius.
     pub temperature: i64,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DriveStatus {
-    /// Its place.
+    /// Place of the drive.
     pub number: DriveNumber,
     /// Parameter 105.
     pub status: StatusWord,
-    /// Parameters 108 to 115 that hold an error, the newest first. After power-up they may be old (reference 4).
+    /// Parameters 108 to 115 that hold an error, newest first. After power-up they may be old (reference 4).
     pub buffer: Vec<ErrorCode>,
-    /// Parameters 116 to 118: drive, motion, communication. 0 is well, FFFFh is no drive.
+    /// Parameters 116 to 118: drive, motion, communication. 0 is no error, FFFFh no drive.
     pub words: [u16; 3],
     /// Parameter 197: faults since the last acknowledgement.
     pub faults: u8,
-    /// Parameter 119: degrees Celsius in the drive.
+    /// Parameter 119: temperature in the drive in degrees Celsius.
     pub temperature: i64,
-    /// Parameter 152: it takes part.
+    /// Parameter 152: the drive is requested.
     pub requested: bool,
 }
 
@@ -115,7 +115,7 @@ impl Steps<'_> {
 /// The position and speed of a drive at a moment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DriveReading {
-    /// When.
+    /// Time of the reading.
     pub at: Moment,
     pub drive: DriveNumber,
     /// Parameters 105 to 107.
@@ -123,7 +123,7 @@ pub struct DriveReading {
 }
 
 impl Identity {
-    /// A drive that is plugged in.
+    /// Returns a drive that is plugged in.
     pub fn drive(&self, number: DriveNumber) -> Option<&DriveIdentity> {
         self.drives.iter().find(|drive| drive.number == number)
     }
@@ -140,12 +140,12 @@ impl Identity {
     }
 }
 
-/// Reads who is there.
+/// Reads the identity.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; what the device refuses; the way.
+/// [`Error::NotHiperdrive`]; a refusal of the device; errors of the exchange.
 pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Identity, Error> {
-    // Parameters of a drive, and of the device.
+    // Number of parameters of a drive, and of the device.
     const DRIVE: u64 = 6;
     const DEVICE: u64 = 5;
     let category = category(master)?;
@@ -175,7 +175,7 @@ pub fn identify(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Resu
     Ok(Identity { topology, category, name, article_number, serial_number, production_date, version, drives })
 }
 
-/// Reads a text of a drive; empty if it does not provide it, as a drive that is not requested may (`U`).
+/// Reads a text of a drive; empty if the drive does not provide it, as one that is not requested may not (`U`).
 pub(super) fn drive_text(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<String, Error> {
     match master.read_text(of(base, drive)?) {
         Err(error) if error.is_unsaid() => Ok(String::new()),
@@ -229,7 +229,7 @@ fn readable(identity: &Identity) -> impl Iterator<Item = ParameterNumber> {
     device.chain(drives)
 }
 
-/// Parameters that tell the status of a drive.
+/// Number of parameters in the status of a drive.
 const OF_STATUS: u64 = 15;
 
 /// Reads errors and states of all drives.
@@ -238,7 +238,7 @@ const OF_STATUS: u64 = 15;
 /// As [`identify`].
 pub fn read_status(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<Status, Error> {
     let topology = topology(master)?;
-    // Of each drive whether it is there, and the rest.
+    // For each drive whether it is present, and the rest.
     let mut steps = Steps { done: 0, total: (1 + OF_STATUS) * u64::from(topology.drives()) + 2, progress };
     let mut drives = Vec::new();
     for number in DriveNumber::of(topology) {
@@ -279,13 +279,13 @@ fn status_of(master: &mut Master<'_>, number: DriveNumber, steps: &mut Steps<'_>
     })
 }
 
-/// Reads where a drive is: 105, 106, 107, one after the other.
+/// Reads the position of a drive: 105, 106, 107, one after the other.
 ///
 /// # Errors
-/// [`Error::NoPlace`], [`Error::NoDrive`]; the way.
+/// [`Error::NoPlace`], [`Error::NoDrive`]; errors of the exchange.
 pub fn position(master: &mut Master<'_>, drive: DriveNumber) -> Result<DriveReading, Error> {
     let status = StatusWord::new(word(master, 105, drive)?);
-    // Both are of that many bits.
+    // Both have this width.
     let speed = master.read_number(of(106, drive)?)? as i16;
     let position = master.read_number(of(107, drive)?)? as i32;
     Ok(DriveReading { at: master.now(), drive, actual: Actual { status, speed, position } })
@@ -306,17 +306,17 @@ fn is_requested(master: &mut Master<'_>, drive: DriveNumber) -> Result<bool, Err
     Ok(master.read_number(of(152, drive)?)? != 0)
 }
 
-/// A number of 16 bits, as bits.
+/// Returns a number of 16 bits, as bits.
 fn word(master: &mut Master<'_>, base: u16, drive: DriveNumber) -> Result<u16, Error> {
     Ok(master.read_number(of(base, drive)?)? as u16)
 }
 
-/// A parameter of the device.
+/// Returns a parameter of the device.
 pub(super) fn own(number: u16) -> Result<ParameterNumber, Error> {
     ParameterNumber::new(number).ok_or(Error::NoNumber(number))
 }
 
-/// A parameter of a drive, by its number of drive 1.
+/// Returns the number of a drive's parameter from that of drive 1.
 pub(super) fn of(base: u16, drive: DriveNumber) -> Result<ParameterNumber, Error> {
     ParameterNumber::of_drive(base, drive).ok_or(Error::NoNumber(base))
 }

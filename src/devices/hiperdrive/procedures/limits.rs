@@ -1,7 +1,7 @@
-//! The limits of a drive's motion, with one owner: scale, limits, confirmation, locks and the time of reading are one value.
+//! The limits of a drive's motion, with one owner: scale, limits, confirmation, locks and time of reading are one value.
 //!
-//! The worker writes it as it reads parameters, the dead-man asks it for a [`Permit`] at each packet, the window shows it, and
-//! the settings keep the part that has to survive a session (limits that are to be confirmed).
+//! The worker updates it when it reads parameters, the dead-man gets a [`Permit`] from it for each packet, the window shows
+//! it, and the settings store the part that has to survive a session (limits to be confirmed).
 
 use std::time::Duration;
 
@@ -16,17 +16,17 @@ use crate::units::Moment;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct DriveLimits {
     rules: Rules,
-    /// Scale and limits are those of the factory, as far as the drive's family is known.
+    /// Scale and limits are the factory's, as far as the drive's family is known.
     is_factory: bool,
-    /// The scale has changed since a person confirmed the limits.
+    /// The scale has changed since the user confirmed the limits.
     unconfirmed: bool,
-    /// When each group of parameters was read; `None`: not since they may have changed.
+    /// When each group of parameters was read; `None` if not since a possible change.
     read: Option<[Moment; GROUPS]>,
-    /// Since then all of them are to be read again before the next motion begins.
+    /// Time of a doubt: all groups must be read after it before the next motion starts.
     doubted: Option<Moment>,
 }
 
-/// The limits as a person saw them, with the scale that gives them their meaning.
+/// Limits as shown to the user, with their scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LimitsSeen {
     /// Parameters 154 and 156.
@@ -38,22 +38,23 @@ pub struct LimitsSeen {
 /// How long a reading of the limits stays valid: longer than a slow device may take to answer for all of them.
 const VALID: Duration = Duration::from_secs(4);
 
-/// A drive with this parameter 186 stops where it hears nothing any more: what the manual does not know proves nothing.
+/// Returns whether a drive with this parameter 186 stops when communication is lost. A value that the manual does not
+/// define does not count.
 pub(super) fn ends_by_itself(timeout: i64) -> bool {
     let row = ParameterNumber::new(TIMEOUT).and_then(ParameterNumber::row);
     timeout != NO_TIMEOUT && row.is_some_and(|row| row.range.holds(timeout))
 }
 
 impl DriveLimits {
-    /// The limits of a drive whose parameters were all read at this moment.
+    /// Creates the limits of a drive with all parameters read at this moment.
     pub fn of(rules: Rules, (topology, variant): (Topology, Variant), at: Moment) -> Self {
         let mut limits = DriveLimits::default();
         limits.take(rules, (topology, variant), [at; GROUPS]);
         limits
     }
 
-    /// Takes over what was read; `times` says when the reading of each group of parameters began. Where the scale has changed,
-    /// the limits lie elsewhere: they have to be confirmed. What was read before a doubt does not settle it.
+    /// Takes over the parameters read; `times` has the start of reading each group. If the scale has changed, the limits
+    /// must be confirmed, since they mean other positions. Parameters read before a doubt do not clear it.
     pub fn take(&mut self, rules: Rules, (topology, variant): (Topology, Variant), times: [Moment; GROUPS]) {
         self.unconfirmed |= self.rules.scale.is_some() && self.rules.scale != rules.scale;
         self.is_factory = rules.are_factory(topology, variant);
@@ -62,7 +63,7 @@ impl DriveLimits {
         self.doubted = self.doubted.filter(|since| times.into_iter().any(|at| at < *since));
     }
 
-    /// The parameters as they were read last.
+    /// Returns the parameters as they were read last.
     pub const fn rules(&self) -> Rules {
         self.rules
     }
@@ -75,53 +76,54 @@ impl DriveLimits {
     /// Requires the parameters to be read again before the next motion begins: another master may have changed them. A
     /// running motion continues while the last reading is valid.
     pub fn doubt(&mut self, now: Moment) {
-        // The clock is read before a doubt: of two threads the later doubt may come first.
+        // The clock is read before the doubt is stored: of two threads, the one with the later time may come first.
         self.doubted = self.doubted.max(Some(now));
     }
 
     /// Forgets the parameters. Limits that have to be confirmed remain unconfirmed.
     pub fn forget(&mut self) {
-        // The scale stays, to see whether the next one is another.
+        // The scale stays, so that a change can be detected.
         let rules = Rules { scale: self.rules.scale, ..Rules::default() };
         *self = DriveLimits { rules, unconfirmed: self.unconfirmed, ..DriveLimits::default() };
     }
 
-    /// The limits have to be confirmed before the drive moves.
+    /// Requires that the limits are confirmed before the drive moves.
     pub const fn unconfirm(&mut self) {
         self.unconfirmed = true;
     }
 
-    /// The limits have to be confirmed before the drive moves.
+    /// Returns whether the limits have to be confirmed before the drive moves.
     pub const fn is_unconfirmed(&self) -> bool {
         self.unconfirmed
     }
 
-    /// A person confirms the limits as they were shown. Returns whether that counts: not where the drive has others by now.
+    /// Confirms the limits as shown to the user. Returns whether this took effect: it does not if the limits have changed
+    /// since.
     pub fn confirm(&mut self, seen: LimitsSeen) -> bool {
         let counts = self.seen() == Some(seen);
         self.unconfirmed &= !counts;
         counts
     }
 
-    /// The limits as they are to be shown for a confirmation; `None` where they were not read.
+    /// Returns the limits to show for a confirmation; `None` if they were not read.
     pub fn seen(&self) -> Option<LimitsSeen> {
         Some(LimitsSeen { scale: self.rules.scale?, limits: self.rules.limits? })
     }
 
-    /// Parameters 158 and 160, in steps as scaled; `None` where they were not read, or make no range.
+    /// Returns parameters 158 and 160 in scaled steps; `None` if they were not read or are not a range.
     pub fn limits(&self) -> Option<(i32, i32)> {
         let (lower, upper) = self.rules.limits?;
         let limits = (i32::try_from(lower).ok()?, i32::try_from(upper).ok()?);
         (limits.0 < limits.1).then_some(limits)
     }
 
-    /// Parameters 154 and 156; `None` where they were not read, or make no scale.
+    /// Returns parameters 154 and 156; `None` if they were not read or are not a scale.
     pub fn scale(&self) -> Option<PositionScale> {
         let (numerator, denominator) = self.rules.scale?;
         PositionScale::new(u16::try_from(numerator).ok()?, u16::try_from(denominator).ok()?).ok()
     }
 
-    /// A motion may begin by what was read: within the last seconds, and not doubted since.
+    /// Returns whether a motion may start by this reading: it is recent enough, and has not been doubted since.
     pub fn is_valid(&self, now: Moment) -> bool {
         self.doubted.is_none() && self.is_fresh(now)
     }
@@ -130,7 +132,7 @@ impl DriveLimits {
         self.read.is_some_and(|times| times.into_iter().all(|at| now.since(at) <= VALID))
     }
 
-    /// Scale and limits are the factory's: an endless run is possible.
+    /// Returns whether scale and limits are the factory's: an endless run is possible.
     pub const fn allows_endless(&self) -> bool {
         self.is_factory
     }
@@ -138,7 +140,7 @@ impl DriveLimits {
     /// Returns why motion is locked, the weightiest reason first.
     pub fn locks(&self) -> Vec<Lock> {
         let Rules { requested, timeout, .. } = self.rules;
-        // Numbers that make no scale and no range say no more than none.
+        // An invalid scale or range counts as not read.
         let unread = requested.is_none() || self.scale().is_none() || self.limits().is_none() || timeout.is_none();
         [
             (Lock::Unread, unread),
@@ -159,7 +161,7 @@ impl DriveLimits {
         Permit { limits: self.limits(), locks, endless, doubted: self.doubted.is_some(), degree: self.degree() }
     }
 
-    /// Steps of one degree as scaled, at least 1; 1 as well where the scale was not read.
+    /// Returns the steps of one degree as scaled, at least 1; also 1 if the scale was not read.
     pub fn degree(&self) -> u32 {
         self.scale().map_or(1, |scale| scale.steps_of_degrees(1.0))
     }
@@ -182,7 +184,7 @@ mod tests {
 
     const HDA30A: (Topology, Variant) = (Topology::Adapter, Variant::new(7));
 
-    /// An HDA30A from the factory: ±511 turns of 65536 steps (reference 5).
+    /// Returns the factory values of an HDA30A: ±511 turns of 65536 steps (reference 5).
     fn factory(number: u16) -> Option<i64> {
         Some(match number {
             152 => 1,
@@ -209,7 +211,7 @@ mod tests {
     #[test]
     fn parameters_lock_and_permit() {
         let whole = Some((-33_488_896, 33_488_896));
-        // A degree of 65536 steps a turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
+        // A degree of 65536 steps per turn is 182.04 steps, of 256 / 400 · 256 = 163.84 less than one.
         let permit = |limits, locks: &[Lock], endless, degree| Permit {
             limits,
             locks: locks.to_vec(),
@@ -237,8 +239,8 @@ mod tests {
         assert!(!other.allows_endless(), "its factory values are not known");
     }
 
-    /// Issue 21.3: numbers that make no scale, no range or no time-out are as good as unread. Type and range are the manual's:
-    /// 152 is 0 or 1, 160 is above 158, 186 is 1 to 100, 255 for never (reference 4).
+    /// Issue 21.3: an invalid scale, range or time-out counts as not read. Type and range are the manual's: 152 is 0 or 1,
+    /// 160 is above 158, 186 is 1 to 100, 255 for never (reference 4).
     #[test]
     fn numbers_that_mean_nothing_permit_nothing() {
         type Case<'c> = (&'c [(u16, Option<i64>)], Lock);
@@ -261,7 +263,7 @@ mod tests {
         }
     }
 
-    /// Issue 21.3: of two doubts the later one counts, in whichever order they come.
+    /// Issue 21.3: of two doubts the later one counts, in whichever order they arrive.
     #[test]
     fn an_earlier_doubt_takes_no_later_one_back() {
         let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
@@ -273,7 +275,7 @@ mod tests {
         assert!(limits.is_valid(at(100)));
     }
 
-    /// Issue 21.3: the time of reading belongs to the same value, and the dead-man sees it.
+    /// Issue 21.3: the time of reading belongs to the same value, and the dead-man checks it.
     #[test]
     fn a_reading_is_valid_for_four_seconds() {
         let mut limits = DriveLimits::of(rules(&[]), HDA30A, at(0));
@@ -285,7 +287,7 @@ mod tests {
         limits.doubt(at(1000));
         assert!(!limits.is_valid(at(1000)) && limits.permit(at(1000), false).doubted, "nothing begins");
         assert_eq!((limits.permit(at(1000), false).locks, limits.times()), (vec![], None), "what moves goes on");
-        // A group whose reading was under way when the doubt came.
+        // A group that was being read when the doubt arose.
         limits.take(rules(&[]), HDA30A, [at(999), at(1100), at(1100), at(1100)]);
         assert_eq!((limits.times(), limits.is_valid(at(1100))), (None, false));
         limits.take(rules(&[]), HDA30A, [at(1200); GROUPS]);
@@ -295,7 +297,7 @@ mod tests {
         assert_eq!(limits.limits(), None);
     }
 
-    /// Issue 21.3: a confirmation counts for the limits and the scale that were shown, and falls with the scale.
+    /// Issue 21.3: a confirmation is for the limits and the scale that were shown, and is void when the scale changes.
     #[test]
     fn limits_are_confirmed_as_they_were_shown() {
         let scaled = rules(&[(154, Some(400)), (156, Some(256)), (158, Some(-1000)), (160, Some(1000))]);

@@ -1,8 +1,8 @@
-//! The host's side of explicit messages (reference 7): a session, once a wire; a request and its reply, known by the context
-//! that numbers them. What comes late is let pass and counted.
+//! The host's side of explicit messages (reference 7): one session per connection; a request and its reply, matched by the
+//! context that numbers them. Late replies are skipped and counted.
 //!
-//! Reading is tried again. What sets something is sent once: where its reply is lost, what it was to set is read back, which a
-//! stream answers behind it.
+//! Reads are repeated. A request that sets something is sent once. If its reply is lost, the value is read back, which on a
+//! stream is answered after it.
 
 mod connection;
 mod refused;
@@ -25,11 +25,11 @@ use crate::link::Ctx;
 use crate::link::line::{SerialLine, TRIES};
 use crate::units::Moment;
 
-/// Behind bytes that are no frame: silence for so long, and what comes next is one again.
+/// Pause after bytes that are not a frame; the next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
-/// A wish to end is heard at least so often.
+/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// Beyond what the manual promises of something that takes long.
+/// Margin beyond the time that the manual gives for a long operation.
 const SPARE: Duration = Duration::from_millis(500);
 
 /// The host's side of the explicit messages of a device, for one job.
@@ -55,7 +55,7 @@ impl<D: Into<Damage>> From<D> for ExchangeError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Repeats {
     Always,
-    /// It is asked once, and its reply may take so long where that is longer than usual.
+    /// Sent once; a reply may take `takes` if that is longer than usual.
     Never {
         takes: Option<Duration>,
     },
@@ -65,7 +65,7 @@ enum Repeats {
 const ONCE: Repeats = Repeats::Never { takes: None };
 
 impl<'a> Master<'a> {
-    /// A master over a station's wire, for one job.
+    /// Creates a master over a station's wire, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -85,7 +85,7 @@ impl<'a> Master<'a> {
         self.station.known.topology = Some(topology);
     }
 
-    /// Waits; ends early when the user wishes.
+    /// Waits; ends early when cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -98,7 +98,7 @@ impl<'a> Master<'a> {
         Ok(self.line.check_cancel()?)
     }
 
-    /// Runs `work`, which leads to a safe end; a request to end is ignored meanwhile.
+    /// Runs `work`, which leads to a safe state; cancellation is ignored meanwhile.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);
@@ -106,11 +106,11 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Reads a parameter. A number has the length of its type, or is none.
+    /// Reads a parameter. A number with another length than its type is an error.
     ///
     /// # Errors
     /// [`Error::Unknown`], [`Error::WriteOnly`], [`Error::NoPlace`], [`Error::NoDrive`], [`Error::Refused`],
-    /// [`Error::Length`]; the way.
+    /// [`Error::Length`]; errors of the exchange.
     pub fn read(&mut self, number: ParameterNumber) -> Result<Value, Error> {
         let row = number.row().ok_or(Error::Unknown(number))?;
         if row.access == Access::Write {
@@ -150,15 +150,15 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sets a parameter. Where the reply is lost it is read back, and set again only where it is not there yet; what does
-    /// something else when it is set is never sent twice.
+    /// Sets a parameter. If the reply is lost, it is read back, and set again only if it does not have the value yet. A
+    /// parameter that triggers an action is never sent twice.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], and nothing is sent; [`Error::Refuses`],
-    /// [`Error::Refused`]; the way.
+    /// [`Error::OutOfRange`], [`Error::ReadOnly`], [`Error::Motion`], with nothing sent; [`Error::Refuses`],
+    /// [`Error::Refused`]; errors of the exchange.
     pub(super) fn set(&mut self, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
         let row = settable(number)?;
-        // The plan has checked the limits of its turns.
+        // The plan has checked the travel.
         row.check(number, wanted, Travel::UNKNOWN)?;
         let data = row.kind.emit(&Value::Number(wanted)).map_err(|cause| Error::Value { number, cause })?;
         let requested = RequestedItem::Set(number);
@@ -186,7 +186,7 @@ impl<'a> Master<'a> {
     /// Reads the identity object, which every device of EtherNet/IP has.
     ///
     /// # Errors
-    /// [`Error::Refused`]; the way.
+    /// [`Error::Refused`]; errors of the exchange.
     pub fn identity_object(&mut self) -> Result<IdentityObject, Error> {
         let requested = RequestedItem::Identity;
         let reply = self.request(requested, &Request::get_all(IdentityObject::CLASS, 1), Repeats::Always)?;
@@ -202,10 +202,10 @@ impl<'a> Master<'a> {
         Ok(self.request(requested, &Request::get(class, 1, attribute), Repeats::Always)?.data)
     }
 
-    /// Sets an attribute of the TCP/IP object, once; it is stored before it is answered.
+    /// Sets an attribute of the TCP/IP object, once. The device stores it before it replies.
     ///
     /// # Errors
-    /// [`Error::Refused`]; the way.
+    /// [`Error::Refused`]; errors of the exchange.
     pub(super) fn set_attribute(
         &mut self,
         requested: RequestedItem,
@@ -227,7 +227,7 @@ impl<'a> Master<'a> {
         self.request_with(requested, request, &[], repeats).map(|(reply, _)| reply)
     }
 
-    /// Asks something of an object, with further items beside the message; gives back those beside the reply as well.
+    /// Sends a request to an object, with additional items beside the message. Returns those beside the reply as well.
     fn request_with(
         &mut self,
         requested: RequestedItem,
@@ -252,7 +252,7 @@ impl<'a> Master<'a> {
         Err(Error::Refused { requested, refusal: Refusal { service, status, extended } })
     }
 
-    /// The number of the session; it begins with the first request on a wire.
+    /// Returns the session number; the first request on a connection opens the session.
     fn session(&mut self) -> Result<u32, Error> {
         if let Some(session) = self.station.session {
             return Ok(session);
@@ -264,10 +264,10 @@ impl<'a> Master<'a> {
         Ok(frame.session)
     }
 
-    /// Ends the session at the device. Nothing answers that.
+    /// Ends the session at the device. There is no reply to this.
     ///
     /// # Errors
-    /// The way.
+    /// Errors of the exchange.
     pub fn unregister(&mut self) -> Result<(), Error> {
         let Some(session) = self.station.session.take() else { return Ok(()) };
         let bytes = Frame::unregister(session).emit();
@@ -275,7 +275,7 @@ impl<'a> Master<'a> {
         Ok(self.line.send(&bytes, MaskedBytes::clear(&bytes), now)?)
     }
 
-    /// Asks, and again where that may help and does no harm.
+    /// Sends a request, and repeats it if that may help and does no harm.
     fn again<T>(
         &mut self,
         requested: RequestedItem,
@@ -300,11 +300,11 @@ impl<'a> Master<'a> {
                 ExchangeError::Status(_) => {}
             }
             let longest = within + self.station.line.margin;
-            // A refusal for its session was answered at once.
+            // A refusal of the session was immediate.
             let took = if let ExchangeError::Status(_) = trouble { usual + self.station.line.margin } else { longest };
             let may = self.line.may_ask_again(&mut self.station.line, tries, took);
             match trouble {
-                // It was not done: the device has forgotten the session.
+                // The request was not carried out: the device has forgotten the session.
                 ExchangeError::Status(EncapsulationStatus::NO_SESSION)
                     if may && requested != RequestedItem::Session =>
                 {
@@ -329,7 +329,7 @@ impl<'a> Master<'a> {
         self.line.show(now, MaskedBytes::clear(&rest));
     }
 
-    /// Sends a frame under a number of its own, and waits for the one that answers it.
+    /// Sends a frame under a new number, and waits for the reply with that number.
     fn exchange(&mut self, mut frame: Frame, repeats: Repeats) -> Result<Result<Frame, ExchangeError>, Error> {
         self.line.start()?;
         let sent_at = self.line.now();
@@ -383,7 +383,8 @@ impl<'a> Master<'a> {
     }
 }
 
-/// A stream has one session: where the reply to the first RegisterSession was lost, the next one is refused with its number.
+/// Returns whether a refusal contains the session number. A stream has one session: if the reply to the first
+/// RegisterSession was lost, the next one is refused with its number.
 fn has_session(answer: &Frame) -> bool {
     answer.command == Command::REGISTER_SESSION
         && answer.status == EncapsulationStatus::UNSUPPORTED
@@ -400,7 +401,7 @@ fn judge(request: &Request, frame: &Frame) -> Result<(Reply, Items), ExchangeErr
     }
 }
 
-/// The row of a parameter that may be set; what moves a drive may not.
+/// Returns the row of a parameter that may be set; one that moves a drive may not.
 fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     let row = number.row().ok_or(Error::Unknown(number))?;
     match (row.access, row.number) {
@@ -410,7 +411,7 @@ fn settable(number: ParameterNumber) -> Result<&'static ParameterRow, Error> {
     }
 }
 
-/// Setting it does something, and what it reads afterwards is no proof of that.
+/// Returns whether setting it triggers an action, so that reading it back proves nothing.
 const fn does_something(row: &ParameterRow) -> bool {
     matches!(row.number, 47 | 197 | 198 | 199)
 }

@@ -1,5 +1,5 @@
-//! The procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub: explicit messages for all reading and
-//! writing, and the cyclic connection for motion. Reading changes nothing. The reference is the project's "hiperdrive".
+//! The procedures of HIPERDRIVE drives behind an EtherNet/IP adapter or hub: explicit messages for all reading and writing,
+//! and the cyclic connection for motion. Reading changes nothing. The reference is the project's "hiperdrive".
 //!
 //! ```text
 //! identify, survey, status, network, check, write ── master: session, request ⇄ reply ──▶ a stream of bytes (TCP)

@@ -1,4 +1,4 @@
-//! Its address and where it has it from: the address switches and the TCP/IP object (reference 1).
+//! IP address and its source: the address switches and the TCP/IP object (reference 1).
 
 use super::error::RequestedItem;
 use super::identify::own;
@@ -7,16 +7,16 @@ use crate::buses::ethernet_ip::protocol::{ConfigurationControl, InterfaceConfigu
 use crate::devices::hiperdrive::profile::NetworkSettings;
 use crate::devices::hiperdrive::protocol::AddressSwitch;
 
-/// Address and where it comes from. What the device refuses to say is not there.
+/// IP address and its source. Values that the device refuses are missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Network {
-    /// Parameter 12: the digits of S1 and S2, as they stood at power-up.
+    /// Parameter 12: the digits of S1 and S2 at power-up.
     pub switch: i64,
-    /// Attribute 3 of the TCP/IP object: where the address comes from with the switches at 0.
+    /// Attribute 3 of the TCP/IP object: the source of the address with the switches at 0.
     pub control: Option<ConfigurationControl>,
     /// Attribute 5: address, mask, gateway, name servers, domain.
     pub interface: Option<InterfaceConfiguration>,
-    /// The address of its network card.
+    /// MAC address.
     pub mac: Option<[u8; 6]>,
 }
 
@@ -33,7 +33,7 @@ impl Network {
 /// Reads switches and TCP/IP object.
 ///
 /// # Errors
-/// The way.
+/// Errors of the exchange.
 pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
     let switch = master.read_number(own(12)?)?;
     let control = unless_refused(attribute(master, ConfigurationControl::ATTRIBUTE, ConfigurationControl::parse))?;
@@ -48,7 +48,7 @@ pub fn network(master: &mut Master<'_>) -> Result<Network, Error> {
 /// Returns the settings that a plan can change.
 ///
 /// # Errors
-/// [`Error::Refused`] where the device has no such settings; the way.
+/// [`Error::Refused`] if the device has no such settings; errors of the exchange.
 pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     let (control, interface) = (ConfigurationControl::ATTRIBUTE, InterfaceConfiguration::ATTRIBUTE);
     let control = attribute(master, control, ConfigurationControl::parse)?;
@@ -56,7 +56,7 @@ pub fn settings(master: &mut Master<'_>) -> Result<NetworkSettings, Error> {
     Ok(NetworkSettings { source: control.source(), interface })
 }
 
-/// An attribute of the TCP/IP object.
+/// Returns an attribute of the TCP/IP object.
 fn attribute<T>(
     master: &mut Master<'_>,
     attribute: u16,

@@ -1,10 +1,10 @@
-//! The parameters that rule a drive's motion, and how they are read: all at once, or one group after the other.
+//! The parameters that limit a drive's motion, and how they are read: all at once, or one group after the other.
 
 use super::identify::of;
 use super::{Error, Master};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 
-/// The parameters that rule a drive's motion; `None` for what was not read.
+/// Parameters that limit a drive's motion; `None` for those not read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rules {
     /// Parameter 152.
@@ -15,12 +15,12 @@ pub struct Rules {
     pub limits: Option<(i64, i64)>,
     /// Parameter 186.
     pub timeout: Option<i64>,
-    /// Parameter 198: another reference gives every position another place.
+    /// Parameter 198: a different reference shifts every position.
     pub reference: Option<i64>,
 }
 
 impl Rules {
-    /// Reads the rules from parameters; `read` takes their numbers of drive 1.
+    /// Creates the rules from parameters; `read` takes their numbers of drive 1.
     pub fn by(read: impl Fn(u16) -> Option<i64>) -> Self {
         Rules {
             requested: read(152),
@@ -32,10 +32,10 @@ impl Rules {
     }
 }
 
-/// Reads what rules a drive.
+/// Reads the parameters that limit a drive's motion.
 ///
 /// # Errors
-/// The way.
+/// Errors of the exchange.
 pub fn read_rules(master: &mut Master<'_>, drive: DriveNumber) -> Result<Rules, Error> {
     let mut values = Vec::new();
     for base in [152, 154, 156, 158, 160, 186, 198] {
@@ -54,7 +54,7 @@ pub const GROUPS: usize = 4;
 /// Reads one group of the parameters that rule a drive again.
 ///
 /// # Errors
-/// The way.
+/// Errors of the exchange.
 pub fn read_rule(master: &mut Master<'_>, drive: DriveNumber, known: Rules, group: usize) -> Result<Rules, Error> {
     let mut read = |base| match master.read_number(of(base, drive)?) {
         Ok(value) => Ok(Some(value)),

@@ -30,7 +30,7 @@ impl Identity {
         }
     }
 
-    /// All that a device keeps of itself and of the drives that are plugged in.
+    /// Returns all parameters that a device stores for itself and its connected drives.
     pub fn stored_parameters(&self) -> impl Iterator<Item = ParameterNumber> {
         let rows = || PARAMETERS.iter().filter(|row| Image::holds(row));
         let device = rows().filter(|row| row.number < 100).filter_map(|row| ParameterNumber::new(row.number));
@@ -42,21 +42,20 @@ impl Identity {
     }
 }
 
-/// Reads everything that can be restored. What the device refuses is left out.
+/// Reads everything that can be restored. Parameters that the device refuses are left out.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; the way.
+/// [`Error::NotHiperdrive`]; errors of the exchange.
 pub fn save(master: &mut Master<'_>, progress: IdentifyProgress<'_>) -> Result<HiperdriveProfile, Error> {
     let identity = identify(master, progress)?;
     let image = read_image(master, identity.stored_parameters().collect(), progress)?;
     Ok(HiperdriveProfile::of(identity.profile(), image))
 }
 
-/// Reads what a plan needs of a device: all stored values, these additional parameters, and the positions of its
-/// drives.
+/// Reads what a plan needs of a device: all stored values, these additional parameters, and the positions of its drives.
 ///
 /// # Errors
-/// [`Error::NotHiperdrive`]; the way.
+/// [`Error::NotHiperdrive`]; errors of the exchange.
 pub fn read_state(
     master: &mut Master<'_>,
     beside: impl IntoIterator<Item = ParameterNumber>,

@@ -16,7 +16,7 @@ use crate::parameters;
 use crate::units::Moment;
 
 parameters! {
-    /// The connection to an adapter or a hub, as a link says.
+    /// Connection to an adapter or a hub, as given by a link.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         /// Interval between cyclic packets.
@@ -39,7 +39,7 @@ pub struct Station {
     pub link: LinkParameters,
     /// Port of cyclic data, unless the device reports another.
     pub udp: u16,
-    /// It is a recording that answers: its replies have the numbers of the requests of that time.
+    /// A recording replies: its replies have the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     /// The number of the session at the device.
@@ -48,7 +48,7 @@ pub struct Station {
     pub(super) next: u64,
     /// Numbers of the last requests that have no reply yet, when they were sent, and whether the device itself takes long.
     open: VecDeque<(u64, Moment, bool)>,
-    /// Times of replies, late ones included; without those for which the device itself takes long.
+    /// Times of replies, including late ones; without those of operations that take the device long.
     pub(super) replies: Replies,
     /// Bytes received that are not a whole frame.
     pub(super) receiver: Receiver,
@@ -68,14 +68,15 @@ pub(super) struct KnownState {
 }
 
 impl Station {
-    /// A reply may be given so long at most.
+    /// Upper limit of the time allowed for a reply.
     pub const LONGEST_TIMEOUT: Duration = Duration::from_millis(LONGEST_TIMEOUT);
-    /// Requests without a reply whose late ones are told apart: more than are sent before one gives up.
+    /// Number of unanswered requests whose late replies are recognised: more than are sent before the connection is given
+    /// up.
     const OPEN: usize = 8;
 
     /// Creates the state of an unused device.
     pub fn new(margin: Duration) -> Self {
-        // No two studios in a network may open their connections under the same name.
+        // Two studios in a network must not open their connections under the same name.
         let random = RandomState::new().build_hasher().finish();
         Station {
             link: LinkParameters::default(),
@@ -94,10 +95,10 @@ impl Station {
         }
     }
 
-    /// A device as the parameters of its link say; `tcp` is the port of its explicit messages.
+    /// Creates the station from the parameters of its link; `tcp` is the port of its explicit messages.
     ///
     /// # Errors
-    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the connection are ignored.
     pub fn from_query(query: &Query, tcp: Option<u16>, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         // A server with its own port for messages uses it for cyclic data as well.
@@ -120,7 +121,7 @@ impl Station {
         self.replies.clone()
     }
 
-    /// A request is sent; gives back its number.
+    /// Notes that a request is sent; returns its number.
     pub(super) fn begin(&mut self, at: Moment, takes_long: bool) -> u64 {
         let number = self.next;
         self.next = number.wrapping_add(1);

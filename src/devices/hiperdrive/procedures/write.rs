@@ -18,20 +18,20 @@ use crate::devices::hiperdrive::protocol::{
 };
 use crate::profile::{Confirmed, Write};
 
-/// A write that ended early. Without a save what was written until then may be gone when the supply goes.
+/// Write that ended early. Without a save, the values written until then may be lost at power-off.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, ()>;
 
 impl Interrupted {
-    /// Returns what the operation changes of which is not known how far it came; `None` where it did not begin, which is so
-    /// where the user cancelled it.
+    /// Returns the change of the operation if it is unknown how far it got; `None` if it did not start, as after
+    /// cancellation by the user.
     pub fn unclear(&self) -> Option<String> {
         self.unfinished.as_ref().filter(|_| !self.cause.is_cancelled()).map(Op::item)
     }
 }
 
-/// Between two looks at parameter 47.
+/// Interval between two reads of parameter 47.
 const LOOK: Duration = Duration::from_millis(50);
-/// Before the first look after something that resets: it may not have begun.
+/// Wait before the first read after an operation that resets: it may not have started yet.
 const BEGINS: Duration = Duration::from_millis(100);
 
 /// A device into which a plan is written.
@@ -81,7 +81,7 @@ impl Write for DeviceWrite<'_, '_> {
         Ok(())
     }
 
-    /// A wish to end is heard between two operations.
+    /// Cancellation is checked between two operations.
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
         if !is_within_a_place(&confirmed.plan().ops, done.ops) {
             self.master.check_cancel()?;
@@ -94,7 +94,7 @@ impl Write for DeviceWrite<'_, '_> {
     fn left(&mut self, _: &Error) {}
 }
 
-/// The drives that a plan is about: all of them where it is about the device as a whole.
+/// Returns the drives that a plan concerns: all if it concerns the device as a whole.
 fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     let of_op = |op: &Op| match op {
         Op::Write { number, .. } => number.drive(),
@@ -111,8 +111,8 @@ fn touched(plan: &HiperdrivePlan, identity: &Identity) -> Vec<DriveNumber> {
     drives
 }
 
-/// Returns whether scale or limits of a drive are only partly written before this operation: limits in another scale
-/// lie elsewhere, so a write must not end in between.
+/// Returns whether scale or limits of a drive are only partly written before this operation: with another scale the same
+/// limits mean other positions, so a write must not end in between.
 fn is_within_a_place(ops: &[Op], at: usize) -> bool {
     let place = |op: &Op| match op {
         Op::Write { number, .. } if matches!(number.base(), NUMERATOR | DENOMINATOR | LOWER | UPPER) => number.drive(),
@@ -138,7 +138,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// A parameter is written and read back. A reference is rounded to 64 steps (reference 4), and the position is there then.
+/// Writes a parameter and reads it back. A reference is rounded to 64 steps (reference 4), and then becomes the position.
 fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Result<(), Error> {
     master.set(number, wanted)?;
     let reads = master.read_number(number)?;
@@ -152,7 +152,7 @@ fn write(master: &mut Master<'_>, number: ParameterNumber, wanted: i64) -> Resul
     let number = of(POSITION, drive)?;
     let (numerator, denominator) =
         (master.read_number(of(NUMERATOR, drive)?)?, master.read_number(of(DENOMINATOR, drive)?)?);
-    // A drive that stands re-adjusts by less than five degrees: 1/72 of a turn of 256 · 154 / 156 steps.
+    // A drive at standstill re-adjusts by less than five degrees: 1/72 of a turn of 256 · 154 / 156 steps.
     let near = (256 * numerator / denominator.max(1) / 72).max(64);
     let position = master.read_number(number)?;
     if (position - reads).abs() <= near {
@@ -169,14 +169,14 @@ fn perform_service(master: &mut Master<'_>, service: Service, done: &mut Written
         Service::Recall | Service::Factory | Service::Reset => {}
     }
     let Some(code) = service.code() else { return Ok(()) };
-    // How long it takes depends on it.
+    // The time limit depends on the topology.
     topology(master)?;
     master.set(ParameterNumber::SAVE, code)?;
     let patience = master.patience(ParameterNumber::SAVE, code);
     await_idle(master, service, patience)
 }
 
-/// Waits until parameter 47 is 0: the device may answer before it is done.
+/// Waits until parameter 47 is 0: the device may reply before it has finished.
 fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> Result<(), Error> {
     let begun = master.now();
     if matches!(service, Service::Reset | Service::FactoryAll) {
@@ -184,7 +184,7 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
     loop {
         let waited = master.now().since(begun);
-        // While it resets, it may refuse to say anything.
+        // During a reset it may refuse reads.
         let reads = match master.read_number(ParameterNumber::SAVE) {
             Ok(0) => return Ok(()),
             Ok(reads) => reads,
@@ -198,24 +198,24 @@ fn await_idle(master: &mut Master<'_>, service: Service, patience: Duration) -> 
     }
 }
 
-/// The way to end the fault of a drive (reference 4).
+/// How to clear the fault of a drive (reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Remedy {
-    /// It has none.
+    /// The drive has no fault.
     Nothing,
-    /// 197 = 0: it is one of RS-485 alone.
+    /// 197 = 0: a fault of RS-485 only.
     Acknowledgement,
-    /// All drives are reset before that.
+    /// All drives are reset first.
     Reset,
 }
 
-/// Looks what ends the fault of a drive.
+/// Determines how to clear the fault of a drive.
 ///
 /// # Errors
-/// The way.
+/// Errors of the exchange.
 pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Error> {
     let status = drive_status(master, drive)?;
-    // Older ones are acknowledged already.
+    // Older ones are already acknowledged.
     let mut recent = status.buffer.iter().take(usize::from(status.faults));
     let word = status.status;
     let has_failed = matches!(word.state(), State::Fault | State::Locked) || word.has(StatusBit::Warning);
@@ -226,7 +226,7 @@ pub fn remedy(master: &mut Master<'_>, drive: DriveNumber) -> Result<Remedy, Err
     })
 }
 
-/// Ends the fault of a drive: 197 = 0. What it needs before it is an operation of its own.
+/// Clears the fault of a drive: 197 = 0. A reset required before it is an operation of its own.
 fn acknowledge(master: &mut Master<'_>, drive: DriveNumber) -> Result<(), Error> {
     let number = of(ACKNOWLEDGE, drive)?;
     master.set(number, 0)?;

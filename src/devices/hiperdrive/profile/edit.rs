@@ -1,4 +1,4 @@
-//! Plans for changes, each with the device's own rules checked before anything is sent, and one save behind all of them.
+//! Plans for changes, each checked against the device's own rules before anything is sent, with one save after all of them.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;
@@ -15,15 +15,14 @@ use crate::devices::hiperdrive::protocol::{
 /// Positions of drives, in scaled steps (107).
 pub type Positions = BTreeMap<DriveNumber, i32>;
 
-/// Makes a device what is wanted of it: only what differs is written, and saved where it can be. What the wanted image says
-/// nothing about stays as it is. `device` has all that it does speak of and, of each drive whose scale or limits it changes,
-/// all four of those (154 to 160); of a drive whose position is not known, the position is not checked, and of one whose
-/// variant is not, how many turns it has.
+/// Plans the changes that give a device the wanted values: only differences are written, and saved where possible. Values
+/// that the wanted image does not contain stay as they are. `device` must contain all values of the wanted image and, for
+/// each drive whose scale or limits change, all four of those (154 to 160). The position is checked if it is known, the
+/// travel if the variant is known.
 ///
-/// A drive is requested before anything else is written, since that resets it, and given up after all else. In between, drive
-/// by drive, comes the scale of the position, that of the speed and the greatest speed, then the limits in the order in which
-/// the drive takes each of them where it stands, then the rest. Where the drive stands once its scale is another one is
-/// reckoned.
+/// A drive is requested before anything else is written, since that resets it, and its request is removed last. In between,
+/// drive by drive: the scale of the position, the scale of the speed and the maximum speed, then the limits in an order
+/// that the drive accepts at its present position, then the rest. The position in a new scale is calculated.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -62,11 +61,11 @@ pub fn plan_edits(state: &DeviceState, wanted: &Image) -> Result<HiperdrivePlan,
     Ok(HiperdrivePlan { base: Base { values, network: None }, ops })
 }
 
-/// Makes the place where a drive stands this position, rounded to 64 steps, and saves that: 198 is written also where it is
-/// this number already, since writing it is what counts.
+/// Plans to make this the present position, rounded to 64 steps, and to save that. 198 is written even if it already has
+/// this value, since the writing sets the position.
 ///
 /// # Errors
-/// The position is not within the limits once it is rounded, or beyond the drive's turns; or the drive is not there.
+/// The position is not within the limits after rounding, or beyond the drive's travel; or the drive is missing.
 pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32) -> Result<HiperdrivePlan, PlanError> {
     let device = &state.image;
     let own = |number| ParameterNumber::of_drive(number, drive);
@@ -77,12 +76,12 @@ pub fn plan_set_position(state: &DeviceState, drive: DriveNumber, position: i32)
     };
     let (number, old) = known(REFERENCE).ok_or_else(|| not_read(REFERENCE))?;
     let (lower, upper) = device.limits(drive).ok_or_else(|| not_read(LOWER))?;
-    // Only upwards there is no room for the next multiple of 64.
+    // At this end the next multiple of 64 may not fit.
     let becomes = nearest_reference(position).map_or(i64::from(i32::MAX) + 1, i64::from);
     if !(lower..=upper).contains(&becomes) {
         return Err(PlanError::ReferenceOutside { drive, position, becomes, lower, upper });
     }
-    // Limits that lie beyond the turns since their scale was changed bound nothing.
+    // Limits beyond the travel after a change of scale do not limit anything.
     if let Some(row) = number.row() {
         row.check(number, becomes, state.travel(number, device))?;
     }
@@ -101,7 +100,7 @@ pub fn plan_service(device: &Image, service: Service) -> HiperdrivePlan {
     HiperdrivePlan { base: Base { values, network: None }, ops: vec![Op::Service(service)] }
 }
 
-/// The parameters that belong together: the position's scale and the limits in it.
+/// Parameters that belong together: the position's scale and the limits.
 const PLACE: [u16; 4] = [NUMERATOR, DENOMINATOR, LOWER, UPPER];
 
 /// A parameter with another number.
@@ -112,7 +111,7 @@ struct Write {
     new: i64,
 }
 
-/// In which order limits are written.
+/// Order of writing the limits.
 #[derive(Clone, Copy, PartialEq)]
 enum Order {
     LowerFirst,
@@ -124,7 +123,7 @@ impl Write {
         Op::Write { number: self.number, old: Some(self.old), new: self.new }
     }
 
-    /// The least comes first.
+    /// Returns the sort key; the lowest is written first.
     fn rank(self, upper_first: bool) -> (u8, Option<DriveNumber>, u8, Reverse<bool>, u16) {
         let base = self.number.base();
         let turn = match (base, self.new) {
@@ -161,8 +160,7 @@ fn check(number: ParameterNumber, value: i64, travel: Travel) -> Result<(), Plan
     }
 }
 
-/// Checks that a drive's limits are in order and include its position, once all is written; returns the order of
-/// writing them.
+/// Checks that a drive's limits are in order and include its position after all writes; returns the order of writing them.
 fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Option<i32>) -> Result<Order, PlanError> {
     let missing = PLACE.into_iter().filter_map(|number| ParameterNumber::of_drive(number, drive));
     for number in missing {
@@ -186,13 +184,13 @@ fn check_place(device: &Image, after: &Image, drive: DriveNumber, position: Opti
             return Err(PlanError::PositionOutside { drive, position, lower, upper });
         }
     }
-    // With the old upper limit, the new lower one would be above it, or the drive beyond it.
+    // With the old upper limit, the new lower one would be above it, or the drive outside.
     let too_low = old_upper <= lower || position.is_some_and(|position| position > old_upper);
     Ok(if too_low { Order::UpperFirst } else { Order::LowerFirst })
 }
 
-/// Returns the position of a drive in steps of another scale: 256 · numerator / denominator of them a turn, rounded
-/// down as the drive does.
+/// Returns the position of a drive in steps of another scale: 256 · numerator / denominator steps per turn, rounded down as
+/// the drive does.
 fn rescaled(position: i32, old: PositionScale, new: PositionScale) -> i64 {
     let times = i128::from(new.numerator()) * i128::from(old.denominator());
     let by = i128::from(new.denominator()) * i128::from(old.numerator());

@@ -6,10 +6,10 @@ use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange};
 /// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A drive that stands in the list already.
+    /// A drive that is already in the list.
     #[error("drive {} appears twice", .0.get())]
     DriveTwice(DriveNumber),
-    /// A parameter that has a value already.
+    /// A parameter that already has a value.
     #[error("{0} appears twice")]
     Twice(Item),
     /// The marked item is not a parameter.
@@ -30,9 +30,9 @@ pub enum EntryError {
         drive = .drive.get()
     )]
     NoParameterOfDrive {
-        /// As it is written.
+        /// As written in the profile.
         number: String,
-        /// The drive among whose parameters it stands.
+        /// The drive that the entry belongs to.
         drive: DriveNumber,
     },
     /// A number that the parameter cannot be.

@@ -1,11 +1,11 @@
-//! Why something cannot be planned.
+//! Errors of planning.
 
 use super::Item;
 use crate::buses::ethernet_ip::protocol::AddressError;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, Topology, Variant};
 
-/// A profile and a device of two types: as a whole (parameter 13), or in the drive at a place (parameter 120), whose variant
-/// tells its travel, speed and torque.
+/// Difference of type between profile and device: of the whole (parameter 13), or of the drive at a place (parameter 120),
+/// whose variant determines travel, speed and torque.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum OtherType {
     /// An adapter, and hubs with four and with eight places, are three types.
@@ -35,7 +35,7 @@ pub enum OtherType {
     },
 }
 
-/// Why something cannot be planned. Nothing has been written.
+/// Why a change cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another adapter or hub.
@@ -46,7 +46,7 @@ pub enum PlanError {
         /// In the device.
         device: String,
     },
-    /// At a place there is another drive than the one that the profile was read from.
+    /// The drive at a place is not the one that the profile was read from.
     #[error("drive {}: the profile is of serial number {profile:?}, the drive has {device:?}", drive.get())]
     OtherDrive {
         /// The drive.
@@ -59,28 +59,28 @@ pub enum PlanError {
     /// The profile was read from another type of device or drive.
     #[error(transparent)]
     OtherType(#[from] OtherType),
-    /// A number beyond what a parameter may be.
+    /// A number out of the parameter's range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// It can only be read.
+    /// A read-only parameter.
     #[error("parameter {item} ({}) can only be read", item.name())]
     ReadOnly {
         /// The item.
         item: Item,
     },
-    /// 101 to 104: with them drives are moved, which is done over the cyclic connection alone.
+    /// 101 to 104: these move drives, which is allowed over the cyclic connection only.
     #[error("parameter {item} ({}) moves the drive and is never written as a parameter", item.name())]
     Moves {
         /// The item.
         item: Item,
     },
-    /// 47, 197 to 199: they do something, and are services of their own.
+    /// 47, 197 to 199: these trigger actions, and are services of their own.
     #[error("parameter {item} ({}) does something and keeps nothing", item.name())]
     Acts {
         /// The item.
         item: Item,
     },
-    /// It is not known what it is now: it was not read, or its drive is not there.
+    /// The present value is not known: it was not read, or its drive is missing.
     #[error("parameter {item} ({}) was not read before it is to be changed", item.name())]
     NotRead {
         /// The item.
@@ -89,23 +89,23 @@ pub enum PlanError {
     /// The upper limit would not be above the lower one.
     #[error("drive {}: the lower limit {lower} is not below the upper limit {upper}", drive.get())]
     LimitsCrossed {
-        /// Whose they are.
+        /// The drive of the limits.
         drive: DriveNumber,
-        /// As it would be.
+        /// As planned.
         lower: i64,
-        /// As it would be.
+        /// As planned.
         upper: i64,
     },
-    /// The drive stands outside the limits that would be.
+    /// The drive's position is outside the planned limits.
     #[error("drive {}: the actual position {position} is outside the limits {lower} to {upper}", drive.get())]
     PositionOutside {
         /// The drive.
         drive: DriveNumber,
-        /// Its position in the new scale.
+        /// The drive's position in the new scale.
         position: i64,
-        /// As it would be.
+        /// As planned.
         lower: i64,
-        /// As it would be.
+        /// As planned.
         upper: i64,
     },
     /// The actual position would have no room in 32 bits.
@@ -113,10 +113,10 @@ pub enum PlanError {
     PositionTooLarge {
         /// The drive.
         drive: DriveNumber,
-        /// As it would be scaled.
+        /// In scaled steps.
         position: i64,
     },
-    /// The position to be set is outside the limits, once it is rounded.
+    /// The position to be set is outside the limits after rounding.
     #[error(
         "drive {}: position {position} becomes {becomes}, which is not within the limits {lower} to {upper}",
         drive.get()
@@ -124,19 +124,19 @@ pub enum PlanError {
     ReferenceOutside {
         /// The drive.
         drive: DriveNumber,
-        /// As asked for.
+        /// As requested.
         position: i32,
-        /// Rounded to 64 steps; without room in 32 bits it may be beyond them.
+        /// Rounded to 64 steps; may not fit into 32 bits.
         becomes: i64,
-        /// As it is.
+        /// Present value.
         lower: i64,
-        /// As it is.
+        /// Present value.
         upper: i64,
     },
     /// Addresses at which a device cannot be reached.
     #[error(transparent)]
     Address(#[from] AddressError),
-    /// An unknown source of addresses is kept where it is found, and never set.
+    /// An unknown source of addresses is kept if found, and never set.
     #[error("{0} is no source of addresses: they are 0 stored, 1 BOOTP and 2 DHCP")]
     Source(u8),
 }

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use crate::devices::hiperdrive::protocol::drive_parameter::{DENOMINATOR, LOWER, NUMERATOR, UPPER};
 use crate::devices::hiperdrive::protocol::{Access, DriveNumber, ParameterNumber, ParameterRow, PositionScale};
 
-/// Parameters by their own numbers. Of a device that was read: all that are saved and can be written, of the device and of
-/// the drives that are there. What was not read, or what a profile does not say, is left out; empty places are.
+/// Values of parameters by their own numbers. Of a device: all that are saved and can be written, of the device and of the
+/// drives present. Values not read, not in the profile, or of empty places are missing.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Image {
     /// The values.
@@ -14,24 +14,24 @@ pub struct Image {
 }
 
 impl Image {
-    /// A parameter belongs into an image: it is saved, and can be written.
+    /// Returns whether a parameter belongs in an image: it is saved and can be written.
     pub fn holds(row: &ParameterRow) -> bool {
         row.saved && row.access == Access::ReadWrite
     }
 
-    /// A parameter; `None` where nothing is known of it.
+    /// Returns the value of a parameter; `None` if it is not known.
     pub fn get(&self, number: ParameterNumber) -> Option<i64> {
         self.values.get(&number).copied()
     }
 
-    /// A drive's parameter by the number of drive 1.
+    /// Returns a drive's parameter by the number of drive 1.
     pub fn of_drive(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         self.get(ParameterNumber::of_drive(number, drive)?)
     }
 
-    /// The drives of which something is known.
+    /// Returns the drives with any known values.
     pub fn drives(&self) -> Vec<DriveNumber> {
-        // The numbers of a drive lie together.
+        // The numbers of a drive are adjacent.
         let mut drives: Vec<DriveNumber> = self.values.keys().filter_map(|number| number.drive()).collect();
         drives.dedup();
         drives
@@ -43,7 +43,7 @@ impl Image {
         PositionScale::new(part(NUMERATOR)?, part(DENOMINATOR)?).ok()
     }
 
-    /// A drive's limits, lower and upper (158, 160), in steps as scaled.
+    /// Returns a drive's limits, lower and upper (158, 160), in steps as scaled.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i64, i64)> {
         Some((self.of_drive(drive, LOWER)?, self.of_drive(drive, UPPER)?))
     }
@@ -53,7 +53,7 @@ impl Image {
         numbers.into_iter().filter_map(|number| Some((number, self.get(number)?))).collect()
     }
 
-    /// Returns the image with the values of `other` where it has any.
+    /// Returns this image with the values of `other` taking precedence.
     pub fn with(&self, other: &Image) -> Image {
         let mut image = self.clone();
         image.values.extend(&other.values);

@@ -12,7 +12,7 @@ pub struct Item(pub ParameterNumber);
 /// Why a text does not name a parameter.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ItemError {
-    /// Not of the form of any.
+    /// Not of any valid form.
     #[error("{0:?} is not a parameter: give a number such as 47 or 158, or for another drive \"158 drive 2\" or 258")]
     Unknown(String),
     /// The manual has no parameter of that number.
@@ -43,7 +43,7 @@ impl Item {
             Some(drive) => {
                 let no_drive = ItemError::NoDrive { number, drive };
                 let drive = DriveNumber::new(drive).ok_or_else(|| no_drive.clone())?;
-                // 258 is drive 2's already.
+                // 258 already names drive 2.
                 match own.drive() {
                     Some(named) if named == drive => own,
                     Some(DriveNumber::FIRST) => ParameterNumber::of_drive(number, drive).ok_or(no_drive)?,
@@ -54,7 +54,7 @@ impl Item {
         own.row().map(|_| Item(own)).ok_or(ItemError::NoParameter(number))
     }
 
-    /// Returns its name in the table; empty for one that is not in it.
+    /// Returns its name in the table; empty if the table has none.
     pub fn name(self) -> &'static str {
         self.0.row().map_or("", |row| row.name)
     }
@@ -83,7 +83,7 @@ impl FromStr for Item {
 }
 
 impl Item {
-    /// A parameter's number as it is typed: decimal, or hexadecimal with `0x`; a sign in front is no part of it.
+    /// Parses a parameter's number: decimal, or hexadecimal with `0x`; without a sign.
     pub fn number(text: &str) -> Option<u16> {
         let (digits, radix) = match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
             Some(digits) => (digits, 16),

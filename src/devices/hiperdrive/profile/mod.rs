@@ -1,5 +1,5 @@
-//! HIPERDRIVE: what an adapter or a hub keeps of itself and its drives, what is saved of it, how two differ, and what a write
-//! would do.
+//! HIPERDRIVE profiles: the values that an adapter or a hub stores for itself and its drives, how two profiles differ, and
+//! what a write would do.
 
 #![warn(missing_docs)]
 

@@ -14,11 +14,11 @@ pub struct NetworkSettings {
     pub interface: InterfaceConfiguration,
 }
 
-/// Makes a device get its address so. Addresses are written where they are to be taken as stored; elsewhere what is wanted of
-/// them says nothing. `switch` is parameter 12, where it is known.
+/// Plans the source of the IP address. The addresses are written only if the source is the stored ones; otherwise they are
+/// ignored. `switch` is parameter 12, if known.
 ///
 /// # Errors
-/// Addresses at which a device cannot be reached, and an unknown source.
+/// Addresses at which a device cannot be reached, or an unknown source.
 pub fn plan_network(
     now: &NetworkSettings,
     switch: Option<i64>,
@@ -69,7 +69,7 @@ mod tests {
         assert_eq!(plan.ops, [Op::Network { from: now.clone(), to: wanted.clone() }]);
         assert_eq!((plan.ops[0].write_cycles(), plan.base.network.as_ref()), (1, Some(&now)));
         assert_eq!(warnings(&plan), []);
-        // By DHCP an address is given: none is written.
+        // DHCP assigns an address: none is written.
         let plan = plan_network(&wanted, Some(0), &settings(AddressSource::Dhcp, [10, 0, 0, 9])).unwrap();
         let to = NetworkSettings { source: AddressSource::Dhcp, ..wanted.clone() };
         assert_eq!(plan.ops, [Op::Network { from: wanted.clone(), to }]);

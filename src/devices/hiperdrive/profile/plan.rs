@@ -1,4 +1,4 @@
-//! The operations that change a device, what they cost, and what they rest upon.
+//! The operations that change a device, their cost, and their base.
 
 use std::collections::BTreeMap;
 
@@ -11,24 +11,24 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an adapter or a hub.
 pub type HiperdrivePlan = Plan<Base, Op>;
 
-/// The values that a plan is based on: everything that its operations change or depend on. Positions of drives are not
+/// Values that a plan is based on: everything that its operations change or depend on. Positions of drives are not
 /// included, since they change by themselves.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
     /// Parameters by their own numbers.
     pub values: BTreeMap<ParameterNumber, i64>,
-    /// The TCP/IP object, where it is to be changed.
+    /// The TCP/IP object, if the plan changes it.
     pub network: Option<NetworkSettings>,
 }
 
 impl Base {
-    /// Its parameters.
+    /// Returns its parameters.
     pub fn image(&self) -> Image {
         Image { values: self.values.clone() }
     }
 }
 
-/// The parameters that a plan writes, as they will be.
+/// Returns the parameters that a plan writes, as they will be.
 pub fn written(plan: &HiperdrivePlan) -> Image {
     let written = plan.ops.iter().filter_map(|op| match op {
         Op::Write { number, new, .. } => Some((*number, *new)),
@@ -51,11 +51,11 @@ pub enum Op {
     },
     /// The device does something.
     Service(Service),
-    /// The TCP/IP object is written: attribute 3, then attribute 5, since setting 3 to 0 stores the present address.
+    /// Write to the TCP/IP object: attribute 3, then attribute 5, since setting 3 to 0 stores the present address.
     Network {
-        /// As it is.
+        /// Present settings.
         from: NetworkSettings,
-        /// As it will be.
+        /// New settings.
         to: NetworkSettings,
     },
 }
@@ -63,22 +63,22 @@ pub enum Op {
 /// A service of a device (parameters 47 and 197, reference 4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Service {
-    /// 47 = 1: everything that is saved is saved as it is now.
+    /// 47 = 1: saves the present values of all saved parameters.
     Save,
-    /// 47 = −2: the own parameters of the adapter or hub as saved last; those of its drives stay.
+    /// 47 = −2: restores the own parameters of the adapter or hub as last saved; those of its drives stay.
     Recall,
-    /// 47 = −1: the own parameters of the adapter or hub from the factory, not saved; those of its drives stay.
+    /// 47 = −1: restores factory values of the own parameters of the adapter or hub, not saved; those of its drives stay.
     Factory,
-    /// 47 = −3: all parameters from the factory and the address by DHCP, saved.
+    /// 47 = −3: restores factory values of all parameters and DHCP, saved.
     FactoryAll,
     /// 47 = −4: presence test and reset of the drives.
     Reset,
-    /// The fault of a drive: 197 = 0 where that suffices, else 47 = −4 before it.
+    /// Clears the fault of a drive: 197 = 0 if that suffices, else 47 = −4 before it.
     Acknowledge(DriveNumber),
 }
 
 impl Service {
-    /// Returns the value of parameter 47 for it; `None` for an acknowledgement.
+    /// Returns the value of parameter 47; `None` for an acknowledgement.
     pub const fn code(self) -> Option<i64> {
         match self {
             Service::Save => Some(1),
@@ -104,7 +104,7 @@ impl Service {
 }
 
 impl HiperdrivePlan {
-    /// The same without the save at its end: what it writes is not sure to outlast the supply, unless it is saved later.
+    /// Removes the save at the end: written values may then be lost at power-off unless they are saved later.
     pub fn without_save(mut self) -> Self {
         if self.ops.last() == Some(&Op::Service(Service::Save)) {
             self.ops.pop();
@@ -124,7 +124,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// The name of what it changes, as `read` takes it where it can be read.
+    /// Returns the name of the changed item, as `read` takes it if it can be read.
     pub fn item(&self) -> String {
         match self {
             Op::Write { number, .. } => Item(*number).to_string(),
@@ -135,7 +135,7 @@ impl Op {
         }
     }
 
-    /// Things it changes, counted as a comparison counts them; what saves changes nothing.
+    /// Returns the number of changes as a comparison counts them; a save changes nothing.
     pub const fn weight(&self) -> u64 {
         match self {
             Op::Write { .. } | Op::Network { .. } => 1,
@@ -143,8 +143,8 @@ impl Op {
         }
     }
 
-    /// Returns the changes, old and new, in one line for the logbook. The words are the manual's, whatever the language
-    /// of the window.
+    /// Returns the changes, old and new, in one line for the logbook. The terms are the manual's, in any language of the
+    /// window.
     pub fn note(&self) -> String {
         match self {
             Op::Write { number, old: Some(old), new } => format!("{}: {old} → {new}", Item(*number)),

@@ -7,12 +7,12 @@ use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, Family, Topology, Variant};
 use crate::profile::ron_text::Unknown;
 
-/// An adapter or a hub as it is saved.
+/// Profile of an adapter or a hub.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperdriveProfile {
     /// The identity.
     pub identity: ProfileIdentity,
-    /// The stored values. A parameter that is missing is not in the profile.
+    /// The stored values. A missing parameter is not in the profile.
     pub image: Image,
     /// Values that belong to the mounting and are never restored.
     pub mounting: Vec<MountingMark>,
@@ -20,20 +20,20 @@ pub struct HiperdriveProfile {
     pub unknown: UnknownEntries,
 }
 
-/// The identity of an adapter or a hub; empty in a profile made by hand.
+/// Identity of an adapter or a hub; empty in a profile made by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// By parameter 13.
+    /// From parameter 13.
     pub topology: Option<Topology>,
     /// Parameter 15.
     pub name: String,
     /// Parameter 16.
     pub article_number: String,
-    /// Parameter 17, decimal; empty where the profile is of no device.
+    /// Parameter 17, decimal; empty if the profile is of no particular device.
     pub serial_number: String,
     /// Parameter 19.
     pub version: String,
-    /// Its drives, by their places.
+    /// Its drives, by place.
     pub drives: Vec<ProfileDrive>,
     /// Entries that this program does not know.
     pub unknown: Unknown,
@@ -42,15 +42,15 @@ pub struct ProfileIdentity {
 /// The identity of a drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileDrive {
-    /// Its place.
+    /// Place of the drive.
     pub number: DriveNumber,
-    /// Parameter 120; `None` where that is not known.
+    /// Parameter 120; `None` if it is not known.
     pub variant: Option<Variant>,
     /// Parameter 121.
     pub name: String,
     /// Parameter 122.
     pub article_number: String,
-    /// Parameter 123; empty where it is not known.
+    /// Parameter 123; empty if it is not known.
     pub serial_number: String,
     /// Parameter 125.
     pub version: String,
@@ -61,7 +61,7 @@ pub struct ProfileDrive {
 /// Something that is right for one drive on one machine and no other.
 pub type MountingMark = crate::profile::MountingMark<Item>;
 
-/// Entries that this program does not know, among the parameters of the device (`None`) and of its drives.
+/// Unknown entries among the parameters of the device (`None`) and of its drives, which are preserved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries(pub(super) BTreeMap<Option<DriveNumber>, Vec<(ron::Value, ron::Value)>>);
 
@@ -74,7 +74,7 @@ impl HiperdriveProfile {
         profile
     }
 
-    /// Marks what is known to belong to the mounting, and is not marked yet: the reference of each drive (198).
+    /// Marks the items that belong to the mounting and are not marked yet: the reference of each drive (198).
     pub fn mark_mounting(&mut self) {
         let references = self.image.values.keys().copied().filter(|number| number.base() == REFERENCE).map(Item);
         for item in references.collect::<Vec<_>>() {
@@ -85,12 +85,12 @@ impl HiperdriveProfile {
         }
     }
 
-    /// An item belongs to the mounting: it is marked, or is a drive's reference.
+    /// Returns whether an item belongs to the mounting: it is marked, or is a drive's reference.
     pub fn is_mounting(&self, item: Item) -> bool {
         item.0.base() == REFERENCE || self.is_marked(item)
     }
 
-    /// The items that it says something about, in the order in which they are compared.
+    /// Returns the items in the profile, in the order in which they are compared.
     pub fn items(&self) -> impl Iterator<Item = Item> {
         self.image.values.keys().copied().map(Item)
     }
@@ -113,12 +113,12 @@ impl ProfileIdentity {
 }
 
 impl ProfileDrive {
-    /// Returns its family, as far as its variant is known.
+    /// Returns its family, if its variant is known.
     pub fn family(&self) -> Option<Family> {
         self.variant?.row().map(|row| row.family)
     }
 
-    /// A place of which nothing is known.
+    /// Creates the identity of a drive at a place, with nothing known.
     pub fn at(number: DriveNumber) -> Self {
         ProfileDrive {
             number,

@@ -1,5 +1,4 @@
-//! Planning a restore: only differences, one save after them, and never a drive's reference, which belongs to its
-//! machine.
+//! Planning a restore: only differences, one save after them, and never a drive's reference, which belongs to its machine.
 
 pub use crate::profile::RestoreOptions;
 
@@ -10,7 +9,7 @@ use super::{
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Travel};
 
-/// A device as it is, as far as a plan needs it.
+/// Present state of a device, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// The identity.
@@ -32,8 +31,8 @@ impl DeviceState {
 /// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<HiperdrivePlan, Item>;
 
-/// Plans a restore: onto another device, at the places that both have. What belongs to the mounting is what a person has
-/// marked so, and a drive's reference (198), which is always left alone.
+/// Plans a restore, at the places that both have. Onto another device, the mounting is left out: items marked by the user
+/// and each drive's reference (198), which is never written.
 ///
 /// # Errors
 /// See [`PlanError`]; nothing has been written.
@@ -64,8 +63,8 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses a device, or drives of it, that the profile was not read from, and those of another kind. What the profile does not
-/// say of its device fits any; so does a place at which there is no drive.
+/// Refuses a device or drives that the profile was not read from, and those of another type. A profile without an identity
+/// fits any device; a place without a drive is accepted.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`], [`PlanError::OtherDrive`].
@@ -73,7 +72,7 @@ pub fn check_device(profile: &HiperdriveProfile, device: &ProfileIdentity) -> Re
     check_allowed(profile, device, RestoreOptions::default())
 }
 
-/// Returns the types of a profile and of a device that differ: of the whole, then of each drive.
+/// Returns the differences of type between a profile and a device: of the whole, then of each drive.
 pub fn other_types(profile: &ProfileIdentity, device: &ProfileIdentity) -> Vec<OtherType> {
     let whole = profile.topology.zip(device.topology).filter(|(profile, device)| profile != device);
     let drives = profile.drives.iter().filter_map(|own| {
@@ -109,17 +108,17 @@ fn check_allowed(
     Ok(())
 }
 
-/// An item that differs is left as it is.
+/// Returns whether an item that differs is left as it is.
 fn stays(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item, options: RestoreOptions) -> bool {
     item.0.base() == REFERENCE || !options.with_mounting && is_of_another_mounting(profile, device, item)
 }
 
-/// An item belongs to the mounting of another device or drive.
+/// Returns whether an item belongs to the mounting of another device or drive.
 fn is_of_another_mounting(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     profile.is_mounting(item) && !is_same_place(profile, device, item)
 }
 
-/// The profile was read from this very device, and the drive's parameter from this very drive.
+/// Returns whether the profile was read from this very device, and the drive's parameter from this very drive.
 fn is_same_place(profile: &HiperdriveProfile, device: &ProfileIdentity, item: Item) -> bool {
     let types = other_types(&profile.identity, device);
     let is_other = |own: &OtherType| match own {

@@ -1,9 +1,9 @@
-//! Profiles for tests: a hub with drives, to be changed.
+//! Test profiles: a hub with drives, to be changed.
 
 use super::{HiperdriveProfile, Image, ProfileDrive, ProfileIdentity};
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Topology, Variant};
 
-/// A drive HDA30 from the factory, requested: reference 4 and 5.
+/// Factory values of a requested drive HDA30: reference 4 and 5.
 const DRIVE: [(u16, i64); 13] = [
     (152, 1),
     (154, 256),
@@ -32,7 +32,7 @@ pub(super) fn image_of(values: &[(u16, i64)]) -> Image {
     Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
 }
 
-/// A device with drives at these places.
+/// Returns a device with drives at these places.
 pub(super) fn image(places: &[u8]) -> Image {
     let mut image = image_of(&[(24, 0), (26, 7)]);
     for place in places {
@@ -62,7 +62,7 @@ pub(super) fn identity(serial_number: &str, drives: &[(u8, &str)]) -> ProfileIde
     }
 }
 
-/// A hub 100 with drives 4711 and 4712 at its places 1 and 3.
+/// Creates a hub 100 with drives 4711 and 4712 at places 1 and 3.
 pub(super) fn profile() -> HiperdriveProfile {
     HiperdriveProfile::of(identity("100", &[(1, "4711"), (3, "4712")]), image(&[1, 3]))
 }

@@ -1,7 +1,7 @@
-//! The text of a HIPERDRIVE profile: written for people, read from their hands. What is wrong names its entry.
+//! The text of a HIPERDRIVE profile, written for people and edited by them. An error names its entry.
 //!
-//! A drive's parameters stand by the numbers of drive 1 beside it. Who has no hub may write them beside those of the device,
-//! which are below 100; there a number of another drive is its own.
+//! A drive's parameters have the numbers of drive 1. A profile without a hub may list them beside those of the device,
+//! which are below 100; there, the number of another drive means that drive.
 
 use super::{EntryError, HiperdriveProfile, Image, Item, MountingMark, ProfileDrive, ProfileIdentity, UnknownEntries};
 use crate::devices::hiperdrive::protocol::drive_parameter::{LOWER, UPPER};
@@ -40,7 +40,7 @@ impl Profile for HiperdriveProfile {
     }
 
     fn write(&self, writer: &mut Writer) {
-        // A profile that was made by hand is of no device.
+        // A profile made by hand belongs to no device.
         if !self.identity.is_of_no_device() {
             self.identity.write(writer);
         }
@@ -70,7 +70,7 @@ impl Profile for HiperdriveProfile {
         writer.close(']');
     }
 
-    /// Compares the parameters that are kept. Who the devices are is not part of it, nor what is measured.
+    /// Compares the stored parameters. Identities and measured values are not compared.
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for number in self.image.with(&other.image).values.into_keys() {
@@ -81,7 +81,7 @@ impl Profile for HiperdriveProfile {
 }
 
 impl HiperdriveProfile {
-    /// Parameters of the device, or of a drive.
+    /// Writes parameters of the device, or of a drive.
     fn write_parameters(&self, writer: &mut Writer, drive: Option<DriveNumber>) {
         let unknown = self.unknown.0.get(&drive).map(Vec::as_slice).unwrap_or_default();
         let own: Vec<(ParameterNumber, i64)> = self
@@ -104,7 +104,7 @@ impl HiperdriveProfile {
         writer.close('}');
     }
 
-    /// Returns the name of a parameter as a comment; a limit also in turns.
+    /// Returns the name of a parameter as a comment; for a limit also the turns.
     fn comment(&self, number: ParameterNumber, value: i64) -> String {
         let Some(row) = number.row() else { return String::new() };
         let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
@@ -187,8 +187,8 @@ fn read_marked(text: &str) -> Result<Item, EntryError> {
     Ok(item)
 }
 
-/// Parameters of the device, or of a drive by the numbers of drive 1. A number that is none of theirs is a slip; a name is an
-/// entry that this program does not know, and kept as it is.
+/// Reads the parameters of the device, or of a drive by the numbers of drive 1. A number that does not belong there is an
+/// error; a name is an unknown entry and is kept.
 fn read_parameters(
     entries: &mut Entries,
     drive: Option<DriveNumber>,
@@ -217,7 +217,7 @@ fn read_parameters(
         }
         let value: i64 =
             value.into_rust().map_err(|_| ProfileError::Shape { path: path.clone(), expected: Expected::Whole })?;
-        // How many turns a number is depends on the drive that it is written into: the plan looks at that.
+        // The turns depend on the drive to be written: the plan checks them.
         let value = row.check(number, value, Travel::UNKNOWN).map_err(|error| wrong(error.into()))?;
         if image.values.insert(number, value).is_some() {
             return Err(wrong(EntryError::Twice(Item(number))));

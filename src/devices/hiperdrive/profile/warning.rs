@@ -10,26 +10,27 @@ use crate::devices::hiperdrive::protocol::{AddressSwitch, DriveNumber, Parameter
 /// A consequence of a plan.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Warning {
-    /// With another scale the same limits lie elsewhere (reference 3, *Scaling moves soft limits*): in turns, now and then.
+    /// With another scale the same limits mean other positions (reference 3, *Scaling moves soft limits*): in turns, before
+    /// and after.
     LimitsMove {
-        /// Whose they are.
+        /// The drive of the limits.
         drive: DriveNumber,
         /// The lower and the upper one now.
         now: (f64, f64),
         /// Once the plan is carried out.
         then: (f64, f64),
     },
-    /// It counts from the next reset on (47 = −4, or the supply).
+    /// It takes effect at the next reset (47 = −4, or the supply).
     AfterReset(Item),
-    /// The time-out is off (186 = 255): nothing moves from here.
+    /// The time-out is off (186 = 255): this program moves nothing.
     NoTimeout(DriveNumber),
-    /// The drive is no longer requested (152 = 0): nothing moves it from the bus.
+    /// The drive is no longer requested (152 = 0): it cannot be moved from the bus.
     NotRequested(DriveNumber),
-    /// The address switch decides, and not what is to be set.
+    /// The address switch decides, not the setting.
     SwitchDecides(AddressSwitch),
 }
 
-/// All that is to be known of a plan.
+/// Returns all warnings of a plan.
 pub fn warnings(plan: &HiperdrivePlan) -> Vec<Warning> {
     let (now, written) = (plan.base.image(), written(plan));
     let then = now.with(&written);

@@ -1,5 +1,5 @@
-//! The control word (STW, reference 3), built from the action a host requests. No word built here contains a reserved
-//! bit or a jog bit; a stop does not end a jog step.
+//! The control word (STW, reference 3), built from the action a host requests. No word built here has a reserved bit or a
+//! jog bit set, because a stop might not end a jog step.
 
 use super::status_word::{StatusBit, StatusWord};
 

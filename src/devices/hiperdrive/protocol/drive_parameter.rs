@@ -28,7 +28,7 @@ pub const MAXIMUM_SPEEDS: RangeInclusive<u16> = 5..=350;
 pub const HAND_DRIVE_WAIT: u16 = 182;
 /// RS-485 time-out.
 pub const TIMEOUT: u16 = 186;
-/// The time-out of a drive that goes on when it hears nothing.
+/// The time-out of a drive that continues without commands.
 pub const NO_TIMEOUT: i64 = 255;
 /// RS-485 address.
 pub const RS485_ADDRESS: u16 = 188;

@@ -11,11 +11,11 @@ pub enum DriveLight {
     Red,
     /// Red and green at once.
     RedGreen,
-    /// Green, flashing twice a second.
+    /// Green, flashing twice per second.
     GreenFlashing,
-    /// Red and green at once, flashing twice a second.
+    /// Red and green at once, flashing twice per second.
     RedGreenFlashing,
-    /// Red, green, red, five times a second.
+    /// Red, green, red, five times per second.
     Alternating,
 }
 
@@ -87,7 +87,7 @@ pub enum PortLight {
     Off,
     /// Green.
     Link,
-    /// Green, and yellow ten times a second.
+    /// Green, and yellow ten times per second.
     Active,
 }
 

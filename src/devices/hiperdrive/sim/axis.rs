@@ -1,15 +1,15 @@
-//! The spindle: it speeds up, slows down, hits what stands in its way. In steps of which a turn has 65536, and milliseconds.
+//! The spindle: it accelerates, brakes, and hits obstacles. Units are steps, of which a turn has 65536, and milliseconds.
 
 use std::time::Duration;
 
 /// The load of the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleLoad {
-    /// Percent of the nominal torque that it takes. With less effective torque nothing moves.
+    /// Percentage of the nominal torque that the load takes. With less effective torque nothing moves.
     pub percent: u8,
-    /// It cannot turn below this place, in steps of 65536 a turn as the drive was built.
+    /// It cannot turn below this position, in steps of 65536 per turn of the shaft.
     pub wall_below: Option<f64>,
-    /// It cannot turn beyond this place.
+    /// It cannot turn beyond this position.
     pub wall_above: Option<f64>,
     /// Degrees Celsius around the drive.
     pub ambient: f64,
@@ -17,14 +17,14 @@ pub struct SpindleLoad {
     pub defect: Option<Defect>,
 }
 
-/// A drive that does not do what it is told.
+/// Defect of a drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Defect {
-    /// It stops neither at its target nor at its limits.
+    /// It does not stop at its target or at its limits.
     RunsOn,
     /// It turns the other way.
     Reversed,
-    /// It says by status bit 15 that it is outside its limits, wherever it is.
+    /// Status bit 15 is set at any position: outside the limits.
     SaysOutside,
 }
 
@@ -38,14 +38,14 @@ impl Default for SpindleLoad {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Axis {
     place: f64,
-    /// Steps a second.
+    /// Steps per second.
     speed: f64,
 }
 
 /// The demand on the spindle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum AxisDemand {
-    /// Stands still.
+    /// Not moving.
     Rest,
     /// Moves to a place, no faster than this.
     Place { at: f64, speed: f64 },
@@ -68,11 +68,11 @@ impl AxisDemand {
 /// The outcome of a millisecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum TickOutcome {
-    /// It is under way.
+    /// Moving.
     OnTheWay,
-    /// It stands where it should, or as it should.
+    /// At its target, or at rest as requested.
     There,
-    /// Something stands in its way, below it or above.
+    /// Blocked by an obstacle, below or above.
     Held { above: bool },
 }
 
@@ -106,13 +106,13 @@ impl Axis {
         self.speed = 0.0;
     }
 
-    /// A millisecond.
+    /// Simulates a millisecond.
     pub(super) fn tick(&mut self, wanted: AxisDemand, load: &SpindleLoad) -> TickOutcome {
         let gain = ACCELERATION * TICK_S;
         let aim = match wanted {
             AxisDemand::Rest => 0.0,
             AxisDemand::Speed(speed) => speed,
-            // No faster than it can still stop, millisecond by millisecond.
+            // No faster than it can still brake, millisecond by millisecond.
             AxisDemand::Place { at, speed } => {
                 let (way, half) = (at - self.place, gain / 2.0);
                 way.signum() * speed.min((half * half + 2.0 * ACCELERATION * way.abs()).sqrt() - half)
@@ -138,7 +138,7 @@ impl Axis {
     }
 }
 
-/// The wall that a place lies behind, and whether it is the upper one.
+/// Returns the wall that a position is behind, and whether it is the upper one.
 fn walls(load: &SpindleLoad, place: f64) -> Option<(f64, bool)> {
     let below = load.wall_below.filter(|wall| place < *wall).map(|wall| (wall, false));
     below.or_else(|| load.wall_above.filter(|wall| place > *wall).map(|wall| (wall, true)))
@@ -188,7 +188,7 @@ mod tests {
         assert_eq!(ticks_until(&mut axis, to(5000.0), &load).1, TickOutcome::Held { above: true });
         assert_eq!(axis.place(), 1000.0);
         assert_eq!(ticks_until(&mut axis, to(-300.0), &load).1, TickOutcome::There);
-        // Turned round at full speed, it overshoots and returns.
+        // Reversed at full speed, it overshoots and returns.
         for _ in 0..300 {
             axis.tick(AxisDemand::Speed(-TURN), &load);
         }

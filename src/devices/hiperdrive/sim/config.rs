@@ -1,5 +1,5 @@
-//! The settings of virtual drives and what stands in front of them, as the query of a `sim:` link gives them:
-//! `hub=4&drives=1,0,1&position=65536`. It opens nothing.
+//! The settings of virtual drives and their adapter or hub, as in the query of a `sim:` link:
+//! `hub=4&drives=1,0,1&position=65536`. Nothing is opened here.
 
 use std::time::Duration;
 
@@ -16,41 +16,41 @@ parameters! {
     /// The settings of a virtual adapter or hub and its drives. The default is an adapter with one drive HDA30A with
     /// factory settings, at rest, without faults. Settings of drives apply to all of them.
     pub struct Config: ConfigError {
-        /// Without it an adapter with one drive.
+        /// Without it, an adapter with one drive.
         pub(super) topology: Topology = Topology::Adapter, "hub" => Checked(Expected::Hub, |text| HUBS.read(text));
-        /// The places with a drive; by default all, and none beyond the end of a list.
+        /// The places with a drive; all by default. Places after the end of a list are empty.
         drives: Option<String> = None, "drives" => Maybe(ANY), "connect.plugged" like "1,0,1";
-        /// The same, place by place; `None`: everywhere is a drive.
+        /// The same, place by place; `None`: a drive at every place.
         plugged: Option<Vec<bool>> = None;
         /// Parameter 120, or its name.
         pub(super) variant: Variant = Variant::new(7), "variant" => Checked(Expected::Variant, variant);
-        /// Parameter 152; without it as from the factory.
+        /// Parameter 152; the factory setting if not given.
         pub(super) requested: Option<bool> = None, "requested" => Maybe(Words(&[("0", false), ("1", true)]));
-        /// Position of the drives, in steps of 65536 a turn.
+        /// Position of the drives, in steps of 65536 per turn.
         pub(super) position: i32 = 0, "position" => Whole(Quantity::Steps, i32::MIN..=i32::MAX);
-        /// Parameter 166: greatest speed in tenths of rpm.
+        /// Parameter 166: maximum speed in tenths of rpm.
         pub(super) speed: Option<u16> = None, "speed" => Maybe(Whole(Quantity::TenthsOfRpm, MAXIMUM_SPEEDS));
         /// Load of the spindle: above 100 no drive can move it.
         load: u8 = SpindleLoad::default().percent, "load" => Whole(Quantity::Torque, 0..=200);
-        /// The spindle is held where it stands.
+        /// The spindle is blocked where it is.
         blocked: bool = false, "blocked" => SWITCH;
-        /// The drives stop neither at a target nor at a limit, turn the other way, or always set status bit 15.
+        /// The drives do not stop at a target or a limit, turn the other way, or always set status bit 15.
         defect: Option<Defect> = None, "defect" => Maybe(Words(&[
             ("runs-on", Defect::RunsOn), ("reversed", Defect::Reversed), ("says-outside", Defect::SaysOutside),
         ]));
-        /// Around the drives: from 80 on they fail.
+        /// Ambient temperature of the drives: from 80 on they fail.
         temperature: f64 = SpindleLoad::default().ambient, "temperature" => Decimal(Quantity::Celsius, -40.0..=120.0);
-        /// Switch S3; away from 0 nothing moves from the bus.
+        /// Switch S3; at any setting but 0 nothing moves from the bus.
         pub(super) s3: u8 = 0, "s3" => Whole(Quantity::SwitchPosition, 0..=9);
         pub(super) switch: u8 = 0, "switch" => Checked(Expected::SwitchDigits, switch);
         pub(super) volts: f64 = 24.0, "supply" => Decimal(Quantity::Volts, 0.0..=100.0);
-        /// Duration of a reset of all drives (47 = −4): it is answered when it is done.
+        /// Duration of a reset of all drives (47 = −4), which is answered after it.
         pub(super) resets: Duration = RESETS, "reset" => Milliseconds(0..=8000);
         /// Parameter 17.
         pub(super) serial_number: u16 = 4711, "serial" => Whole(Quantity::Number, 0..=u16::MAX);
         /// Parameter 15.
         pub(super) name: String = "HIPERDRIVE".to_owned(), "name" => Checked(Expected::Ascii { most: 32 }, name);
-        /// Of the numbers in process data (`U`).
+        /// Byte order of numbers in process data (`U`).
         pub(super) order: ByteOrder = ByteOrder::Little, "order" => ByteOrder::WORDS;
         /// Texts of parameters have their length in front (`U`).
         pub(super) counted_texts: bool = false, "text" => Words(&[("plain", false), ("counted", true)]);
@@ -62,18 +62,18 @@ parameters! {
 }
 
 impl Config {
-    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
+    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
-    /// With a sentence that names the key and what is allowed.
+    /// A sentence that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::Device("HIPERDRIVE"), pairs)?;
         config.plugged = config.drives.take().map(|drives| places(&drives, config.topology)).transpose()?;
         Ok(config)
     }
 
-    /// The control supply, in tenths of a volt.
+    /// Returns the control supply, in tenths of a volt.
     pub(super) fn supply_tenths(&self) -> u16 {
         // At most 1000.
         (self.volts * 10.0).round() as u16
@@ -97,7 +97,7 @@ impl Config {
         }
     }
 
-    /// Returns the position of the drives, in steps of 65536 a turn.
+    /// Returns the position of the drives, in steps of 65536 per turn.
     fn place(&self) -> f64 {
         f64::from(self.position)
     }
@@ -222,7 +222,7 @@ mod tests {
         assert_eq!(value(260), Some(Value::Number(1_048_576_000)));
     }
 
-    /// Leads the first drive to a move, as far as it comes; what it says then, and its newest error.
+    /// Moves the first drive to a target as far as possible; returns its last status and newest error.
     fn driven(query: &str) -> (u16, Option<ErrorCode>) {
         let mut station = Station::of(&read(query).unwrap());
         let mut now = Moment::START;
@@ -242,7 +242,7 @@ mod tests {
         (status.with(StatusBit::SetpointAcknowledged, false).word(), error)
     }
 
-    /// Reference 3 and 9: done is 3E37, of which bit 12 is left out; a fault 2AB8.
+    /// Reference 3 and 9: done is 3E37, compared without bit 12; a fault is 2AB8.
     #[test]
     fn drives_do_what_one_wants_to_see() {
         for (query, status, error) in [

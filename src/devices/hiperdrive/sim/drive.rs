@@ -1,9 +1,9 @@
-//! A drive: what a control word does to it, how it moves, what goes wrong (reference 2 to 5).
+//! A virtual drive: the effects of control words, its motion and its faults (reference 2 to 5).
 //!
-//! Chosen here (`U`): a word with reserved bits is ignored; with 0 % of speed or torque nothing begins and nothing is an
-//! error; a drive that is not requested (152 = 0), or that S3 is turned to, never leaves "not ready"; a target beyond the
-//! limits is fault 8503; a drive that is held fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one
-//! hotter than 80 °C at once (8202); a lost master is fault 8601; whoever loses operation while moving brakes as for a stop.
+//! Chosen here (`U`): words with reserved bits are ignored; with 0 % of speed or torque nothing starts, without an error;
+//! a drive that is not requested (152 = 0), or that S3 is set to, never leaves "not ready"; a target beyond the limits is
+//! fault 8503; a blocked drive fails after 200 ms (8300, 8301), one that is too weak after 500 ms (8203), one hotter than
+//! 80 °C at once (8202); a lost master is fault 8601; a moving drive that loses operation brakes as for a stop.
 
 use std::collections::VecDeque;
 
@@ -24,7 +24,7 @@ pub struct Drive {
     pub(super) variant: Variant,
     pub(super) memory: Memory,
     pub(super) axis: Axis,
-    /// Added to the axis' place to give its position, in its steps.
+    /// Offset from the axis to the position, in steps of the axis.
     pub(super) offset: f64,
     pub(super) out: OutData,
     pub(super) errors: VecDeque<ErrorCode>,
@@ -33,7 +33,7 @@ pub struct Drive {
     pub(super) celsius: f64,
     load: SpindleLoad,
     control: ControlWord,
-    /// Moving is told by the axis.
+    /// Whether the drive moves is read from the axis.
     state: State,
     motion: Motion,
     target_reached: bool,
@@ -48,7 +48,7 @@ pub struct Drive {
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Motion {
     Rest,
-    /// To a place; a jog step is one that no stop ends.
+    /// Move to a position; a jog step is one that a stop does not end.
     Job {
         at: f64,
         jog: Option<Jog>,
@@ -57,7 +57,7 @@ enum Motion {
     Paused {
         at: f64,
     },
-    /// In speed mode, to a place or for ever.
+    /// Run in speed mode, to a position or without an end.
     Run {
         to: Option<f64>,
         clockwise: bool,
@@ -76,12 +76,12 @@ const ERRORS: usize = 8;
 const HELD_MS: u32 = 200;
 const WEAK_MS: u32 = 500;
 const HOT: f64 = 80.0;
-/// With all its torque a drive gets so much warmer than what is around it.
+/// Kelvin above the ambient temperature at full torque.
 const WARMING: f64 = 40.0;
 const WARMING_S: f64 = 60.0;
 
 impl Drive {
-    /// A drive from the factory, switched on at the start of the clock.
+    /// Creates a drive from the factory, switched on at the start of the clock.
     pub fn new(variant: Variant, topology: Topology, load: SpindleLoad) -> Self {
         let family = variant.row().map_or(Family::Short, |row| row.family);
         Drive {
@@ -118,25 +118,25 @@ impl Drive {
         self.load = load;
     }
 
-    /// Turns the spindle by hand, by this many steps of 65536 a turn.
+    /// Turns the spindle by hand, by this many steps of 65536 per turn.
     pub fn turn_by_hand(&mut self, now: Moment, steps: f64) {
         self.advance(now);
         self.axis = Axis::at(self.axis.place() + steps);
     }
 
-    /// Injects an error: it is stored, and while the drive is operational it is a fault that ends the motion.
+    /// Injects an error: it is stored, and if the drive is operational it is a fault that ends the motion.
     pub fn fail(&mut self, now: Moment, code: ErrorCode) {
         self.advance(now);
         self.fails(code);
     }
 
-    /// A control word with its set-points has come.
+    /// Takes a control word with its setpoints.
     pub fn command(&mut self, now: Moment, out: OutData) {
         self.advance(now);
         let Ok(control) = out.control() else { return };
         self.out = out;
         let before = std::mem::replace(&mut self.control, control);
-        // A run and a jog step begin with an edge; a job is a level, and begins with the next millisecond.
+        // A run and a jog step start on an edge; a job is a level, and starts with the next millisecond.
         let begins = control.begins(before, self.status()).filter(|begins| *begins != Begins::Job);
         self.enter(self.next(before));
         self.obey();
@@ -145,7 +145,7 @@ impl Drive {
         }
     }
 
-    /// May it move from the bus (S3 is at 0)?
+    /// Sets whether it may move from the bus (S3 is at 0).
     pub(super) const fn allow(&mut self, allowed: bool) {
         self.allowed = allowed;
     }
@@ -194,7 +194,7 @@ impl Drive {
 
     /// Returns the position in scaled steps.
     pub(super) fn position(&self) -> i32 {
-        // A cast of a float saturates.
+        // The float cast saturates.
         ((self.axis.place() + self.offset) / TURN * self.scale().steps_per_turn()).floor() as i32
     }
 
@@ -216,7 +216,7 @@ impl Drive {
         (limit(LOWER), limit(UPPER))
     }
 
-    /// The master was lost: what is operational fails.
+    /// Handles the loss of the master: an operational drive fails.
     pub(super) fn abandon(&mut self, now: Moment) {
         self.advance(now);
         if self.state.by(Trigger::Fails) == State::Fault && self.state != State::Fault {
@@ -224,7 +224,7 @@ impl Drive {
         }
     }
 
-    /// Faults are acknowledged.
+    /// Acknowledges faults.
     pub(super) const fn forgive(&mut self) {
         self.faults = 0;
         self.over_current = false;
@@ -242,12 +242,12 @@ impl Drive {
         self.memory.get(number).and_then(|value| u16::try_from(value).ok()).unwrap_or_default()
     }
 
-    /// The axis' place of a position.
+    /// Returns the axis' place of a position.
     fn place_of(&self, position: i32) -> f64 {
         f64::from(position) / self.scale().steps_per_turn() * TURN - self.offset
     }
 
-    /// Millisecond by millisecond to a moment; one that lies behind is as now.
+    /// Advances to a moment, millisecond by millisecond; an earlier one has no effect.
     pub(super) fn advance(&mut self, now: Moment) {
         while self.at + TICK <= now {
             let ticks = if self.is_settled() { now.since(self.at).as_millis().max(1) } else { 1 };
@@ -257,13 +257,13 @@ impl Drive {
         }
     }
 
-    /// Returns whether nothing but its temperature changes by itself.
+    /// Returns whether only its temperature changes by itself.
     fn is_settled(&self) -> bool {
         let begins = self.control.begins(self.control, self.status()).is_some();
         self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
     }
 
-    /// The state that the word leads to behind another one.
+    /// Returns the state to which the word leads after another one.
     fn next(&self, before: ControlWord) -> State {
         match self.state {
             State::NotReady if !self.may_move() => State::NotReady,

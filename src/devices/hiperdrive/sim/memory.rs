@@ -1,4 +1,4 @@
-//! Parameters that can be written: what they are now, and what of them is kept without supply.
+//! Writable parameters: their present values, and those stored without supply.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +13,7 @@ pub(super) struct Memory {
     kept: BTreeMap<u16, i64>,
 }
 
-/// Chosen: what the drive finds for parameter 192.
+/// Chosen: the value that the drive determines for parameter 192.
 const COMPLETE_TIME_MS: i64 = 5;
 
 impl Memory {
@@ -27,7 +27,7 @@ impl Memory {
         Memory { now: factory.clone(), kept: factory.clone(), factory }
     }
 
-    /// `None` for a parameter that is not held here.
+    /// Returns the value; `None` for a parameter that is not stored here.
     pub(super) fn get(&self, number: u16) -> Option<i64> {
         self.now.get(&number).copied()
     }
@@ -49,14 +49,14 @@ impl Memory {
         self.kept.extend(self.now.iter().filter(|(number, _)| is_saved(**number)));
     }
 
-    /// Half of what is to be kept, by the numbers: the supply was lost in between.
+    /// Stores half of the values, by number: the supply was lost meanwhile.
     pub(super) fn keep_half(&mut self) {
         let saved: Vec<(u16, i64)> = self.now.iter().map(|(n, v)| (*n, *v)).filter(|(n, _)| is_saved(*n)).collect();
         let half = saved.len() / 2;
         self.kept.extend(saved.into_iter().take(half));
     }
 
-    /// Restores the saved values after a power failure or a reset; values that are never saved are as from the factory.
+    /// Restores the saved values after a power failure or a reset; values that are never saved get their factory settings.
     /// The position that was set stays (manual, 198: a reset has no effect on it).
     pub(super) fn restart(&mut self) {
         let reference = self.get(REFERENCE);
@@ -64,17 +64,17 @@ impl Memory {
         reference.into_iter().for_each(|position| self.set(REFERENCE, position));
     }
 
-    /// 47 = −2: what the adapter or hub keeps itself is as saved last.
+    /// 47 = −2: restores the values that the adapter or hub stores itself, as last saved.
     pub(super) fn recall(&mut self) {
         copy_own(&self.kept, &mut self.now);
     }
 
-    /// 47 = −1: what the adapter or hub keeps itself is from the factory, not saved yet.
+    /// 47 = −1: restores the factory settings of the values that the adapter or hub stores itself, not saved yet.
     pub(super) fn forget_own(&mut self) {
         copy_own(&self.factory, &mut self.now);
     }
 
-    /// All of it from the factory, not saved yet.
+    /// Restores all factory settings, not saved yet.
     pub(super) fn forget(&mut self) {
         self.now = self.factory.clone();
     }

@@ -1,5 +1,5 @@
-//! Virtual drives behind an adapter or a hub (reference of HIPERDRIVE): what process data and parameters do to them, and
-//! the EtherNet/IP target in front of them, in virtual time. Whatever the manual leaves open (`U`) follows one documented choice.
+//! Virtual drives behind an adapter or a hub (reference of HIPERDRIVE): the effects of process data and parameters, and the
+//! EtherNet/IP target in front of them, in virtual time. What the manual leaves open (`U`) follows one documented choice.
 //!
 //! | file | what it is |
 //! |---|---|

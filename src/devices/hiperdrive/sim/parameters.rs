@@ -1,7 +1,7 @@
 //! Reading and writing of a drive's parameters.
 //!
-//! Chosen here (`U`): a value that is refused is kept as error 8501, as the manual has it, and a fault while the drive is
-//! operational; 198 is taken only while the drive stands still.
+//! Chosen here (`U`): a refused value is stored as error 8501, as in the manual, and is a fault if the drive is
+//! operational; 198 is accepted only while the drive stands still.
 
 use super::axis::TURN;
 use super::drive::Drive;
@@ -12,11 +12,11 @@ use crate::units::Moment;
 /// Why a parameter was not read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// There is no such parameter, or no such drive.
+    /// No such parameter, or no such drive.
     Unknown,
-    /// It can only be read.
+    /// Read-only parameter.
     ReadOnly,
-    /// It cannot be this value.
+    /// Value out of range.
     Value,
     /// Not in this state.
     State,
@@ -45,7 +45,7 @@ impl Refused {
 }
 
 impl Drive {
-    /// A parameter by the number of drive 1.
+    /// Returns a parameter by the number of drive 1.
     pub(super) fn read(&mut self, now: Moment, number: u16) -> Option<Value> {
         let actual = self.actual(now);
         let text = |text: &str| Some(Value::Text(text.to_owned()));
@@ -59,7 +59,7 @@ impl Drive {
             107 => actual.position.into(),
             108..=115 => self.errors.get(usize::from(number - 108)).map_or(0, |code| code.code().into()),
             116..=118 => 0,
-            // Between −273 and some hundred.
+            // Between −273 and a few hundred.
             119 => self.celsius.round() as i64,
             120 => self.variant.number().into(),
             121 => return text(self.variant.row().map_or("", |row| row.name)),
@@ -83,7 +83,7 @@ impl Drive {
         number == 199 || (number, value) == (152, 1) && self.memory.get(152) == Some(0)
     }
 
-    /// A parameter by the number of drive 1 is written; what its range says has been looked at.
+    /// Writes a parameter by the number of drive 1; its range has been checked.
     pub(super) fn write(&mut self, now: Moment, number: u16, value: i64) -> Result<(), Refused> {
         self.advance(now);
         let mut out = self.out;
@@ -146,7 +146,7 @@ impl Drive {
         Ok(())
     }
 
-    /// The position is that of the shaft: between 0 and 1 turn (manual, 198).
+    /// Makes the position that of the shaft: between 0 and 1 turn (manual, 198).
     pub(super) fn forget_place(&mut self) {
         self.offset = -(self.axis.place() / TURN).floor() * TURN;
     }
@@ -157,7 +157,7 @@ impl Drive {
     }
 }
 
-/// A text as it is read: element by element, four characters each.
+/// Returns an element of a text, four characters each.
 pub(super) fn element(text: &str, element: u16) -> Option<u32> {
     let bytes = text.as_bytes();
     let part = bytes.chunks(4).nth(element.into())?;

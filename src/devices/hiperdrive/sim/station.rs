@@ -1,8 +1,9 @@
-//! The drives of an adapter or a hub together: process data, parameters, saving, the lost master.
+//! All drives of an adapter or a hub: process data, parameters, saving, the lost master.
 //!
-//! Chosen here (`U`): a connection that ends, in whatever way, is a lost master; a packet with an idle header stops as control
-//! words of 0 do; while it saves or resets, 47 is 1 and nothing is written; a reset drive has its saved parameters; of an empty
-//! place only 120 and 152 can be read, both 0; a text is read in elements of four characters, the first one lowest.
+//! Chosen here (`U`): a connection that ends, for whatever reason, is a lost master; a packet with an idle header stops as
+//! control words of 0 do; during a save or a reset, 47 is 1 and nothing is written; a reset drive has its saved parameters;
+//! of an empty place only 120 and 152 can be read, both 0; a text is read in elements of four characters, the first one
+//! lowest.
 
 use std::time::Duration;
 
@@ -29,20 +30,20 @@ pub struct Setup {
     pub serial_number: u16,
 }
 
-/// A virtual adapter or hub with its drives.
+/// Virtual adapter or hub with its drives.
 #[derive(Clone, Debug)]
 pub struct Station {
     setup: Setup,
-    /// As many as there are places.
+    /// One entry per place.
     drives: Vec<Option<Drive>>,
     memory: Memory,
     master: Option<Master>,
     busy_until: Moment,
-    /// When what was written last is answered: what resets drives is answered once it is done.
+    /// When the last write is answered: a reset of drives is answered after it.
     answers_at: Option<Moment>,
-    /// The parameter word that was taken, with the answer that stands there.
+    /// The parameter word received last, and the answer to it in the process data.
     words: (Pkw, Pkw),
-    /// The answer to it, and when it is there.
+    /// The next answer, and when it appears.
     answers: Option<(Moment, Pkw)>,
     resets: Duration,
     plate: NamePlate,
@@ -63,11 +64,11 @@ struct NamePlate {
 struct Store {
     /// Number of saves.
     count: u32,
-    /// In this one the supply is lost, counted from 1.
+    /// Number of the save in which the supply is lost, counted from 1.
     dies_in: Option<u32>,
     /// Then.
     dies_at: Option<Moment>,
-    /// It was.
+    /// The supply was lost.
     dead: bool,
 }
 
@@ -77,15 +78,15 @@ struct Master {
     heard: Moment,
 }
 
-/// Chosen, within what the manual promises.
+/// Chosen, within the time given by the manual.
 const SAVES: Duration = Duration::from_millis(150);
-/// Of all drives, where the settings do not say how long.
+/// Reset of all drives, unless the settings give another time.
 pub(super) const RESETS: Duration = Duration::from_secs(1);
-/// Of one drive.
+/// Reset of one drive.
 const DRIVE_RESETS: Duration = Duration::from_millis(300);
 
 impl Default for Setup {
-    /// An adapter with a drive HDA30A.
+    /// Creates an adapter with a drive HDA30A.
     fn default() -> Self {
         let drives = vec![Some((Variant::new(7), SpindleLoad::default()))];
         Setup { topology: Topology::Adapter, drives, serial_number: 4711 }
@@ -93,7 +94,7 @@ impl Default for Setup {
 }
 
 impl Station {
-    /// A station from the factory, switched on at the start of the clock.
+    /// Creates a station from the factory, switched on at the start of the clock.
     pub fn new(setup: Setup) -> Self {
         let places = setup.drives.iter().copied().chain(std::iter::repeat(None));
         let drives = places
@@ -118,7 +119,7 @@ impl Station {
         }
     }
 
-    /// A station as settings want it.
+    /// Creates a station from settings.
     pub fn of(config: &Config) -> Self {
         let drives = DriveNumber::of(config.topology).map(|number| config.drive(number)).collect();
         let setup = Setup { topology: config.topology, drives, serial_number: config.serial_number };
@@ -146,7 +147,7 @@ impl Station {
         self.store.count
     }
 
-    /// Returns whether it has lost its supply: nothing answers until [`power_cycle`](Self::power_cycle).
+    /// Returns whether it has lost its supply: it does not answer until [`power_cycle`](Self::power_cycle).
     pub fn is_dead(&mut self, now: Moment) -> bool {
         self.advance(now);
         self.store.dead
@@ -167,12 +168,12 @@ impl Station {
         self.hindered.is_cut_off()
     }
 
-    /// A drive that is plugged in.
+    /// Returns a drive that is plugged in.
     pub fn drive(&mut self, number: DriveNumber) -> Option<&mut Drive> {
         self.drives.get_mut(usize::from(number.get()) - 1)?.as_mut()
     }
 
-    /// A master has opened the cyclic connection. Without a packet for so long it is lost.
+    /// Notes that a master has opened the cyclic connection. Without a packet for this time, it is lost.
     pub fn open(&mut self, now: Moment, timeout: Duration) {
         self.advance(now);
         self.master = Some(Master { timeout, heard: now });
@@ -192,7 +193,7 @@ impl Station {
         self.master.is_some()
     }
 
-    /// Process data have come. Without a connection, and while drives are being reset, they are dropped.
+    /// Takes process data. Without a connection, and during a reset of drives, they are dropped.
     pub fn cyclic(&mut self, now: Moment, image: &OutImage, runs: bool) {
         self.advance(now);
         let Some(master) = &mut self.master else { return };
@@ -223,13 +224,13 @@ impl Station {
         InImage { drives: self.drives.iter_mut().map(actual).collect(), pkw: Some(self.words.1) }
     }
 
-    /// Switch S3 is turned. Away from 0 nothing moves from the bus.
+    /// Sets switch S3. At any setting but 0 nothing moves from the bus.
     pub fn turn_s3(&mut self, now: Moment, position: u8) {
         self.advance(now);
         self.present().for_each(|drive| drive.allow(position == 0));
     }
 
-    /// The supply goes and comes back.
+    /// Switches the supply off and on.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);
         self.memory.restart();
@@ -242,7 +243,7 @@ impl Station {
     /// Reads a parameter.
     ///
     /// # Errors
-    /// [`Refused`] for one that there is not, also of a drive that is not there.
+    /// [`Refused`] for an unknown parameter, or one of a missing drive.
     pub fn read(&mut self, now: Moment, number: ParameterNumber) -> Result<Value, Refused> {
         self.advance(now);
         self.answers_at = None;
@@ -376,8 +377,8 @@ impl Station {
         self.drives.iter_mut().flatten()
     }
 
-    /// Carries out what happens by itself at its moment, not at the next access: the supply is lost during a save, a
-    /// silent master times out.
+    /// Carries out timed events when they are due, not at the next access: a supply lost during a save, a master that times
+    /// out.
     fn advance(&mut self, now: Moment) {
         if let Some(at) = self.store.dies_at.take_if(|at| *at <= now) {
             self.store.dead = true;

@@ -1,4 +1,4 @@
-//! Parameter words in the process data: what a station answers to them (reference 6).
+//! Parameter words in the process data: the answers of a station (reference 6).
 
 use super::parameters::element;
 use super::station::Station;
@@ -6,7 +6,7 @@ use crate::devices::hiperdrive::protocol::{Kind, ParameterNumber, Pkw, PkwError,
 use crate::units::Moment;
 
 impl Station {
-    /// The answer to a parameter word.
+    /// Returns the answer to a parameter word.
     pub(super) fn answer(&mut self, now: Moment, request: Pkw) -> Pkw {
         let reply = |code: u16, value: u32| Pkw { pke: code << 12 | request.number(), ind: request.ind, pwe: value };
         let refused = |error: PkwError| reply(7, error.code());
@@ -19,7 +19,7 @@ impl Station {
             (Some(Task::None), _) => Pkw::default(),
             (Some(Task::Read), Kind::Text) => refused(PkwError::TYPE),
             (Some(Task::Read), _) => match self.read(now, number) {
-                // Of a smaller number its lower bits are all there is.
+                // The lower bits contain the whole of a shorter number.
                 Ok(Value::Number(value)) => {
                     reply(if wide { 2 } else { 1 }, if wide { value as u32 } else { (value as u16).into() })
                 }
@@ -47,7 +47,7 @@ impl Station {
                     Err(why) => return refused(why.error()),
                 };
                 if request.task() == Some(Task::Count) {
-                    // A text has some dozen characters.
+                    // A text has a few dozen characters.
                     return reply(6, text.len().div_ceil(4) as u32);
                 }
                 element(&text, request.ind).map_or(refused(PkwError::NO_ELEMENT), |four| reply(5, four))

@@ -1,5 +1,5 @@
-//! The user's actions on a device and its drives: edits and motion take effect at once, everything else is a job on its
-//! line or a task.
+//! The user's actions on a device and its drives: edits and motion take effect at once, everything else is a job of the
+//! session or a task.
 
 use super::action::{HiperdriveAction, Motor};
 use super::staged::Edit;
@@ -88,7 +88,7 @@ impl Unit {
             Motor::Resume => MotionRequest::Resume,
         };
         if let Err(why) = self.may(drive, wish) {
-            // The present act goes on: nothing else has begun.
+            // The present act continues: nothing else has started.
             return self.tell_of(drive, Severity::Warning, vec![why], services);
         }
         match wish {
@@ -99,7 +99,7 @@ impl Unit {
         }
     }
 
-    /// Opens the cyclic connection; from then on the drive that is shown is seen all the time.
+    /// Opens the cyclic connection; from then on the selected drive is read continuously.
     fn take_control(&mut self, services: &mut Services) {
         if let Err(why) = self.can_take() {
             services.notify(Severity::Warning, vec![why], Some(&self.session.name()));
@@ -115,12 +115,12 @@ impl Unit {
         };
     }
 
-    /// Starts a job, or says why not and gives false.
+    /// Starts a job; reports why not and returns false if it cannot.
     pub(super) fn submit(&mut self, job: HiperdriveJob, services: &mut Services) -> bool {
         self.session.submit(job, services)
     }
 
-    /// A profile was read for a file.
+    /// Handles a profile that was read for a file.
     pub(super) fn saved(&mut self, profile: HiperdriveProfile, services: &mut Services) {
         self.notice_scales(&profile.image);
         self.staged.refresh_some(&profile.image);

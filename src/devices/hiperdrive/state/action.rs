@@ -1,4 +1,4 @@
-//! The actions of an adapter or a hub that is shown, and of its drives.
+//! The actions of the selected adapter or hub, and of its drives.
 
 use std::path::PathBuf;
 
@@ -24,9 +24,9 @@ pub enum HiperdriveAction {
     SetPitch(DriveNumber, Option<Length>),
     /// Change something that is not written yet.
     Edit(Box<Edit>),
-    /// Show what a change would do.
+    /// Show the effect of a change.
     Plan(Box<Change>),
-    /// Open the cyclic connection. Nothing moves by that.
+    /// Open the cyclic connection. This moves nothing.
     Take,
     /// Stop all drives and close it.
     Give,
@@ -43,41 +43,41 @@ pub enum HiperdriveAction {
 pub enum Motor {
     /// Another state.
     Lead(Goal),
-    /// Acknowledge its fault.
+    /// Acknowledge the fault of a drive.
     Acknowledge,
     /// A jog is pressed.
     JogPress {
         direction: Direction,
-        /// The key repeats by itself: nothing begins by that.
+        /// Set for an automatic repetition of the key, which starts nothing.
         repeated: bool,
     },
-    /// A jog of the axis set-up is pressed: slow and weak, whatever is chosen for the others.
+    /// A jog of the axis set-up is pressed: slow and weak, whatever is set for other jogs.
     SlowJogPress {
         direction: Direction,
-        /// The key repeats by itself: nothing begins by that.
+        /// Set for an automatic repetition of the key, which starts nothing.
         repeated: bool,
     },
-    /// From outside the limits the next jog this way may lead further out.
+    /// Allow the next jog in this direction to lead further out from outside the limits.
     FreeOutward(Direction),
-    /// It is still held: said with every picture.
+    /// The jog is still held: sent in every frame.
     JogHold,
-    /// It was let go.
+    /// The jog was released.
     JogRelease,
-    /// This many steps from the present position; runs to its end.
+    /// Move by this many steps from the present position, to the end.
     Step {
-        /// In steps as scaled.
+        /// In scaled steps.
         by: i32,
     },
-    /// To a place.
+    /// Move to a position.
     Move {
-        /// In steps as scaled.
+        /// In scaled steps.
         target: i32,
     },
     /// Turning in speed mode.
     Run { direction: Direction, end: RunEnd },
     /// The job waits.
     Pause,
-    /// It goes on.
+    /// Resume the job.
     Resume,
     /// Stops the motion.
     Stop,
@@ -85,9 +85,9 @@ pub enum Motor {
     JogEffort(Effort),
     /// Move, step and run like this.
     MoveEffort(Effort),
-    /// The user has confirmed to know what an endless run is, or has revoked it.
+    /// The user has confirmed the warning about endless runs, or has revoked it.
     Expert(bool),
-    /// A person has looked at the limits in their own unit.
+    /// The user has checked the limits in their own unit.
     ConfirmLimits(DriveNumber),
 }
 

@@ -2,12 +2,12 @@
 //! supply. A state machine over what is read ([`DriveFacts`]) and what is to be done ([`DriveRequest`]); it does nothing itself, and
 //! no step continues before the drive confirms it.
 //!
-//! What the steps have made sure of is a chain: each result rests on facts of the drive (its scale, the pitch, the reference,
-//! the limits), and falls with them and with all that come after it, whoever changed them. The step that is shown is another
-//! matter: only a press of a person leaves it.
+//! The results of the steps form a chain: each depends on facts of the drive (its scale, the pitch, the reference, the
+//! limits), and becomes void with them, together with all later results, whoever changed them. The step shown is
+//! independent of that: it changes only when the user presses a button.
 //!
-//! Parameters are tried, which means that they are written and read back, but not saved: that is a step of its own, the last
-//! but one. The manual does not promise that what was not saved is gone without supply: what is wanted back is written back.
+//! Parameters are tried: they are written and read back, but not saved. Saving is a step of its own, the last but one. The
+//! manual does not guarantee that unsaved values are lost without supply, so the previous ones are written back.
 
 mod act;
 mod differences;
@@ -45,17 +45,17 @@ pub enum AxisStep {
     Request,
     /// Pitch and resolution become parameters 154 and 156.
     Scale,
-    /// The limits that hold for the set-up are looked at, in millimetres.
+    /// The user checks the limits for the set-up, in millimetres.
     Confirm,
-    /// The axis is moved slowly, to see which way is +.
+    /// The axis is moved slowly, to see which direction is positive.
     Jog,
-    /// The place where it stands gets its position: parameter 198.
+    /// The present position gets its number: parameter 198.
     Reference,
     /// The lower limit is taught.
     Lower,
     /// The upper limit is taught, and both are written: parameters 158 and 160.
     Upper,
-    /// It is moved between the limits, and to both.
+    /// The axis is moved to the middle of the range, and to both limits.
     Test,
     /// Everything is saved: 47 = 1.
     Save,
@@ -66,22 +66,22 @@ pub enum AxisStep {
 /// The progress of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
-    /// It is over.
+    /// The step is done.
     Done,
-    /// It counts now.
+    /// The present step.
     Now,
-    /// It was left out.
+    /// The step was skipped.
     Skipped,
-    /// It did not hold.
+    /// The step has failed.
     Failed,
-    /// It comes later.
+    /// A later step.
     Ahead,
 }
 
 /// The end of the run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// To its end.
+    /// Run to its end.
     Done,
     /// Cancelled by the user.
     Cancelled,
@@ -96,24 +96,24 @@ pub enum AxisChange {
     Position(i32),
 }
 
-/// The end of a run: how, when, and what was known then.
+/// End of a run: how, when, and the facts known then.
 #[derive(Clone, Debug)]
 pub struct RunSummary {
     pub end: End,
-    /// The time, as it is written.
+    /// Date and time as written in the report.
     pub when: String,
     seen: Box<DriveFacts>,
 }
 
-/// Limits that a person has agreed to.
+/// Limits confirmed by the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Confirmed {
     scale: Option<PositionScale>,
-    /// Those that were looked at.
+    /// The limits that were shown.
     seen: (i32, i32),
-    /// Those, or the ones that were taught and written since by a plan that was looked at.
+    /// The same, or the ones taught and written since by a reviewed plan.
     agreed: (i32, i32),
-    /// Taught ones of such a plan that was broken off: each of them may be there.
+    /// Taught limits of an interrupted plan: each of them may have been written.
     begun: Option<(i32, i32)>,
 }
 
@@ -129,22 +129,22 @@ pub struct Axis {
     chain: StepOutcomes,
     confirmed: Option<Confirmed>,
     travel: Travel,
-    /// The position that the place got, and what places count from since.
+    /// The position that was set, and the origin of positions since then.
     reference: Option<(i32, Origin)>,
     /// One that is written, and to be read.
     sets: Option<i32>,
     standstill: Standstill,
-    /// How often the position jumped at a standstill.
+    /// Number of jumps of the position at a standstill.
     jumps: u32,
     /// Steps by which the position changed while it was not read, since the reference.
     unexplained: Option<i64>,
     outcomes: [Option<Outcome>; 3],
-    /// The test move under way: where it leads, and the act that began it.
+    /// The running test move: its target, and the act that started it.
     going: Option<(TestTarget, i32, u64)>,
     saved: bool,
     power: Option<Power>,
     changes: Vec<AxisChange>,
-    /// Not all of the changes may have been made.
+    /// Set if only some of the changes may have been made.
     partly: bool,
     /// The values written back.
     returned: Vec<(u16, i64)>,
@@ -154,7 +154,7 @@ pub struct Axis {
 }
 
 impl AxisStep {
-    /// All steps in their order.
+    /// All steps in order.
     pub const ALL: [AxisStep; 10] = [
         AxisStep::Request,
         AxisStep::Scale,
@@ -173,7 +173,7 @@ impl AxisStep {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper | AxisStep::Test)
     }
 
-    /// The drive is moved by hand in it.
+    /// Returns whether the drive is moved by hand in it.
     pub const fn jogs(self) -> bool {
         matches!(self, AxisStep::Jog | AxisStep::Reference | AxisStep::Lower | AxisStep::Upper)
     }
@@ -195,7 +195,7 @@ impl AxisStep {
 }
 
 impl Axis {
-    /// Creates the guide at its first step, with what is known of the spindle.
+    /// Creates the set-up at its first step, with the known data of the spindle.
     pub fn new(drive: DriveNumber, ruler: Option<Ruler>) -> Self {
         Axis {
             drive,
@@ -226,7 +226,7 @@ impl Axis {
         self.drive
     }
 
-    /// The step that is shown.
+    /// Returns the step that is shown.
     pub const fn step(&self) -> AxisStep {
         self.step
     }
@@ -256,12 +256,12 @@ impl Axis {
         &self.changes
     }
 
-    /// A write ended early: some of the changes may not have been made.
+    /// Returns whether a write ended early: some of the changes may not have been made.
     pub const fn is_partly_written(&self) -> bool {
         self.partly
     }
 
-    /// All that was changed is saved.
+    /// Returns whether all changes are saved.
     pub const fn is_saved(&self) -> bool {
         self.saved
     }
@@ -276,7 +276,7 @@ impl Axis {
         self.travel
     }
 
-    /// The position that was set.
+    /// Returns the position that was set.
     pub fn reference(&self) -> Option<i32> {
         self.reference.map(|(position, _)| position)
     }
@@ -286,7 +286,7 @@ impl Axis {
         self.outcomes.get(place as usize).copied().flatten()
     }
 
-    /// The test move under way.
+    /// Returns the running test move.
     pub fn going(&self) -> Option<TestTarget> {
         self.going.map(|(place, ..)| place)
     }
@@ -296,7 +296,7 @@ impl Axis {
         self.power
     }
 
-    /// An earlier step whose result the drive does not have any more: it has to be done again, and all behind it.
+    /// Returns an earlier step whose result the drive no longer has: it must be repeated, with all later steps.
     pub fn fallen(&self) -> Option<AxisStep> {
         self.chain.end().filter(|step| *step < self.step)
     }
@@ -316,7 +316,7 @@ impl Axis {
         }
     }
 
-    /// The supply was off, what was saved is there, and the axis stands where it stood.
+    /// Returns whether the supply was off, the saved values are present, and the axis is where it was.
     pub fn survived(&self) -> bool {
         self.power.is_some_and(Power::is_survived)
     }
@@ -325,7 +325,7 @@ impl Axis {
         Origin::of(seen, self.jumps)
     }
 
-    /// The facts of now on which results rest.
+    /// Returns the facts of now on which results rest.
     fn basis(&self, seen: &DriveFacts) -> Preconditions {
         Preconditions {
             requested: seen.requested,

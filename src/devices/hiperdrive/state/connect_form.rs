@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// The way to the drives.
+/// Kind of connection to the drives.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HiperdriveLinkKind {
     /// Virtual drives in this program.
@@ -35,19 +35,19 @@ pub enum VirtualHub {
     Eight,
 }
 
-/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
-/// for what is usual.
+/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
+/// means the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct HiperdriveForm {
     pub kind: HiperdriveLinkKind,
     pub hub: VirtualHub,
     /// Name or address of the device.
     pub host: String,
-    /// Its TCP port; empty: 44818.
+    /// TCP port; empty: 44818.
     pub tcp_port: String,
     /// The recording.
     pub file: String,
-    /// The high byte of process data comes first.
+    /// Process data have the high byte first.
     pub big_endian: bool,
     /// Text of other parameters.
     pub typed: Typed,
@@ -78,7 +78,7 @@ impl VirtualHub {
 impl FormModel for HiperdriveForm {
     type Finder = DiscoveryFinder;
 
-    // The virtual drive as the window begins with it: an adapter.
+    // The virtual drive initially offered by the window: an adapter.
     fn usual() -> LinkUrl {
         LinkUrl::sim()
     }
@@ -115,7 +115,7 @@ impl FormModel for HiperdriveForm {
 }
 
 impl HiperdriveForm {
-    /// The parameters that are typed: those of the virtual device, where it is one, and those of the link.
+    /// Returns the parameters to enter: those of the virtual device, if it is one, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == HiperdriveLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
@@ -132,7 +132,7 @@ impl HiperdriveForm {
         Config::entries().into_iter().filter(has).collect()
     }
 
-    /// Fills in the entry of a parameter; false where there is none that can show it.
+    /// Fills in the entry of a parameter; returns false if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if (name, self.kind) == ("hub", HiperdriveLinkKind::Virtual) {
             let hub = VirtualHub::of_word(value);

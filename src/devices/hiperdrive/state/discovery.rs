@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::procedures::{DiscoveredDevice, Error, discover};
 use crate::devices::hiperdrive::state::explain as words;
 use crate::link::{Cancel, Clock, RealClock, UdpBroadcast};
 
-/// A question to all, and its answers.
+/// Discovery request, and its replies.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Discovery {
     /// Number of the discovery: replies to an earlier one are dropped.
@@ -25,7 +25,7 @@ pub struct Discovery {
     pub found: Option<Result<Vec<FoundDevice>, Text>>,
 }
 
-/// A device that has answered.
+/// Device that has replied.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FoundDevice {
     /// Address of the reply.
@@ -33,9 +33,9 @@ pub struct FoundDevice {
     /// Port of explicit messages.
     pub port: u16,
     pub name: String,
-    /// Its serial number in its identity object.
+    /// Serial number from the identity object.
     pub serial_number: u32,
-    /// It is of the maker of HIPERDRIVE.
+    /// Set if its vendor is the maker of HIPERDRIVE.
     pub is_hiperdrive: bool,
 }
 
@@ -67,7 +67,7 @@ impl Discovery {
     }
 }
 
-/// Asks who is there in this network, in place of a question to all who are in reach. Given by tests only.
+/// Discovery to use in place of the broadcast. Set by tests only.
 #[derive(Clone)]
 pub struct Discover(Arc<dyn Fn() -> Result<Vec<DiscoveredDevice>, Error> + Send + Sync>);
 
@@ -84,7 +84,7 @@ impl fmt::Debug for Discover {
     }
 }
 
-/// Asks all who are in reach, and waits for a second.
+/// Broadcasts a discovery request, and waits for a second.
 ///
 /// # Errors
 /// The request could not be sent.
@@ -94,18 +94,18 @@ fn ask_all() -> Result<Vec<DiscoveredDevice>, Error> {
     discover(&mut shout, &*clock, &Cancel::default())
 }
 
-/// Asks who is there in this network.
+/// Discovers devices on this network.
 #[derive(Default)]
 pub struct DiscoveryFinder {
-    /// The question, and its answers.
+    /// The request, and its replies.
     pub discovery: Option<Discovery>,
 }
 
 /// An action on the result.
 pub enum DiscoveryAction {
-    /// Ask who is there.
+    /// Broadcast a discovery request.
     Discover,
-    /// Fill in the device that answered; it is connected by the button for that.
+    /// Fill in a device that replied; the Connect button connects it.
     Choose(usize),
 }
 

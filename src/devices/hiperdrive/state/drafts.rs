@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Document;
 use crate::store::DeviceKey;
 
-/// The edits, each with its number.
+/// The edits by number.
 pub(crate) type Edits = Vec<SavedEdit>;
 
 impl HasSession for Unit {

@@ -26,8 +26,8 @@ use crate::worker::{OpenError, Session};
 
 /// Default interval of reading a drive's position.
 const PACE: Duration = Duration::from_millis(200);
-/// Text id of the notice that the limits of a drive under control cannot be read; it ends once they were read, or are
-/// not needed.
+/// Text id of the notice that the limits of a drive under control cannot be read; it ends once they are read, or are not
+/// needed.
 const RULES: &str = "hd_end.rules";
 
 /// Returns whether a drive in this state moves only after an acknowledgement.
@@ -35,9 +35,9 @@ const fn has_failed(state: State) -> bool {
     matches!(state, State::Fault | State::Locked)
 }
 
-/// The part of a session that stays outside its thread.
+/// The part of a session outside its thread.
 pub struct DriveHandle {
-    /// Moves its drives.
+    /// Handle that moves its drives.
     pub(super) motion: Motion,
     /// The virtual device.
     pub(super) target: Option<Target>,
@@ -90,8 +90,7 @@ impl Kind for Hiperdrive {
 }
 
 impl Unit {
-    /// Requests what is needed as soon as the line is free: why a drive has failed, and the position of the one that is
-    /// shown.
+    /// Requests missing data as soon as the line is free: why a drive has failed, and the position of the selected drive.
     fn ask_on(&mut self, services: &mut Services) {
         if self.survey.is_none() || !self.session.is_ready() {
             return;
@@ -117,8 +116,8 @@ impl Unit {
 
     fn control_lost(&mut self, services: &mut Services) {
         self.moves.stop();
-        // The last data of the drives came before the loss, and their present state is not known; also what waits to be
-        // taken.
+        // The last data of the drives, including those not yet taken, are from before the loss; their present state is not
+        // known.
         self.take_samples_and_frames();
         self.forget_readings();
         (self.is_stale, self.looks_at_all) = (true, true);
@@ -127,7 +126,7 @@ impl Unit {
         services.notify(Severity::Error, vec![text], Some(&self.session.name()));
     }
 
-    /// A fault that was told is over once no drive has one: they are told alike, whichever has it.
+    /// Ends the notice of a fault once no drive has one: the notice is the same for all of them.
     fn settle_fault(&self, failed: bool, services: &mut Services) {
         let fails = |drive: &DriveNumber| self.moves.actual(*drive).is_some_and(|own| has_failed(own.status.state()));
         if !failed && !self.drives().iter().any(fails) {
@@ -144,7 +143,7 @@ impl Unit {
         self.tell_of(drive, weight, vec![words], services);
     }
 
-    /// Takes the position of a drive; it is recorded for the drive shown.
+    /// Takes the position of a drive, and records it for the selected drive.
     fn see(&mut self, reading: DriveReading) {
         self.take_reading(reading);
         let drive = reading.drive;
@@ -176,7 +175,7 @@ impl SessionEvents for Unit {
         super::trace::meaning(frame)
     }
 
-    /// Takes the events of the line since the last call, and renews what the window has to keep alive.
+    /// Takes the events of the line since the last call, and refreshes the acts that the window must keep alive.
     fn pump(&mut self, services: &mut Services) {
         let before: Vec<_> = self.drives().into_iter().map(|drive| (drive, self.state(drive))).collect();
         self.moves.beat();
@@ -212,7 +211,7 @@ impl SessionEvents for Unit {
         match output {
             HiperdriveOutput::Hello(identity) => {
                 self.session.just_connected = false;
-                // The plugged-in drives may have changed since.
+                // The connected drives may have changed since.
                 if self.is_another(&identity) || self.survey.is_none() || !self.has_polled {
                     self.submit(HiperdriveJob::Survey, services);
                 }
@@ -251,8 +250,8 @@ impl SessionEvents for Unit {
                     services.log.settle(lost, Some(&self.session.name()));
                 }
                 self.poll();
-                // Another master may have changed limits and scaling since they were read: nothing moves by the old
-                // ones. They are read as soon as the line is free.
+                // Another master may have changed limits and scaling since they were read: no motion uses the old ones.
+                // They are read as soon as the line is free.
                 (self.is_stale, self.looks_at_all) = (true, true);
             }
             HiperdriveOutput::Given => {
@@ -263,7 +262,7 @@ impl SessionEvents for Unit {
                 self.looks_at_all |= self.is_stale;
             }
             HiperdriveOutput::Watched(drive) => self.watched = drive,
-            // The command line asks for it.
+            // Only the command line requests it.
             HiperdriveOutput::Identity(_) => {}
         }
     }
@@ -281,7 +280,7 @@ impl SessionEvents for Unit {
     fn ended_early(&mut self, how: EarlyEnd<JobError>, texts: &[Text], _: &mut Services) -> bool {
         match how {
             EarlyEnd::Failed(_) => self.moves.stop(),
-            // Values required before a controlled drive moves are read regardless of what ended the job.
+            // Values required before a controlled drive moves are read, however the job ended.
             EarlyEnd::Cancelled(_) => self.looks_at_all |= self.is_stale && self.moves.is_open(),
             EarlyEnd::Lost => {}
         }

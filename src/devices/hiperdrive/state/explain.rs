@@ -1,5 +1,4 @@
-//! A HIPERDRIVE in words: the errors of jobs with it, what its states, bits, errors and parameters are called, how a motion
-//! ended.
+//! Texts of HIPERDRIVE: errors of jobs, names of states, bits, errors and parameters, and how a motion ended.
 
 mod check;
 mod entry;
@@ -25,7 +24,7 @@ use crate::app::explain::{link, plain};
 use crate::devices::hiperdrive::jobs::{JobError, JobStep};
 use crate::devices::hiperdrive::procedures::Error;
 
-/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![device(error)],
@@ -37,7 +36,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// The wire itself failed, so that nothing more can be asked over it: why.
+/// Returns why the connection failed, if nothing more can be requested over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),

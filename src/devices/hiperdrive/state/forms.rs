@@ -1,4 +1,4 @@
-//! Numbers that are typed for a drive, and what they are to do.
+//! Numbers entered for a drive, and the values or edits that they mean.
 
 use super::rows::Row;
 use super::ruler::{Measure, PositionRangeError};
@@ -9,10 +9,10 @@ use crate::devices::hiperdrive::protocol::{Length, Percent, PositionScale, Scale
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// Parses the distance of a step; `sign` is −1 for back.
+/// Parses the distance of a step; `sign` is −1 for backward.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why the entry is invalid.
 pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     if steps == 0 {
@@ -21,10 +21,10 @@ pub fn step(unit: &Unit, text: &str, measure: Measure, sign: i32) -> Result<i32,
     Ok(steps.saturating_mul(sign))
 }
 
-/// A place as it was typed, within the limits of the drive that is shown.
+/// Returns a place as it was typed, within the limits of the drive that is shown.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why the entry is invalid.
 pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let steps = steps(unit, text, measure)?;
     let place = |steps| unit.place(unit.drive(), steps);
@@ -38,10 +38,10 @@ pub fn target(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     }
 }
 
-/// A place as it was typed, whatever the limits are: for those themselves, and for the position that is set.
+/// Parses a position, independent of the limits: for the limits themselves, and for setting the position.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why the entry is invalid.
 pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     let value = number(text).ok_or_else(|| TEXTS.text("hd_entry.number").with("entry", text.trim()))?;
     if measure == Measure::Steps && value.fract() != 0.0 {
@@ -57,20 +57,20 @@ pub fn steps(unit: &Unit, text: &str, measure: Measure) -> Result<i32, Text> {
     })
 }
 
-/// A share that was typed, from 1 to 100.
+/// Returns a share that was typed, from 1 to 100.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why the entry is invalid.
 pub fn percent(text: &str) -> Result<Percent, Text> {
     let digits = text.trim().trim_end_matches('%').trim();
     let percent = digits.parse().ok().filter(|percent| *percent >= 1).and_then(Percent::new);
     percent.ok_or_else(|| TEXTS.text("hd_entry.percent").with("entry", text.trim()))
 }
 
-/// A parameter as it was typed, decimal or with `0x` in front. An empty entry of a profile says nothing of it.
+/// Parses a parameter, decimal or with `0x`. An empty entry removes it from a profile.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why the entry is invalid.
 pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let digits = digits.replace('\u{2212}', "-");
@@ -86,10 +86,10 @@ pub fn parameter(row: &Row, text: &str) -> Result<Edit, Text> {
     checked.map(|value| Edit::Set(row.number, value)).map_err(|error| words::out_of_range(&error))
 }
 
-/// Millimetres that were typed, above 0 and exact to the nanometre.
+/// Returns the millimetres that were typed, above 0 and exact to the nanometre.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why the entry is invalid.
 pub fn length(text: &str) -> Result<Length, Text> {
     let millimetres = number(text).filter(|own| *own > 0.0 && *own <= 1e6);
     let nanometres = millimetres.map(|own| (own * 1e6).round() as u64).filter(|own| *own > 0);
@@ -98,10 +98,10 @@ pub fn length(text: &str) -> Result<Length, Text> {
         .ok_or_else(|| TEXTS.text("hd_entry.length").with("entry", text.trim()))
 }
 
-/// The scale with which a step of a drive is so long on its spindle.
+/// Returns the scale that gives a step of a drive this length on its spindle.
 ///
 /// # Errors
-/// What cannot be, in words.
+/// Why there is none.
 pub fn scale(pitch: Length, step: Length) -> Result<PositionScale, Text> {
     PositionScale::for_spindle(pitch, step).map_err(|error| match error {
         ScaleError::Zero | ScaleError::NoLength => TEXTS.text("hd_entry.length").with("entry", 0),

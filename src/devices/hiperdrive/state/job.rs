@@ -1,4 +1,4 @@
-//! Jobs in words.
+//! Texts of jobs.
 
 use crate::app::Text;
 use crate::devices::hiperdrive::jobs::HiperdriveJob;

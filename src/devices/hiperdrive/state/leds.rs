@@ -1,4 +1,4 @@
-//! The meaning of the LEDs: the user picks what is lit, and sees the meaning and what to do. It needs no device.
+//! The meaning of the LEDs: the user selects the visible states, and sees their meaning and the remedy. Requires no device.
 
 use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::protocol::{BusLamp, BusLight, DriveLight, LedSubject, PortLight, Topology};
@@ -7,7 +7,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 /// The LEDs as entered by the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leds {
-    /// It is a hub; else a bus adapter.
+    /// Set for a hub, clear for a bus adapter.
     pub hub: bool,
     /// Switch S3 of a hub: 0 for all drives, else the drive that the RS485 LED shows.
     pub s3: u8,
@@ -35,12 +35,12 @@ pub enum Led {
 pub struct LedMeaning {
     pub severity: Severity,
     pub meaning: Text,
-    /// What to do.
+    /// The remedy.
     pub remedy: Text,
 }
 
 impl Default for Leds {
-    /// All is well.
+    /// Creates the LEDs of a device without errors.
     fn default() -> Self {
         Leds {
             hub: true,
@@ -54,7 +54,7 @@ impl Default for Leds {
 }
 
 impl Led {
-    /// All of them, as they are drawn.
+    /// All LEDs in drawing order.
     pub const ALL: [Led; 4] = [Led::Drives, Led::Bus(BusLamp::Module), Led::Bus(BusLamp::Network), Led::Port];
 
     /// Returns the label printed beside the LED.
@@ -68,7 +68,7 @@ impl Led {
 }
 
 impl Leds {
-    /// All well, at a device of this kind.
+    /// Creates the LEDs of a device of this kind, without errors.
     pub fn of(topology: Topology) -> Self {
         Leds { hub: topology != Topology::Adapter, ..Leds::default() }
     }
@@ -113,7 +113,7 @@ impl Leds {
         LedMeaning { severity, meaning: TEXTS.text(meaning), remedy: TEXTS.text(remedy) }
     }
 
-    /// Returns the state of an LED in words.
+    /// Returns the state of an LED as text.
     pub fn state_text(&self, lamp: Led) -> Text {
         TEXTS.text(match lamp {
             Led::Drives => match self.drives {
@@ -151,13 +151,13 @@ const BUS: [BusLight; 6] = [
     BusLight::Alternating,
 ];
 
-/// The one behind `now`, the first behind the last.
+/// Returns the element after `now`, the first after the last.
 fn next<T: Copy + PartialEq>(all: &[T], now: T) -> T {
     let at = all.iter().position(|own| *own == now).map_or(0, |at| at + 1);
     all.get(at).or(all.first()).copied().unwrap_or(now)
 }
 
-/// The ids of the texts of meaning and remedy: in English they are the protocol's words.
+/// Severity, and ids of the texts of meaning and remedy: in English they are the protocol's words.
 type Row = (Severity, &'static str, &'static str);
 
 fn drives(subject: LedSubject, light: DriveLight) -> Row {

@@ -1,5 +1,5 @@
-//! The HIPERDRIVE tab: what is known of an adapter or a hub and its drives, what is wanted of them beside that, and the
-//! drives as a person moves them. Complete without a window.
+//! The HIPERDRIVE tab: the known data of an adapter or a hub and its drives, the user's edits, and the motion of the
+//! drives. Complete without a window.
 
 mod act;
 mod action;

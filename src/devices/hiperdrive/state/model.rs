@@ -1,4 +1,4 @@
-//! HIPERDRIVE drives behind an adapter or a hub among the devices of the studio.
+//! Implementation of the studio's device traits for HIPERDRIVE drives behind an adapter or a hub.
 
 use std::convert::Infallible;
 
@@ -33,7 +33,7 @@ impl DeviceModel for Unit {
         if let Some(line) = self.session.line() {
             services.brakes.add(Box::new(motion), line.stopper());
         }
-        // The device is asked who it is, then for all it has: nothing is set, and nothing moves.
+        // The identity is read first, then everything else: nothing is set, and nothing moves.
         self.submit(HiperdriveJob::Hello, services);
     }
 
@@ -86,7 +86,7 @@ impl DeviceModel for Unit {
         self.moves.stop();
         let pace = self.session.line.as_ref().and_then(LiveSession::polling).filter(|_| self.moves.is_open());
         self.session.stop(services);
-        // Under control the drives stay visible.
+        // Under control the drives are polled continuously.
         if let (Some(pace), Some(line)) = (pace, &mut self.session.line) {
             line.poll(Some(pace));
         }

@@ -1,8 +1,8 @@
-//! The drives as a person moves them from the window: what is held, what is under way, how the last act ended. What a drive
-//! is sent the dead-man behind [`Motion`] alone decides; here is its heartbeat, and what ends it at once.
+//! The motion of the drives from the window: the held button, the running act, how the last act ended. The dead-man behind
+//! [`Motion`] alone decides what a drive is sent; this module sends its refreshes, and ends them at once when required.
 //!
-//! A jog is kept alive by what holds it, which says so with every picture; a move, a step and a run by the pictures
-//! themselves. A window that stands still says nothing, and 250 ms later everything stands.
+//! A jog is refreshed by the button that holds it, in every frame; a move, a step and a run by the frames themselves. A
+//! window that hangs refreshes nothing, and the drives stop 250 ms later.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,22 +14,22 @@ use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Setpoint, State};
 use crate::units::Moment;
 
-/// The drives of a session as a person moves them.
+/// Motion of a session's drives by the user.
 pub struct Moves {
     /// While the session is open.
     motion: Option<Motion>,
     /// The state of the drives at the last update.
     view: MotionSnapshot,
     act: Option<Act>,
-    /// Speed and torque of jogs and moves, where they differ from the default.
+    /// Speed and torque of jogs and moves, if they differ from the default.
     jogs: BTreeMap<DriveNumber, Effort>,
     jobs: BTreeMap<DriveNumber, Effort>,
-    /// Drives for which a person has allowed an endless run.
+    /// Drives for which the user has allowed an endless run.
     experts: BTreeSet<DriveNumber>,
-    /// The way further out from outside the limits, freed for the next press, and used by the one that is held.
+    /// The way further out from outside the limits, enabled for the next press; the press in progress uses it.
     freed: Option<(DriveNumber, Direction)>,
     used: Option<(DriveNumber, Direction)>,
-    /// The limits of the drives at the last update, and its time. Limits to be confirmed outlive a session.
+    /// Limits of the drives at the last update, and its time. Unconfirmed limits outlive a session.
     limits: BTreeMap<DriveNumber, DriveLimits>,
     looked: Moment,
     /// Drives whose limits have changed since the last query.
@@ -50,12 +50,12 @@ struct Act {
     is_reported: bool,
 }
 
-/// The kind of an act, which determines how it is kept alive.
+/// Kind of an act, which determines how it is refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     /// A button or a key that is held.
     Held,
-    /// Every picture; it has no end of its own.
+    /// By every frame; it does not end by itself.
     Run,
     /// Every picture.
     Other,
@@ -81,7 +81,7 @@ impl Default for Moves {
 }
 
 impl Moves {
-    /// Begins a session. Unconfirmed limits stay so, and the endless run is not enabled yet.
+    /// Begins a session. Unconfirmed limits stay unconfirmed, and the endless run is not allowed yet.
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed() {
             motion.unconfirm_limits(drive);
@@ -94,7 +94,7 @@ impl Moves {
         self.motion = Some(motion);
     }
 
-    /// The session is gone, and every motion with it.
+    /// Ends the session with all motion.
     pub(super) fn end(&mut self) {
         self.stop();
         self.look();
@@ -113,7 +113,7 @@ impl Moves {
         }
     }
 
-    /// Looks at what the drives say, and keeps alive what pictures keep alive. Called for every picture.
+    /// Takes the drives' state, and refreshes the acts that frames keep alive. Called in every frame.
     pub(super) fn beat(&mut self) {
         if let (Some(motion), Some(act)) = (&self.motion, &self.act)
             && act.kind != Kind::Held
@@ -125,7 +125,7 @@ impl Moves {
         self.look();
     }
 
-    /// Looks at what the drives say, and at what they may do.
+    /// Takes the drives' state, and their limits.
     pub(super) fn look(&mut self) {
         let Some(motion) = &self.motion else { return };
         let DrivesSnapshot { at, view, limits } = motion.glance();
@@ -139,12 +139,12 @@ impl Moves {
         (self.looked, self.view, self.limits) = (at, view, limits);
     }
 
-    /// Drives whose limits have changed since this was asked last: here, or by another master.
+    /// Returns the drives whose limits have changed since the last query: by this program or by another master.
     pub(super) fn take_limits_changed(&mut self) -> BTreeSet<DriveNumber> {
         std::mem::take(&mut self.limits_changed)
     }
 
-    /// The cyclic connection was opened since this was asked last.
+    /// Returns whether the cyclic connection was opened since this was asked last.
     pub(super) fn take_taken(&mut self) -> bool {
         std::mem::take(&mut self.taken)
     }
@@ -165,7 +165,7 @@ impl Moves {
     }
 
     fn intend(&mut self, drive: DriveNumber, wish: MotionRequest, kind: Kind) -> Option<u64> {
-        // For one press: whatever is asked for next needs it freed again.
+        // For one press: the next request needs it enabled again.
         self.freed = None;
         let number = self.motion.as_ref()?.intend(drive, wish);
         let moves = wish.moves() || wish == MotionRequest::Pause;
@@ -173,7 +173,7 @@ impl Moves {
         Some(number)
     }
 
-    /// A jog is pressed. While one is held, nothing begins.
+    /// Starts a jog. While one is held, nothing starts.
     pub(super) fn press(&mut self, drive: DriveNumber, jog: MotionRequest) {
         if !self.is_held() {
             self.intend(drive, jog, Kind::Held);
@@ -194,12 +194,13 @@ impl Moves {
         }
     }
 
-    /// The jog was let go, or can be seen no more: the drive stops now, not at the next look.
+    /// Ends the jog when it is released, or when its button is no longer visible: the drive stops now, not at the next
+    /// update.
     pub(crate) fn release(&mut self) {
         self.stop_those(|kind| kind == Kind::Held);
     }
 
-    /// Lets go of everything without an end: a jog, a run.
+    /// Ends every act that does not end by itself: a jog, a run.
     pub(crate) fn let_go(&mut self) {
         self.freed = None;
         self.stop_those(|kind| matches!(kind, Kind::Held | Kind::Run));
@@ -210,28 +211,29 @@ impl Moves {
         if let Some(motion) = self.motion.as_ref().filter(|motion| motion.is_latest(act.number)) {
             motion.intend(act.drive, MotionRequest::Stop);
         }
-        // Its end is still to be told; nothing keeps it alive any more.
+        // Its end is still to be reported; nothing refreshes it any more.
         self.act = Some(Act { kind: Kind::Other, ..act });
     }
 
-    /// A person frees the way further out, for one press.
+    /// Enables the way further out for one press.
     pub(super) fn free(&mut self, drive: DriveNumber, direction: Direction) {
         self.freed = Some((drive, direction));
     }
 
-    /// A jog this way may lead further out: the next one, or the one that is held.
+    /// Returns whether a jog in this direction may lead further out: the next one, or the one being held.
     pub fn is_freed(&self, drive: DriveNumber, direction: Direction) -> bool {
         let way = Some((drive, direction));
         self.freed == way || self.used == way && self.is_held()
     }
 
-    /// A move, a step, another state: kept alive by pictures. The number of the act; `None` while the session is not open.
+    /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the act; `None` while the
+    /// session is not open.
     pub(super) fn want(&mut self, drive: DriveNumber, wish: MotionRequest) -> Option<u64> {
         let kind = if matches!(wish, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
         self.intend(drive, wish, kind)
     }
 
-    /// All drives stop, whatever moves them.
+    /// Stops all drives, whatever moves them.
     pub(crate) fn stop(&mut self) {
         self.freed = None;
         if let Some(motion) = &self.motion {
@@ -242,7 +244,7 @@ impl Moves {
         }
     }
 
-    /// The limits of a drive are to be confirmed before it moves.
+    /// Requires that the limits of a drive are confirmed before it moves.
     pub(super) fn unconfirm(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().unconfirm();
         if let Some(motion) = &self.motion {
@@ -250,14 +252,14 @@ impl Moves {
         }
     }
 
-    /// A person confirms the limits as they were shown. Returns whether that counts.
+    /// Confirms the limits as shown to the user. Returns whether this took effect.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, seen: LimitsSeen) -> bool {
         let counts = self.motion.as_ref().is_some_and(|motion| motion.confirm_limits(drive, seen));
         self.look();
         counts
     }
 
-    /// Drives whose limits are to be confirmed.
+    /// Returns the drives whose limits must be confirmed.
     pub fn unconfirmed(&self) -> BTreeSet<DriveNumber> {
         self.limits.iter().filter(|(_, own)| own.is_unconfirmed()).map(|(drive, _)| *drive).collect()
     }
@@ -281,12 +283,12 @@ impl Moves {
         }
     }
 
-    /// The handle of the session's motion; `None` while it is not open.
+    /// Returns the handle of the session's motion; `None` while it is not open.
     pub fn motion(&self) -> Option<&Motion> {
         self.motion.as_ref()
     }
 
-    /// The cyclic connection is open: drives can be moved.
+    /// Returns whether the cyclic connection is open, so that drives can be moved.
     pub fn is_open(&self) -> bool {
         self.view.open
     }
@@ -326,12 +328,12 @@ impl Moves {
         self.limits.get(&drive)
     }
 
-    /// A motion of a drive may begin by what was read of its limits at the last look.
+    /// Returns whether a motion of a drive may start by the limits at the last update.
     pub(super) fn are_limits_valid(&self, drive: DriveNumber) -> bool {
         self.limits(drive).is_some_and(|limits| limits.is_valid(self.looked))
     }
 
-    /// The limits of a drive are to be read before it moves.
+    /// Requires that the limits of a drive are read before it moves.
     pub(super) fn doubt_limits(&mut self, drive: DriveNumber) {
         self.limits.entry(drive).or_default().doubt(self.looked);
         if let Some(motion) = &self.motion {
@@ -342,18 +344,18 @@ impl Moves {
     /// Returns why a drive may not move.
     pub fn locks(&self, drive: DriveNumber) -> Vec<Lock> {
         let mut locks = self.permit(drive).map(|permit| permit.locks).unwrap_or_default();
-        // Without control nothing moves, the limits are read with it, and a slow answer ends nothing.
+        // Without control nothing moves: the limits are read when it is taken, and a slow reply ends nothing.
         locks.retain(|lock| !matches!(lock, Lock::Outdated | Lock::NoAnswer) || self.view.open);
         locks
     }
 
-    /// A jog is held.
+    /// Returns whether a jog is held.
     pub fn is_held(&self) -> bool {
         let held = self.act.filter(|act| act.kind == Kind::Held && !self.has_ended(act.number, act.drive));
         held.is_some_and(|act| self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number)))
     }
 
-    /// The act by which a drive turns while its pad is held, and which way.
+    /// Returns the act of the held jog button of a drive, and its direction.
     pub fn held(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
@@ -374,7 +376,7 @@ impl Moves {
         self.view.open && self.view.drives.iter().any(moves) || self.is_held() || self.is_under_way()
     }
 
-    /// An act is under way that has to be kept alive.
+    /// Returns whether an act is running that must be refreshed.
     pub fn is_under_way(&self) -> bool {
         let own = |act: &Act| {
             let is_latest = self.motion.as_ref().is_some_and(|motion| motion.is_latest(act.number));
@@ -383,12 +385,12 @@ impl Moves {
         self.act.as_ref().is_some_and(own)
     }
 
-    /// A drive moves, is about to, or is led to where it may.
+    /// Returns whether a drive is moving, or is being led to another state.
     pub fn is_drive_moving(&self, drive: DriveNumber) -> bool {
         self.drive(drive).is_some_and(moves) || self.mover() == Some(drive)
     }
 
-    /// The drive that is being moved from here, or whose job waits. Whatever is asked of a drive ends that.
+    /// Returns the drive that is being moved by this window, or whose job is paused. Any other request ends that.
     pub fn mover(&self) -> Option<DriveNumber> {
         let asked = self.act.filter(|act| act.moves && self.is_under_way()).map(|act| act.drive);
         let has_job =
@@ -426,7 +428,7 @@ impl Moves {
         Some(Effort { speed: own.sent.speed, torque: own.sent.torque })
     }
 
-    /// A person has allowed an endless run of a drive.
+    /// Returns whether the user has allowed an endless run of a drive.
     pub fn is_expert(&self, drive: DriveNumber) -> bool {
         self.experts.contains(&drive)
     }

@@ -1,5 +1,5 @@
-//! The network settings of a device: its TCP/IP object and the edited values, the effect of the switches S1 and S2, and
-//! the result at the next power-up (reference 1). Nothing is requested of the device here.
+//! The network settings of a device: its TCP/IP object and the edited values, the effect of the switches S1 and S2, and the
+//! result at the next power-up (reference 1). Nothing is requested of the device here.
 
 use core::net::Ipv4Addr;
 
@@ -26,17 +26,17 @@ pub struct Form {
     pub domain: String,
 }
 
-/// From where a device has its address once it is switched on again.
+/// Source of the address after the next power-up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerUp {
-    /// The switches say it.
+    /// Set by the switches.
     Fixed(Ipv4Addr),
     Stored(Ipv4Addr),
-    /// It should be stored, and none is.
+    /// A stored address is selected, but none is stored.
     NothingStored,
-    /// A BOOTP server says it.
+    /// Assigned by a BOOTP server.
     Bootp,
-    /// A DHCP server says it.
+    /// Assigned by a DHCP server.
     Dhcp,
     /// The device knows.
     Unknown(u8),
@@ -45,10 +45,10 @@ pub enum PowerUp {
 /// A row of the table of switch positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// The two digits: `0`, `1…96`.
+    /// Digits of the switches: `0`, `1…96`.
     pub digits: &'static str,
     pub meaning: Text,
-    /// They stand so.
+    /// The present setting.
     pub is_now: bool,
 }
 
@@ -67,7 +67,7 @@ impl Form {
         }
     }
 
-    /// Addresses are typed only where they are stored; elsewhere a server says them.
+    /// Returns whether addresses are entered: only stored ones are; otherwise a server assigns them.
     pub fn has_addresses(&self) -> bool {
         self.source == AddressSource::Stored
     }
@@ -75,7 +75,7 @@ impl Form {
     /// Returns the edited settings. If a server assigns the addresses, the present ones stay.
     ///
     /// # Errors
-    /// In words.
+    /// Why an entry is invalid.
     pub fn settings(&self, now: &NetworkSettings) -> Result<NetworkSettings, Text> {
         if !self.has_addresses() {
             return Ok(NetworkSettings { source: self.source, interface: now.interface.clone() });
@@ -127,7 +127,7 @@ pub fn refused(error: &AddressError) -> Text {
 }
 
 impl PowerUp {
-    /// Returns the address with the switches and settings as they are. Unreadable switches count as 0: not all devices
+    /// Returns the source of the address with these switches and settings. Unreadable switches count as 0: not all devices
     /// have any.
     pub fn of(switch: Option<AddressSwitch>, settings: &NetworkSettings) -> Self {
         let stored = match settings.interface.address {
@@ -148,7 +148,7 @@ impl PowerUp {
         }
     }
 
-    /// The address that it will have, where that is known now.
+    /// Returns the future address, if it is known now.
     pub const fn address(self) -> Option<Ipv4Addr> {
         match self {
             PowerUp::Fixed(address) | PowerUp::Stored(address) => Some(address),
@@ -179,7 +179,7 @@ pub fn consequences(
     let after = PowerUp::of(switch, wanted);
     let mut texts = Vec::new();
     let decides = switch.filter(|own| *own != AddressSwitch::Object);
-    // At 97 addresses count, and where they come from does not.
+    // At 97 the stored addresses count, and their source does not.
     let is_lost = decides.is_some_and(|own| own != AddressSwitch::Stored || now.source != wanted.source);
     if let Some(own) = decides.filter(|_| is_lost) {
         texts.push((Severity::Warning, TEXTS.text("hd_net.switch_decides").with("digits", own.number())));
@@ -215,7 +215,7 @@ pub fn positions(switch: Option<AddressSwitch>) -> [Position; 5] {
     ]
 }
 
-/// Returns the source of an address in words.
+/// Returns the source of an address as text.
 pub fn source(own: AddressSource) -> Text {
     match own {
         AddressSource::Stored => TEXTS.text("hd_net.source_stored"),
@@ -242,7 +242,7 @@ mod tests {
         NetworkSettings { source, interface }
     }
 
-    /// Manual 5: the five ways in which the address is given.
+    /// Manual 5: the five ways to get an address.
     #[test]
     fn the_switches_decide_where_the_address_comes_from() {
         let stored = Ipv4Addr::new(10, 0, 0, 7);
@@ -288,7 +288,7 @@ mod tests {
         ] {
             assert_eq!(form(address, mask, gateway), Err(id), "{address} {mask} {gateway}");
         }
-        // A server says them: nonsense that stands there does not count.
+        // A server assigns the address: an invalid entry does not matter.
         let dhcp = Form { address: "nonsense".to_owned(), ..Form::of(&now) };
         assert_eq!(dhcp.settings(&now), Ok(now.clone()));
         let named = Form { source: AddressSource::Stored, domain: "two words".to_owned(), ..Form::of(&now) };

@@ -1,5 +1,5 @@
-//! A drive outside its limits: how far out, which way leads back in, and the way further out that a person can free for one
-//! press, because a wrong reference can make that the only way.
+//! A drive outside its limits: how far out, the direction back in, and the way further out that the user can enable for one
+//! press, because with a wrong reference it can be the only way.
 
 use super::unit::Unit;
 use crate::app::services::Services;
@@ -14,11 +14,11 @@ use crate::devices::hiperdrive::state::TEXTS;
 pub struct OutsideSeen {
     /// How it is outside.
     pub outside: Outside,
-    /// In steps as scaled.
+    /// In scaled steps.
     pub position: i32,
     /// Parameters 158 and 160.
     pub limits: (i32, i32),
-    /// Farther than a drive repeats a position: no mere end of the range.
+    /// Farther outside than the repeatability of a drive, so not only at the end of its range.
     pub is_far: bool,
 }
 
@@ -37,7 +37,7 @@ impl Unit {
         Some(OutsideSeen { outside, position: actual.position, limits, is_far })
     }
 
-    /// A drive outside its limits, in words; `None` inside, and at the end of its range.
+    /// Returns the message for a drive outside its limits; `None` inside, and at the end of its range.
     pub fn outside_words(&self, drive: DriveNumber) -> Option<Text> {
         let own = self.outside(drive).filter(|own| own.is_far)?;
         let id = if own.outside == Outside::Unclear { "hd_outside.unclear" } else { "hd_outside.words" };
@@ -48,24 +48,24 @@ impl Unit {
     /// Returns whether a drive may be jogged in this direction now.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn may_jog(&self, drive: DriveNumber, direction: Direction) -> Result<(), Text> {
         let outward = self.moves.is_freed(drive, direction);
         self.may(drive, MotionRequest::Jog { direction, effort: Effort::JOG, outward })
     }
 
-    /// This way may lead further out from outside the limits, and is not freed.
+    /// Returns whether this direction may lead further out from outside the limits, and is not enabled.
     pub fn is_blocked(&self, drive: DriveNumber, direction: Direction) -> bool {
         let is_outward = self.outside(drive).is_some_and(|own| own.outside.is_outward(direction));
         is_outward && !self.moves.is_freed(drive, direction)
     }
 
-    /// This way is blocked, and can be freed for one press.
+    /// Returns whether this direction is blocked, and can be enabled for one press.
     pub fn can_free(&self, drive: DriveNumber, direction: Direction) -> bool {
         self.may_move(drive).is_ok() && self.is_blocked(drive, direction)
     }
 
-    /// A person frees a way that is blocked, for one press.
+    /// Enables a blocked direction for one press.
     pub(super) fn free_outward(&mut self, drive: DriveNumber, direction: Direction, services: &mut Services) {
         if self.can_free(drive, direction) {
             return self.moves.free(drive, direction);
@@ -74,10 +74,10 @@ impl Unit {
         self.tell_of(drive, Severity::Warning, vec![why], services);
     }
 
-    /// The change that gives the place where a drive stands this position, in steps as scaled, and saves it.
+    /// Returns the change that gives the present place of a drive this position, in scaled steps, and saves it.
     ///
     /// # Errors
-    /// In words, where the drive would not take it: outside the limits.
+    /// Why the drive would not accept it: outside the limits.
     pub fn reference_here(&self, drive: DriveNumber, position: i32) -> Result<Change, Text> {
         let (low, high) = self.limits(drive).ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         let becomes = nearest_reference(position).filter(|own| (low..=high).contains(own));

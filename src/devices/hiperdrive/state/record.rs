@@ -1,4 +1,4 @@
-//! The recording of the drive that is shown: its position, its own speed, its target.
+//! The recording of the selected drive: its position, its measured speed, its target.
 
 use crate::devices::hiperdrive::state::TEXTS;
 
@@ -20,7 +20,7 @@ pub(super) enum RecordedValue {
     Target(Ruler),
 }
 
-/// The recorder of a drive, and what came last.
+/// Recorder of a drive, and the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<RecordedValue>,
@@ -28,7 +28,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// A session has begun; what was recorded before stays.
+    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin(began);
@@ -50,7 +50,7 @@ impl Record {
             is_warned: status.has(crate::devices::hiperdrive::protocol::StatusBit::Warning),
         };
         self.track.add(&[sighting], &meaning(ruler));
-        // A recorded target stays among the watched values without control.
+        // Without control, a recorded target stays among the watched values.
         let has_target =
             target.is_some() || self.track.watched().iter().any(|own| matches!(own, RecordedValue::Target(_)));
         let mut beside = vec![RecordedValue::Speed];
@@ -68,7 +68,7 @@ impl Record {
         self.last.as_ref()
     }
 
-    /// Samples are missing before those that come next: another drive was shown.
+    /// Marks that samples are missing before the next ones: another drive was selected.
     pub(super) fn gap(&mut self) {
         self.last = None;
         self.track.gap();
@@ -99,7 +99,8 @@ impl Watchable for RecordedValue {
         matches!(self, RecordedValue::Target(_))
     }
 
-    /// The pitch of a spindle is only how steps are seen; with another scale a step is another distance.
+    /// Returns whether the recording continues under another meaning: the pitch only changes how steps are shown; with
+    /// another scale a step is another distance.
     fn continues(&self, other: &Self) -> bool {
         match (self, other) {
             (RecordedValue::Target(own), RecordedValue::Target(other)) => own.scale == other.scale,

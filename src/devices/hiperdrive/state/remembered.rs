@@ -60,7 +60,7 @@ impl RemembersDrives for Unit {
         let Some(before) = &mut self.exchanged else { return };
         for drive in found.marked_since(&before.kept).into_iter().filter_map(DriveNumber::new) {
             self.moves.unconfirm(drive);
-            // It is no mark of this session.
+            // It is not a mark of this session.
             before.unconfirmed.insert(drive);
         }
     }

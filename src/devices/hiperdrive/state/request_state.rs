@@ -1,4 +1,4 @@
-//! The requests that a drive accepts at the moment, why not, and the state of the last one, in words.
+//! The requests that a drive accepts at the moment, why not, and the state of the last one, as text.
 
 use super::action::Motor;
 use super::ruler::Measure;
@@ -25,7 +25,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be opened now.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn can_take(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -39,7 +39,7 @@ impl Unit {
     /// Checks whether the cyclic connection can be closed now.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn can_give(&self) -> Result<(), Text> {
         // Also while the device does not answer.
         match self.session.line() {
@@ -53,7 +53,7 @@ impl Unit {
     /// Checks whether a drive may be moved now.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn may_move(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_be_led()?;
         if let Phase::Silent(why) = &self.session.phase {
@@ -75,7 +75,7 @@ impl Unit {
     /// Checks whether a drive may run past its limits.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn may_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         self.may_move(drive)?;
         let permitted = self.moves.permit(drive).is_some_and(|permit| permit.endless);
@@ -85,7 +85,7 @@ impl Unit {
     /// Checks whether an endless run can be enabled: limits and scaling of the drive are the factory settings.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it cannot.
     pub fn could_run_endlessly(&self, drive: DriveNumber) -> Result<(), Text> {
         let could = self.moves.limits(drive).is_some_and(DriveLimits::allows_endless);
         if could { Ok(()) } else { Err(TEXTS.text("hd_refused.endless")) }
@@ -119,8 +119,8 @@ impl Unit {
         permit.check(wish, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 
-    /// Checks that a request may end the present motion. A stop is meant to, and so is a jog of the same drive; no
-    /// other drive's motion may be ended that way, and no step or move may become another one before its end.
+    /// Checks that a request may end the present motion. A stop may, and so may a jog of the same drive. The motion of
+    /// another drive must not be ended this way, and a step or move must not be replaced before its end.
     fn may_end_what_moves(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
         match self.moves.mover() {
             Some(mover) if mover != drive && wish != MotionRequest::Stop => {
@@ -143,26 +143,26 @@ impl Unit {
         services.notify_part(severity, texts, (Some(&self.session.name()), self.name_of(drive)));
     }
 
-    /// The name of a drive; `None` where there is only one.
+    /// Returns the name of a drive; `None` if there is only one.
     pub fn name_of(&self, drive: DriveNumber) -> Option<Text> {
         (self.drives().len() > 1).then(|| TEXTS.text("hd_bar.named").with("drive", drive.get()))
     }
 
-    /// The drives that move, as far as is known here, or are about to.
+    /// Returns the drives known to move, or about to.
     pub fn moving_drives(&self) -> Vec<DriveNumber> {
         let moves =
             |drive: &DriveNumber| self.moves.is_drive_moving(*drive) || self.state_now(*drive) == Some(State::Moving);
         self.drives().into_iter().filter(moves).collect()
     }
 
-    /// A place as a person measures it, with its unit.
+    /// Returns a position in the user's unit.
     pub fn place(&self, drive: DriveNumber, steps: i32) -> Text {
         let (value, decimals, unit) = self.measured(drive, steps);
         TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", unit)
     }
 
-    /// A place in all that a person may measure in, whatever is chosen: the same number of steps may be another place than it
-    /// was. In degrees only where they are chosen.
+    /// Returns a position in all units, since with another scale the same number of steps may be another position. In
+    /// degrees only if they are selected.
     pub fn in_all_units(&self, drive: DriveNumber, steps: i32) -> Vec<Text> {
         let ruler = self.ruler(drive);
         let wanted = |own: &Measure| *own != Measure::Degrees || *own == self.measure;
@@ -182,7 +182,7 @@ impl Unit {
         text.with_number("high", high, decimals).with_text("unit", unit)
     }
 
-    /// A place as a person measures it, its decimals and its unit.
+    /// Returns a position in the user's unit: value, decimals and unit.
     fn measured(&self, drive: DriveNumber, steps: i32) -> (f64, usize, Text) {
         let ruler = self.ruler(drive);
         let value = ruler.of(i64::from(steps), self.measure);
@@ -209,8 +209,8 @@ impl Unit {
         Some(TEXTS.text(id).with("word", format!("0x{:04X}", row.word?.word())))
     }
 
-    /// Returns the request that leads a drive to a state that is [`reachable`](Self::reachable); `None` for states
-    /// without one. A fault is left by acknowledging, which locks.
+    /// Returns the request that leads a drive to a state that is [`reachable`](Self::reachable); `None` for states without
+    /// one. A fault is left by acknowledging, which leads to the lock.
     pub const fn leads_to(to: State) -> Option<Motor> {
         match to {
             State::NotReady => Some(Motor::Lead(Goal::Off)),
@@ -243,7 +243,7 @@ impl Unit {
     /// Returns the speed of a percentage, by parameter 166.
     pub fn speed_of(&self, percent: Percent) -> Option<Text> {
         let most = self.number(self.drive(), 166)?;
-        // Tenths of rpm, of a hundred.
+        // Tenths of rpm, and percent.
         let rpm = most as f64 * f64::from(percent.get()) / 1000.0;
         Some(TEXTS.text("hd_entry.rpm").with_number("rpm", rpm, 1))
     }

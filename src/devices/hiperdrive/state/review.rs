@@ -1,4 +1,4 @@
-//! The review of a write into a HIPERDRIVE: what its plan needs, warns of and costs.
+//! The review of a write to a HIPERDRIVE: the permissions, warnings and costs of its plan.
 
 use super::axis::words::millimetres;
 use super::network::PowerUp;
@@ -16,7 +16,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 use crate::profile::Plan;
 
-/// A write on its way.
+/// Review of a write.
 pub type Review = review::Review<Hiperdrive>;
 pub type ReviewState = review::ReviewState<Hiperdrive>;
 
@@ -95,7 +95,7 @@ impl Reviewed for Hiperdrive {
     }
 }
 
-/// An operation in words, places in millimetres where the pitch of the drive's spindle is known.
+/// Returns the text of an operation, with positions in millimetres if the pitch of the drive's spindle is known.
 pub(super) fn op_words(prepared: &Prepared, op: &Op, pitch: impl Fn(DriveNumber) -> Option<Length>) -> OpWords {
     let mut words = explained::op(op);
     if let (Op::Write { number, old, new }, [change]) = (op, &mut *words.changes) {

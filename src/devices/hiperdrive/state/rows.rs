@@ -1,4 +1,4 @@
-//! The parameters as rows of a table: what each is, what it may be, what it is from the factory, and what is wanted of it.
+//! The parameters as rows of a table: value, allowed range, factory setting and edit of each.
 
 use super::ruler::Measure;
 use super::staged::is_editable;
@@ -20,13 +20,13 @@ pub struct Row {
     pub name: Text,
     /// Its row of the manual's table.
     pub kind: &'static ParameterRow,
-    /// As it was read; `None` where it was not, or a profile does not say it.
+    /// The value read; `None` if it was not read, or is not in the profile.
     pub value: Option<Value>,
-    /// The same as it is written in a table; empty where there is none.
+    /// The same as text for the table; empty if there is none.
     pub shown: String,
     /// The meaning of the value, if the number does not show it.
     pub meaning: Option<Text>,
-    /// Its unit; `None` where it has none.
+    /// Its unit; `None` if it has none.
     pub unit: Option<Text>,
     /// The allowed range; `None` for texts.
     pub range: Option<Text>,
@@ -36,7 +36,7 @@ pub struct Row {
     pub factory: String,
     /// The edited value; `None` if it cannot be edited, or is not.
     pub staged: Option<i64>,
-    /// It is wanted otherwise than it is.
+    /// The edited value differs from the present one.
     pub is_edited: bool,
     /// The value of the previous reading, if it differed.
     pub changed_from: Option<i64>,
@@ -57,7 +57,8 @@ impl Row {
 }
 
 impl Unit {
-    /// The parameters of a drive, or of the device: those that were read, or of a profile those that it can say.
+    /// Returns the parameters of a drive, or of the device: of a device those that were read, of a profile those that it
+    /// can contain.
     pub fn rows(&self, of: Option<DriveNumber>) -> Vec<Row> {
         let number = |row: &ParameterRow| match of {
             Some(drive) => ParameterNumber::of_drive(row.number, drive),
@@ -150,7 +151,7 @@ impl Unit {
         };
         let drive = number.drive();
         match (number.base(), drive) {
-            // Places, as they are wanted to be scaled.
+            // Positions in the edited scale.
             (158 | 160 | 198 | 104 | 107 | 170 | 176, Some(drive)) => {
                 let ruler = self.wanted_ruler(drive);
                 let measure = if ruler.pitch.is_some() { Measure::Millimetres } else { Measure::Turns };

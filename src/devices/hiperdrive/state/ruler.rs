@@ -1,4 +1,4 @@
-//! Steps as the drive counts them, and what a person measures in: turns, degrees, millimetres of a spindle.
+//! Conversion between the steps of a drive and the user's units: turns, degrees, millimetres of a spindle.
 
 pub use crate::app::Measure;
 use crate::devices::hiperdrive::protocol::{Length, PositionScale};
@@ -15,12 +15,12 @@ pub struct Ruler {
 /// A number that no position has.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum PositionRangeError {
-    /// Without room in 32 bits: the least and the greatest that have it.
+    /// Does not fit into 32 bits: the minimum and maximum that do.
     #[error("a position is between {least} and {most}")]
     Bits {
-        /// In the measure.
+        /// In the unit.
         least: f64,
-        /// In the measure.
+        /// In the unit.
         most: f64,
     },
     /// Millimetres without a pitch.
@@ -29,10 +29,10 @@ pub enum PositionRangeError {
 }
 
 impl Ruler {
-    /// As it comes from the factory, with no spindle.
+    /// Factory scale, without a spindle.
     pub const FACTORY: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: None };
 
-    /// Steps of one of the measure; `None`: millimetres without a pitch.
+    /// Returns the steps of one unit; `None`: millimetres without a pitch.
     fn steps_in(self, measure: Measure) -> Option<f64> {
         let turn = self.scale.steps_per_turn();
         match measure {
@@ -49,12 +49,12 @@ impl Ruler {
         Measure::ALL.into_iter().filter(move |measure| self.steps_in(*measure).is_some())
     }
 
-    /// Steps in a measure; `None`: millimetres without a pitch.
+    /// Converts steps to a unit; `None`: millimetres without a pitch.
     pub fn of(self, steps: i64, measure: Measure) -> Option<f64> {
         Some(steps as f64 / self.steps_in(measure)?)
     }
 
-    /// The step that is nearest.
+    /// Returns the step that is nearest.
     ///
     /// # Errors
     /// [`PositionRangeError`] where there is none.
@@ -62,7 +62,7 @@ impl Ruler {
         let unit = self.steps_in(measure).ok_or(PositionRangeError::NoPitch)?;
         let steps = (value * unit).round();
         let (least, most) = (f64::from(i32::MIN), f64::from(i32::MAX));
-        // A cast of what is within is exact.
+        // Within the range the cast is exact.
         if (least..=most).contains(&steps) {
             Ok(steps as i32)
         } else {
@@ -73,13 +73,13 @@ impl Ruler {
     /// Decimals with which every step is another number.
     pub fn decimals(self, measure: Measure) -> usize {
         let unit = self.steps_in(measure).unwrap_or(1.0);
-        // At most 9: steps a turn have five digits beside those of 256.
+        // At most 9: steps per turn have five digits in addition to those of 256.
         (0..9).find(|decimals| 10f64.powi(*decimals) >= unit * 0.999_999).map_or(9, |decimals| decimals as usize)
     }
 
-    /// The same place under another scale: its steps, which may have no room in 32 bits.
+    /// Converts steps of a position to another scale; the result may not fit into 32 bits.
     pub fn rescaled(self, steps: i64, to: PositionScale) -> i64 {
-        // Two 32-bit products of 16-bit numbers beside a 33-bit one.
+        // Two 32-bit products of 16-bit numbers and a 33-bit one.
         let above = i128::from(steps) * i128::from(to.numerator()) * i128::from(self.scale.denominator());
         let below = i128::from(to.denominator()) * i128::from(self.scale.numerator());
         let half = if above < 0 { -below / 2 } else { below / 2 };
@@ -94,7 +94,7 @@ mod tests {
     const SPINDLE: Ruler = Ruler { scale: PositionScale::FACTORY, pitch: Some(Length { nanometres: 4_000_000 }) };
 
     fn hundredths() -> Ruler {
-        // 400 steps a turn of 4 mm: reference 5.
+        // 400 steps per turn of 4 mm: reference 5.
         Ruler { scale: PositionScale::new(400, 256).unwrap(), ..SPINDLE }
     }
 
@@ -116,7 +116,7 @@ mod tests {
         assert_eq!(hundredths().steps(-0.005, Measure::Millimetres), Ok(-1));
         assert_eq!(SPINDLE.steps(90.0, Measure::Degrees), Ok(16_384));
         assert_eq!(Ruler::FACTORY.steps(1.0, Measure::Millimetres), Err(PositionRangeError::NoPitch));
-        // 32768 turns have no room: 2³¹ / 65536.
+        // 32768 turns do not fit: 2³¹ / 65536.
         let beyond = SPINDLE.steps(32_768.0, Measure::Turns).unwrap_err();
         assert!(
             matches!(beyond, PositionRangeError::Bits { least, most } if least == -32_768.0 && most > 32_767.0 && most < 32_768.0)
@@ -127,7 +127,7 @@ mod tests {
     fn decimals_tell_steps_apart() {
         assert_eq!(hundredths().decimals(Measure::Millimetres), 2);
         assert_eq!(SPINDLE.decimals(Measure::Steps), 0);
-        // 65536 steps a turn, 182.04 a degree, 16384 a millimetre.
+        // 65536 steps per turn, 182.04 per degree, 16384 per millimetre.
         assert_eq!(SPINDLE.decimals(Measure::Turns), 5);
         assert_eq!(SPINDLE.decimals(Measure::Degrees), 3);
         assert_eq!(SPINDLE.decimals(Measure::Millimetres), 5);
@@ -140,7 +140,7 @@ mod tests {
         assert_eq!(SPINDLE.rescaled(33_488_896, to), 204_400);
         assert_eq!(SPINDLE.rescaled(-33_488_896, to), -204_400);
         assert_eq!(hundredths().rescaled(204_400, PositionScale::FACTORY), 33_488_896);
-        // Half a step is the farther one: 82 of 65536 are 0.5005 of 400.
+        // Half a step rounds away from zero: 82 of 65536 are 0.5005 of 400.
         assert_eq!((SPINDLE.rescaled(82, to), SPINDLE.rescaled(81, to), SPINDLE.rescaled(-82, to)), (1, 0, -1));
     }
 }

@@ -1,4 +1,4 @@
-//! The set-up of axes and the network at a device: what is known for them, and what they ask for.
+//! The set-up of axes and the network of a device: the facts known for them, and the requests they make.
 
 use core::net::Ipv4Addr;
 use std::path::PathBuf;
@@ -18,11 +18,11 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::store::write_atomically;
 
-/// The parameters of a drive that a set-up looks at, by the numbers of drive 1.
+/// Parameters of a drive that a set-up uses, by the numbers of drive 1.
 const AXIS: std::ops::RangeInclusive<u16> = 152..=198;
 
 impl Unit {
-    /// Returns the set-up of the drive that is shown; `None` if none has begun.
+    /// Returns the set-up of the selected drive; `None` if none has begun.
     pub fn axis(&self) -> Option<&Axis> {
         self.axes.get(&self.drive())
     }
@@ -30,7 +30,7 @@ impl Unit {
     /// Checks whether the drive that is shown can be set up.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn may_set_up(&self) -> Result<(), Text> {
         match self.session.why_not_ready() {
             _ if self.session.phase == Phase::Offline => Err(Text::new("session.not_connected")),
@@ -45,7 +45,7 @@ impl Unit {
     /// Checks whether a change can be planned now.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not allowed.
     pub fn may_plan(&self) -> Result<(), Text> {
         self.session.why_not_ready().map_or(Ok(()), Err)
     }
@@ -94,7 +94,7 @@ impl Unit {
         self.network()?.address_switch()
     }
 
-    /// The address at which it answers, where its link has a number.
+    /// Returns the address of the device, if its link has a numerical one.
     pub fn host(&self) -> Option<Ipv4Addr> {
         let Source::Link(url) = &self.session.source else { return None };
         let host = url.target.rsplit_once(':').map_or(url.target.as_str(), |(host, _)| host);
@@ -119,7 +119,8 @@ impl Unit {
             },
             AxisAction::TakePlace => axis.take_limit(&seen),
             AxisAction::Next => {
-                // The entries only served for a preview until now. Positions are measured on this spindle everywhere.
+                // Until now the entries served only for a preview. From now on positions are measured on this spindle
+                // everywhere.
                 let confirms = axis.step() == AxisStep::Scale && axis.end().is_none() && axis.may_go_on(&seen).is_ok();
                 let pitch = axis.entries().pitch().ok().filter(|_| confirms);
                 axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen }, &when);
@@ -159,7 +160,7 @@ impl Unit {
         self.axes.insert(drive, Axis::new(drive, Some(self.ruler(drive))));
     }
 
-    /// The report of the set-up of the drive that is shown, once it is over.
+    /// Returns the report of the set-up of the selected drive after its end.
     pub fn axis_report(&self, language: Language) -> Option<String> {
         let axis = self.axis()?;
         let own = self.drive_identity(axis.drive());
@@ -242,7 +243,7 @@ impl Unit {
         if self.axes.is_empty() {
             return;
         }
-        // `None` where there is no review any more; whether it was carried out, once it is over.
+        // `None` if the review is closed; after its end, whether it was carried out.
         let write = self.review().map(|review| match &review.state {
             ReviewState::Done(..) => Some(Ok(())),
             ReviewState::Failed { begun, .. } => Some(Err(*begun)),
@@ -266,7 +267,7 @@ impl Unit {
         }
     }
 
-    /// All parameters were read: what was saved has survived, or not.
+    /// Notes that all parameters were read, which shows whether the saved values have survived.
     pub(super) fn axes_surveyed(&mut self) {
         let switched = std::mem::take(&mut self.switched);
         let seen: Vec<(DriveNumber, DriveFacts)> = self.axes.keys().map(|drive| (*drive, self.seen(*drive))).collect();

@@ -1,9 +1,9 @@
-//! The values of an adapter or a hub (or a profile of one), and the edited ones beside them. Nothing is written to a
-//! device here; a plan is made of the difference.
+//! The values of an adapter or a hub (or a profile of one), and the edited ones beside them. Nothing is written to a device
+//! here; a plan is made from the difference.
 //!
-//! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
-//! changed stays as he wants it, and all else follows the device, in the steps before too. What was not read cannot be
-//! edited; edits of an earlier time wait until it is read. In a profile, what is not said can be said.
+//! Every edit creates a complete new state, to which an undo returns. Edits survive a new reading: changed values stay as
+//! edited, and all others follow the device, in earlier states as well. Values that were not read cannot be edited; earlier
+//! edits of them wait until they are read. A profile can gain values that it does not have.
 
 mod edit;
 mod mark;
@@ -25,10 +25,10 @@ use crate::devices::hiperdrive::protocol::{Access, DriveNumber, Family, Paramete
 /// The values that the edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// A device: what was not read is not known.
+    /// Device: a value that was not read is not known.
     #[default]
     Device,
-    /// A profile: what is not in it is not said.
+    /// Profile: a missing value is not in the profile.
     Profile,
 }
 
@@ -42,26 +42,26 @@ pub struct Staged {
     /// The values of the previous reading.
     earlier: Option<Image>,
     history: History<Image>,
-    /// Edits of an earlier time whose parameter was not read yet.
+    /// Earlier edits of parameters that were not read yet.
     waiting: Vec<SavedEdit>,
-    /// The families of the drives, as far as their variants are known.
+    /// Families of the drives, if their variants are known.
     families: Families,
 }
 
 /// The families of drives, which determine their turns.
 pub(super) type Families = BTreeMap<DriveNumber, Family>;
 
-/// An edit that is kept: the parameter's own number, and what is wanted of it.
+/// Stored edit: the parameter's own number, and the edited value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SavedEdit(pub u16, pub Option<i64>);
 
-/// Something that is wanted otherwise.
+/// Edited value that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     pub number: ParameterNumber,
-    /// Now; `None`: a profile does not say it.
+    /// Present value; `None`: not in the profile.
     pub from: Option<i64>,
-    /// As it is wanted; `None`: a profile is not to say it any more.
+    /// Edited value; `None`: to be removed from the profile.
     pub to: Option<i64>,
 }
 
@@ -78,13 +78,13 @@ impl Staged {
         Staged { base_source: BaseSource::Profile, wanted: Some(image.clone()), base: Some(image), ..Staged::default() }
     }
 
-    /// The drives are these: what they turn bounds their limits from now on.
+    /// Takes the families of the drives, whose travel limits their positions from now on.
     pub(super) fn set_families(&mut self, families: Families) {
         self.families = families;
     }
 
-    /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
-    /// wrote it, and only what was edited here stays as it is wanted.
+    /// Takes the new content of the profile. If it equals the edited values, it was saved, and the undo steps stay;
+    /// otherwise others have written it, and only the values edited here keep their edits.
     pub fn saved(&mut self, image: Image) {
         if self.wanted.as_ref() == Some(&image) {
             self.base = Some(image);
@@ -119,7 +119,7 @@ impl Staged {
         matches!(self.base_source, BaseSource::Device)
     }
 
-    /// Forgets everything: another device.
+    /// Discards everything, for another device.
     pub fn clear(&mut self) {
         *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
@@ -152,7 +152,7 @@ impl Staged {
         (from != to).then_some(Differs { number, from, to })
     }
 
-    /// All that is wanted otherwise, by number.
+    /// Returns all edited values that differ, by number.
     pub fn differences(&self) -> Vec<Differs> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let numbers: std::collections::BTreeSet<_> = base.values.keys().chain(wanted.values.keys()).copied().collect();
@@ -165,10 +165,10 @@ impl Staged {
         Image { values: self.differences().into_iter().filter_map(wanted).collect() }
     }
 
-    /// Changes something, as one step that can be undone. Whether anything is other than before.
+    /// Makes an edit, as one step that can be undone. Returns whether anything changed.
     ///
     /// # Errors
-    /// Why it cannot be; then nothing is changed.
+    /// Why it is not possible; nothing is changed then.
     pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.tried(edit)?;
         Ok(self.step(after))
@@ -177,7 +177,7 @@ impl Staged {
     /// Returns the values after an edit without making it: for a preview.
     ///
     /// # Errors
-    /// Why it cannot be.
+    /// Why it is not possible.
     pub fn tried(&self, edit: &Edit) -> Result<Image, EditError> {
         let (base, wanted) = self.base.as_ref().zip(self.wanted.as_ref()).ok_or(EditError::NothingRead)?;
         edit::edited((base, wanted), edit, self.base_source, &self.families)
@@ -187,7 +187,7 @@ impl Staged {
         self.wanted.as_mut().is_some_and(|wanted| self.history.step(wanted, after))
     }
 
-    /// The edits, for a draft on disk; also those that wait for their parameter to be read.
+    /// Returns the edits for a draft on disk, including those that wait for their parameter.
     pub fn saved_edits(&self) -> Vec<SavedEdit> {
         let edited = self.differences().into_iter().map(|own| SavedEdit(own.number.get(), own.to));
         edited.chain(self.waiting.iter().copied()).collect()
@@ -207,7 +207,7 @@ impl Staged {
             match value {
                 _ if !is_editable(row) => {}
                 Some(value) if is_read => {
-                    // Values that are not allowed stay as they were left, and are marked.
+                    // Invalid values stay as they were entered, and are marked.
                     wanted.values.insert(number, value);
                 }
                 Some(_) => self.waiting.push(SavedEdit(number.get(), value)),
@@ -261,11 +261,11 @@ fn travel(number: ParameterNumber, image: &Image, families: &Families) -> Travel
     Travel { family: families.get(&drive).copied(), scale: image.scale(drive) }
 }
 
-/// Keeps what was changed against what was said before; all else is as it is said now.
+/// Moves the edits made against `before` to the values of `now`.
 fn rebase(own: &mut Image, before: &Image, now: &Image) {
     let mut rebased = now.clone();
     for (number, value) in &own.values {
-        // Of what is not there any more nothing is wanted.
+        // An edit of a parameter that no longer exists is dropped.
         if before.get(*number) != Some(*value) && now.get(*number).is_some() {
             rebased.values.insert(*number, *value);
         }

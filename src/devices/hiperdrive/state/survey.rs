@@ -1,5 +1,4 @@
-//! The survey of a device: how it is taken over, updated by the drives' data, and compared with changes by other
-//! masters.
+//! The survey of a device: how it is taken over, updated by the drives' data, and compared with changes by other masters.
 
 use super::staged::is_editable;
 use super::unit::Unit;
@@ -50,7 +49,7 @@ impl Unit {
         self.axes_surveyed();
     }
 
-    /// Marks the limits as unconfirmed where a scale has changed.
+    /// Marks limits as unconfirmed after a change of scale.
     pub(super) fn notice_scales(&mut self, now: &Image) {
         let Some(before) = self.staged.base() else { return };
         let is_other = |drive: &DriveNumber| {
@@ -62,8 +61,8 @@ impl Unit {
         }
     }
 
-    /// Reads everything again if the limits that the worker reads under control differ from the table of parameters;
-    /// also when control is taken.
+    /// Reads everything again if the limits that the worker reads under control differ from the table of parameters; also
+    /// when control is taken.
     pub(super) fn notice_limits(&mut self) {
         if self.moves.take_taken() {
             (self.is_stale, self.marks) = (true, SettingsReadState::Unread);
@@ -75,7 +74,7 @@ impl Unit {
         }
     }
 
-    /// The drive has other limits, another scale or another reference than the table of parameters shows.
+    /// Returns whether the drive has other limits, another scale or another reference than the table of parameters shows.
     fn is_limited_otherwise(&self, drive: DriveNumber) -> bool {
         let held = self.drive_limits(drive).filter(|_| self.moves.is_open());
         held.and_then(DriveLimits::seen).is_some_and(|own| {
@@ -101,25 +100,24 @@ impl Unit {
         }
     }
 
-    /// Checks whether the displayed limits of a drive can be confirmed: they have to be the ones that it has, as far as
-    /// is known.
+    /// Checks whether the displayed limits of a drive can be confirmed: they must equal the drive's, as far as known.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why they cannot.
     pub fn may_confirm(&self, drive: DriveNumber) -> Result<(), Text> {
         self.confirms(drive).map(|_| ())
     }
 
-    /// The limits that are shown, and would be confirmed.
+    /// Returns the limits that are shown, and would be confirmed.
     fn confirms(&self, drive: DriveNumber) -> Result<LimitsSeen, Text> {
         self.why_unread(drive).map_or(Ok(()), Err)?;
         let seen = self.drive_limits(drive).and_then(DriveLimits::seen);
         seen.ok_or_else(|| words::lock(Lock::Unread))
     }
 
-    /// A person has looked at the limits that are shown, and is told where those do not count at this moment. Whether they do.
+    /// Confirms the displayed limits, and reports if this has no effect at the moment. Returns whether it took effect.
     pub(super) fn confirm_limits(&mut self, drive: DriveNumber, services: &mut Services) -> bool {
-        // As shown, before another look: what has changed since then was not seen.
+        // As shown, before another update: later changes were not seen.
         let shown = self.confirms(drive);
         self.moves.look();
         self.notice_limits();
@@ -133,14 +131,14 @@ impl Unit {
         counts.is_ok()
     }
 
-    /// A drive was asked where it is.
+    /// Takes the position of a drive.
     pub(super) fn take_reading(&mut self, reading: DriveReading) {
         let before = self.actual(reading.drive).map(|own| own.status.state());
         self.readings.insert(reading.drive, reading);
         self.notice_fault(reading.drive, before);
     }
 
-    /// A drive that has failed since is asked why.
+    /// Requests the cause if a drive has failed since.
     pub(super) fn notice_fault(&mut self, drive: DriveNumber, before: Option<State>) {
         if self.state(drive) == Some(State::Fault) && before.is_some_and(|before| before != State::Fault) {
             self.looks_at_errors = true;
@@ -181,7 +179,7 @@ fn image(survey: &Survey) -> Image {
     Image { values: survey.values.iter().filter_map(editable).collect() }
 }
 
-/// The name by which the log and the jobs call a device.
+/// Returns the name by which the log and the jobs call a device.
 fn title(identity: &Identity) -> String {
     format!("{} · {}", identity.category, identity.serial_number)
 }

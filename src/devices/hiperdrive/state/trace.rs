@@ -1,4 +1,4 @@
-//! The meaning of the frames in the trace: which parameter is read or written, and what a device refuses.
+//! The meaning of the frames in the trace: which parameter is read or written, and why a device refuses.
 
 use crate::app::explain::plain;
 use crate::app::{Explained, Text, TraceFault};
@@ -72,7 +72,7 @@ mod tests {
     const HEAD: &str = "6F 00 14 00 78 56 34 12 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 00 \
                         00 00 00 00 00 00 02 00 00 00 00 00 B2 00 04 00";
 
-    /// Issue 22.11: explicit messages (reference 7) that are broken by hand, and those that refuse, have a meaning and a mark.
+    /// Issue 22.11: explicit messages (reference 7) damaged by hand, and refusals, have a meaning and a mark.
     #[test]
     fn a_broken_reply_has_a_meaning_and_a_mark() {
         let cases = [

@@ -1,5 +1,5 @@
-//! An adapter or a hub with its drives on the desk, or a profile of one: what is known of it, the user's edits beside it,
-//! what runs on its line, and the drives as they are moved.
+//! An open adapter or hub with its drives, or a profile of one: its known data, the user's edits, the running jobs, and the
+//! motion of the drives.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +27,7 @@ use crate::devices::hiperdrive::protocol::{
 use crate::devices::hiperdrive::sim::Target;
 use crate::units::Moment;
 
-/// An adapter or a hub with its drives, or a profile of one.
+/// Adapter or hub with its drives, or a profile of one.
 pub struct Unit {
     pub session: Session<Hiperdrive>,
     /// Everything that was read.
@@ -36,13 +36,13 @@ pub struct Unit {
     pub status: Option<Status>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// Parameters beside the edits of them.
+    /// The parameters and their edits.
     pub staged: Staged,
     /// The recording of the drive that is shown.
     pub record: Record,
     /// The recordings of the others.
     pub(super) records: BTreeMap<DriveNumber, Record>,
-    /// When the session began, by which the times of recordings count.
+    /// Start of the session, to which the times of recordings refer.
     pub(super) began: Option<Zoned>,
     /// The drives as they are moved.
     pub moves: Moves,
@@ -50,7 +50,7 @@ pub struct Unit {
     pub measure: Measure,
     /// Why the last edit was refused.
     pub refusal: Option<Text>,
-    /// The virtual device behind the session.
+    /// The virtual device of the session.
     pub target: Option<Target>,
     /// The drive that is shown.
     pub(super) drive: DriveNumber,
@@ -63,15 +63,15 @@ pub struct Unit {
     pub(super) unsaved: Unsaved,
     /// The values exchanged with the settings; `None` before the first exchange.
     pub(super) exchanged: Option<Exchanged>,
-    /// Whether another window has marked limits since control was taken.
+    /// Limits marked by another window since control was taken.
     pub(super) marks: SettingsReadState,
     /// The last reading of each drive without control.
     pub(super) readings: BTreeMap<DriveNumber, DriveReading>,
-    /// Limits and scaling may be others than those that were read: control was taken since.
+    /// Limits and scaling may have changed since they were read: control was taken since.
     pub(super) is_stale: bool,
     /// The polled drive.
     pub(super) watched: DriveNumber,
-    /// Polling has begun by itself since the link was opened.
+    /// Polling has been started automatically since the link was opened.
     pub(super) has_polled: bool,
     /// Errors are to be read again as soon as the line is free.
     pub(super) looks_at_errors: bool,
@@ -110,13 +110,13 @@ impl Unit {
         }
     }
 
-    /// The profile, where this is one.
+    /// Returns the profile, if this is one.
     pub fn profile(&self) -> Option<&HiperdriveProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<HiperdriveProfile>()
     }
 
-    /// The profile as the user wants it, where this is one.
+    /// Returns the edited profile, if this is one.
     pub(crate) fn wanted_profile(&self) -> Option<HiperdriveProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(HiperdriveProfile { image: wanted.clone(), ..profile.clone() })
@@ -137,12 +137,12 @@ impl Unit {
         self.identity().map(|own| own.serial_number.as_str()).or_else(profile)
     }
 
-    /// Its address and where it has it from.
+    /// Returns the IP address and its source.
     pub fn network(&self) -> Option<&Network> {
         self.survey.as_ref().map(|survey| &survey.network)
     }
 
-    /// The drives that are plugged in, or that a profile speaks of.
+    /// Returns the connected drives, or those of the profile.
     pub fn drives(&self) -> Vec<DriveNumber> {
         match self.identity() {
             Some(own) => own.drives.iter().map(|drive| drive.number).collect(),
@@ -150,7 +150,7 @@ impl Unit {
         }
     }
 
-    /// The drive that is shown.
+    /// Returns the drive that is shown.
     pub fn drive(&self) -> DriveNumber {
         self.drive
     }
@@ -158,7 +158,7 @@ impl Unit {
     pub(super) fn show_drive(&mut self, drive: DriveNumber) {
         if self.drive != drive {
             self.moves.let_go();
-            // Only the drive that is shown, and the one moved last, are looked at again and again.
+            // Only the selected drive and the one moved last are read repeatedly.
             self.moves.doubt_limits(drive);
             let before = std::mem::replace(&mut self.drive, drive);
             let next = self.records.remove(&drive).unwrap_or_else(|| self.new_record());
@@ -179,12 +179,12 @@ impl Unit {
         self.identity()?.drive(drive)
     }
 
-    /// A parameter as it was read.
+    /// Returns a parameter as it was read.
     pub fn value(&self, number: ParameterNumber) -> Option<&Value> {
         self.survey.as_ref()?.values.get(&number)
     }
 
-    /// A number of a drive as it was read, by the number of drive 1.
+    /// Returns a number of a drive as it was read, by the number of drive 1.
     pub fn number(&self, drive: DriveNumber, number: u16) -> Option<i64> {
         match self.value(ParameterNumber::of_drive(number, drive)?)? {
             Value::Number(value) => Some(*value),
@@ -192,7 +192,7 @@ impl Unit {
         }
     }
 
-    /// State and errors of a drive, as they were read last.
+    /// Returns the state and errors of a drive, as they were read last.
     pub fn drive_status(&self, drive: DriveNumber) -> Option<&DriveStatus> {
         self.status.as_ref()?.drives.iter().find(|own| own.number == drive)
     }
@@ -200,7 +200,7 @@ impl Unit {
     /// Returns the last data of a drive: from the cyclic connection, or from polling.
     pub fn actual(&self, drive: DriveNumber) -> Option<Actual> {
         let read = || self.readings.get(&drive).map(|reading| reading.actual);
-        // Values read at the start are void once the device is gone.
+        // Values read at the start are void once the connection is lost.
         let surveyed = || self.surveyed(drive).filter(|_| self.session.phase == Phase::Connected && !self.is_stale);
         self.moves.actual(drive).or_else(read).or_else(surveyed)
     }
@@ -238,12 +238,12 @@ impl Unit {
         self.moves.actual(drive).or(read).map(|own| own.status.state())
     }
 
-    /// Steps and what a person measures in, of a drive as it is.
+    /// Returns the ruler of a drive with its present scale.
     pub fn ruler(&self, drive: DriveNumber) -> Ruler {
         Ruler { scale: self.scale(drive).unwrap_or(PositionScale::FACTORY), pitch: self.pitch(drive) }
     }
 
-    /// The same as its scale is wanted.
+    /// Returns the ruler of a drive with its edited scale.
     pub fn wanted_ruler(&self, drive: DriveNumber) -> Ruler {
         let scale = self.staged.wanted().and_then(|image| image.scale(drive)).unwrap_or(PositionScale::FACTORY);
         Ruler { scale, pitch: self.pitch(drive) }
@@ -272,7 +272,7 @@ impl Unit {
         self.drive_limits(drive).and_then(DriveLimits::scale).or_else(as_read)
     }
 
-    /// A drive's limits as it has them, in steps as scaled; `None` where they were not read.
+    /// Returns a drive's limits in scaled steps; `None` if they were not read.
     pub fn limits(&self, drive: DriveNumber) -> Option<(i32, i32)> {
         let as_read = || {
             let (lower, upper) = self.staged.base()?.limits(drive)?;
@@ -281,7 +281,7 @@ impl Unit {
         self.drive_limits(drive).and_then(DriveLimits::limits).or_else(as_read)
     }
 
-    /// The limits that a person has to look at before the drive moves; `None` where there is nothing to look at.
+    /// Returns the limits that the user must check before the drive moves; `None` if there are none to check.
     pub fn limits_to_confirm(&self, drive: DriveNumber) -> Option<(i32, i32)> {
         self.limits(drive).filter(|_| self.moves.unconfirmed().contains(&drive))
     }

@@ -1,5 +1,5 @@
-//! Values written to a device and not saved since: the previous value of each parameter. A device does not show what it
-//! has saved, and an interrupted run may be from yesterday.
+//! Values written to a device and not saved since: the previous value of each parameter. A device does not show its saved
+//! values, and an interrupted run may be from the previous day.
 
 use std::collections::BTreeMap;
 
@@ -8,19 +8,19 @@ use crate::devices::hiperdrive::profile::{HiperdrivePlan, Op, Service, written};
 use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber, Value};
 
-/// Of one adapter or hub with its drives.
+/// Unsaved values of one adapter or hub with its drives.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Unsaved {
     /// The saved values of parameters written since, by number.
     before: BTreeMap<u16, i64>,
-    /// How often the position of a drive was set from here.
+    /// Number of times the position of a drive was set by this program.
     set: BTreeMap<DriveNumber, u32>,
     /// Drives whose position is being set.
     sets: Vec<DriveNumber>,
 }
 
 impl Unsaved {
-    /// A plan is about to be carried out: from then on its parameters may be others than saved.
+    /// Notes that a plan is about to be carried out: from then on its parameters may differ from the saved ones.
     pub(super) fn begin(&mut self, plan: &HiperdrivePlan) {
         let changes_all = |op: &Op| matches!(op, Op::Service(Service::Factory | Service::Recall));
         let base = plan.base.image();
@@ -112,7 +112,8 @@ mod tests {
         image.values.iter().map(|(number, value)| (*number, Value::Number(*value))).collect()
     }
 
-    /// Issue 21.6 (h): what was saved is known from what was written since, also of an earlier start, until it is saved.
+    /// Issue 21.6 (h): the saved values are known from those written since, also by an earlier run of the program, until
+    /// the next save.
     #[test]
     fn what_was_saved_is_known_until_it_is_saved_anew() {
         let three = DriveNumber::new(3).unwrap();
@@ -132,7 +133,7 @@ mod tests {
         let mut later = Unsaved::default();
         later.extend(own.saved());
         assert_eq!(later.of_drive(three), BTreeMap::from([(166, 350)]));
-        // It has lost its supply, or was written back.
+        // It has lost its supply, or the values were written back.
         later.read(&values(&factory));
         assert!(later.of_drive(three).is_empty());
         let plan = plan_service(&now, Service::Save);

@@ -1,4 +1,4 @@
-//! Parameters as they are written in a table: values, units, what a number means; and why an edit was refused.
+//! Parameters in a table: values, units, the meaning of a number; and why an edit was refused.
 
 use super::staged::{EditError, Mark};
 use crate::app::Text;
@@ -11,7 +11,7 @@ use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as hiperdrive;
 use crate::devices::hiperdrive::state::explain as words;
 
-/// A value as it is written: words of bits and codes in hexadecimal.
+/// Returns a value as text: words of bits and codes in hexadecimal.
 pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     match value {
         Value::Text(text) => text.clone(),
@@ -20,7 +20,7 @@ pub fn value_text(number: ParameterNumber, value: &Value) -> String {
     }
 }
 
-/// The unit of a parameter's number; `None` where it has none. A text is no number, whatever it tells.
+/// Returns the unit of a parameter's number; `None` if it has none. A text has none, even if it contains a number.
 pub fn unit(row: &ParameterRow) -> Option<Text> {
     match row.unit {
         _ if row.kind == Kind::Text => None,

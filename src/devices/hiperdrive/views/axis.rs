@@ -1,8 +1,8 @@
-//! The set-up of an axis as one run: its steps on the left, the one that is shown on the right, with what is to be done, where
-//! the axis is, and what was found.
+//! The set-up of an axis as one run: the steps on the left, the selected step on the right, with its task, the position of
+//! the axis, and the findings.
 //!
-//! Nothing that can be clicked moves while a step is shown, whatever the drive says: what comes and goes stands below all of
-//! that. The step is exchanged by a press of the person alone.
+//! No clickable widget moves while a step is shown, whatever the drive reports: changing messages are below all of them.
+//! Only a press of the user changes the step.
 
 mod content;
 
@@ -39,12 +39,12 @@ impl AxisUiState {
     }
 }
 
-/// The run, as it is drawn.
+/// State of the run for drawing.
 pub(crate) struct AxisPicture<'a> {
     unit: &'a Unit,
     axis: &'a Axis,
     seen: &'a DriveFacts,
-    /// For how long the step has been looked at.
+    /// How long the step has been shown.
     looked_at: Duration,
 }
 
@@ -53,7 +53,7 @@ impl AxisPicture<'_> {
         actions.push(Action::device(self.unit.session.id, Hiperdrive::Axis(action)));
     }
 
-    /// A button of the run, with why it cannot be pressed.
+    /// Draws a button of the run, with why it cannot be pressed.
     fn button(&self, ui: &mut Ui, theme: &Theme, own: Button, (icon, word): (&str, &str), actions: &mut Vec<Action>) {
         let allowed = self.axis.ask(own, self.seen).map(|_| ());
         if allowed_button(ui, theme, &allowed, icon, word).clicked() {
@@ -66,7 +66,7 @@ impl AxisPicture<'_> {
 const NUMBERS: f32 = 15.0;
 /// Room for the button that leads on.
 const PRIMARY: f32 = 112.0;
-/// Below this width the list of steps does not stand beside the step.
+/// Width below which the list of steps is not beside the step.
 const BESIDE: f32 = 640.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUiState, actions: &mut Vec<Action>) {
@@ -85,7 +85,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut AxisUi
     }
     let goes_on = axis.end().is_none();
     if ui.available_width() < BESIDE {
-        // Nothing stands beside the step; at the end the list is the result.
+        // Nothing is beside the step; at the end the list is the result.
         if goes_on {
             step_ui(ui, theme, &shown, actions);
         } else {
@@ -115,7 +115,7 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_axis.title"), |ui| {
         paragraph(ui, say(theme, "hd_axis.words"));
         ui.add_space(theme.space.between);
-        // Before the list: in a low window it is seen without scrolling.
+        // Before the list: in a low window it is visible without scrolling.
         let allowed = unit.may_set_up();
         ui.horizontal(|ui| {
             if primary(ui, theme, allowed.is_ok(), icons::PLAY, &say(theme, "hd_axis.begin")).clicked() {
@@ -139,7 +139,7 @@ fn intro(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// All steps, with what was found in those that are done.
+/// Draws all steps, with the findings of completed ones.
 fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let line = |step: AxisStep| {
         let reached = shown.axis.reached(step);
@@ -167,7 +167,7 @@ fn list(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     steps(ui, theme, &Steps { steps: &lines, ..Steps::default() });
 }
 
-/// The step that counts.
+/// Draws the step that counts.
 fn step_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let (axis, seen) = (shown.axis, shown.seen);
     let step = axis.step();
@@ -219,7 +219,7 @@ fn messages(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entri
         warning(ui, theme, &why);
     }
     content::messages_ui(ui, theme, shown, entries);
-    // The limits to be looked at stand large above.
+    // The limits to be checked are shown large above.
     if let Some(found) = words::found(axis, axis.step(), seen).filter(|_| axis.step() != AxisStep::Confirm) {
         ui.add_space(theme.space.inside);
         row(ui, theme, &say(theme, "hd_axis.now"), unbroken(theme.words(&found)));
@@ -288,7 +288,7 @@ fn skip(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     }
 }
 
-/// A number and its unit stay on one line.
+/// Returns the text with a number and its unit unbroken on one line.
 fn unbroken(words: String) -> String {
     words.replace(" mm", "\u{a0}mm").replace(" %", "\u{a0}%")
 }

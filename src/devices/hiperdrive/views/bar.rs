@@ -1,4 +1,4 @@
-//! The bar above every page: the drives of a hub, the control, STOP and what it is not.
+//! The bar above every page: the drives of a hub, the control, STOP and the note that it is no emergency stop.
 
 use egui::{RichText, Stroke, Ui, vec2};
 
@@ -11,7 +11,7 @@ use crate::ui::controls::{allowed_button, name, paragraph};
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 use crate::ui::{Theme, icons};
 
-/// STOP: wide enough for a flat hand.
+/// Size of STOP: wide enough for a flat hand.
 const STOP: egui::Vec2 = vec2(112.0, 44.0);
 
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, actions: &mut Vec<Action>) {
@@ -47,7 +47,7 @@ pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, unit: &Unit, a
     });
 }
 
-/// STOP of all drives; also while nothing is known to move.
+/// Draws STOP for all drives; also while none is known to move.
 fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut Vec<Action>) {
     let palette = theme.palette;
     let word = theme.say("hd_bar.stop");
@@ -55,17 +55,17 @@ fn stop(ui: &mut Ui, theme: &Theme, (open, moves): (bool, bool), actions: &mut V
     let text = RichText::new(format!("{}  {word}", icons::STOP)).font(theme.strong(theme.sizes.section)).color(ink);
     let edge = if open { Stroke::NONE } else { Stroke::new(1.0, palette.bad) };
     let button = egui::Button::new(text).fill(fill).stroke(edge);
-    // Also down counts: a stop does not wait for a finger to be lifted.
+    // Pressing down counts: a stop does not wait for the release.
     let response = ui.add_sized(STOP, button).on_hover_text(theme.say("hd_bar.stop_hint"));
     let pressed = goes_down(ui, &response);
     if name(response, true, &word).clicked() || pressed {
-        // A press that follows closely means the same.
+        // A second press shortly after the first has the same meaning.
         means_motion(ui.ctx(), moves, pressed_at(ui, pressed));
         actions.push(Action::StopMotion);
     }
 }
 
-/// The drives of a hub; of an adapter nothing, it has one.
+/// Draws the drives of a hub; nothing for an adapter, which has only one.
 fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let drives = unit.drives();
     if drives.len() < 2 {
@@ -84,11 +84,11 @@ fn drives(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// A drive with its state, as a sign and in words.
+/// Draws a drive with its state, as a sign and as text.
 fn drive_button(ui: &mut Ui, theme: &Theme, unit: &Unit, (drive, moves): (DriveNumber, bool)) -> bool {
     let palette = theme.palette;
     let state = if moves { Some(State::Moving) } else { unit.state_now(drive) };
-    // Each sign is as wide as the others: no button changes its place because a drive changes its state.
+    // All signs have the same width: no button moves when a drive changes its state.
     let (sign, colour) = match state {
         Some(State::Moving) => (icons::PLAY, palette.accent),
         Some(State::Fault) => (icons::WARNING_CIRCLE, palette.bad),

@@ -1,4 +1,4 @@
-//! The connection form of HIPERDRIVE drives: virtual, or over the network, where one can ask who is there.
+//! The connection form of HIPERDRIVE drives: virtual, or over the network, with discovery.
 
 use egui::Ui;
 

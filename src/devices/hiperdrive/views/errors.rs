@@ -26,7 +26,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Ve
     );
 }
 
-/// Eight errors, the newest first.
+/// Draws the eight errors, the newest first.
 fn buffer(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let id = unit.session.id;
     let drive = unit.drive();
@@ -69,7 +69,7 @@ fn buffer(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     });
 }
 
-/// Parameters 116 to 118, temperatures, the supply.
+/// Draws parameters 116 to 118, temperatures, the supply.
 fn words(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_health.title"), |ui| {
         let Some(status) = unit.drive_status(unit.drive()) else {

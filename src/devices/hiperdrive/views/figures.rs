@@ -1,4 +1,4 @@
-//! The words that go to and fro bit by bit, and how well the cyclic connection keeps its time.
+//! The control and status words bit by bit, and the timing of the cyclic connection.
 
 use egui::accesskit::Role;
 use egui::{Align2, FontId, Rect, RichText, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
@@ -34,7 +34,7 @@ pub(super) fn words_card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, drive: Driv
 const BARS: f32 = 96.0;
 const WORDS: f32 = 16.0;
 
-/// The cyclic connection: how many packets, what was wrong with them, and how far their intervals were off.
+/// Draws the cyclic connection: the number of packets, their errors, and the deviation of their intervals.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     card(ui, theme, TEXTS.text("hd_link.title"), |ui| {
         let view = unit.moves.view();
@@ -64,7 +64,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// A bar a bucket; as many are high as there were, on a scale of decades, so that one late packet in a million is seen.
+/// Draws a bar for each bucket, on a logarithmic scale, so that one late packet in a million is visible.
 fn histogram(ui: &mut Ui, theme: &Theme, histogram: &Histogram) {
     let buckets: Vec<Bucket> = histogram.buckets().collect();
     let size = vec2(ui.available_width().max(0.0), BARS + WORDS);

@@ -1,4 +1,4 @@
-//! Motion by hand: hold to run, and steps that run to their end.
+//! Jogging: hold to run, and steps that run to their end.
 
 use egui::{FontId, Ui, Vec2, vec2};
 
@@ -46,12 +46,12 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         });
         problem(ui, theme, view.step_problem.as_ref());
         paragraph(ui, theme.caption(say(theme, "hd_step.words")));
-        // At the end: nothing that can be clicked moves away when it comes.
+        // At the end: no clickable widget moves when it appears.
         outside::block_ui(ui, theme, unit, &mut view.outside, actions);
     });
 }
 
-/// Draws what the pads do, or why they are blocked, in the same room: nothing below moves when that changes.
+/// Draws what the buttons do, or why they are blocked, in the same space: nothing below moves when that changes.
 fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {
@@ -73,7 +73,7 @@ fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
     });
 }
 
-/// The two buttons that are held.
+/// Draws the two buttons that are held.
 pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     ui.horizontal(|ui| {
@@ -97,7 +97,7 @@ pub(super) fn pads_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, enabled: bool, ac
     });
 }
 
-/// A button that moves a drive while it is held; `press` begins that.
+/// Draws a button that moves a drive while it is held; `press` starts the motion.
 pub(super) fn pad_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -106,7 +106,7 @@ pub(super) fn pad_ui(
     (button, size): (&HoldButton<'_>, Vec2),
     actions: &mut Vec<Action>,
 ) {
-    // For another drive it is another button: what is held for the one, or has the keyboard, does not count for the other.
+    // It is another button for another drive: holding it or its keyboard focus does not carry over.
     let event = ui.push_id((session, drive), |ui| hold_button(ui, theme, button, size)).inner;
     let motor = match event {
         Some(HoldEvent::Press) => press,

@@ -71,7 +71,7 @@ fn row(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     ui.add_space(theme.space.inside);
 }
 
-/// Pressed, it shows the next of what it can.
+/// Draws an LED; a click shows its next possible state.
 fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     let shown = theme.words(&leds.state_text(lamp));
     let response = ui.add(egui::Button::new("").min_size(BUTTON));
@@ -100,7 +100,7 @@ fn lamp_ui(ui: &mut Ui, theme: &Theme, leds: &mut Leds, lamp: Led) {
     }
 }
 
-/// The appearance of an LED: its left and its right half, and whether it blinks.
+/// Appearance of an LED: its left and its right half, and whether it blinks.
 struct LedStyle {
     left: Option<Color32>,
     right: Option<Color32>,
@@ -136,7 +136,7 @@ fn look(theme: &Theme, leds: &Leds, lamp: Led) -> LedStyle {
     }
 }
 
-/// A disc of two halves; what comes and goes has rays.
+/// Draws a disc of two halves; a blinking one has rays.
 fn paint(painter: &Painter, theme: &Theme, middle: Pos2, look: LedStyle) {
     let half = |from: f32, colour: Color32| {
         let points = (0..=16_u8).map(|step| {

@@ -16,7 +16,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let actual = unit.actual(drive);
     let ruler = unit.ruler(drive);
     let in_measure = |steps: i32, measure: Measure| {
-        // No one measures beyond a thousandth.
+        // Measuring beyond a thousandth is useless.
         let decimals = ruler.decimals(measure).min(3);
         ruler.of(steps.into(), measure).map(|value| theme.number(value, decimals))
     };
@@ -27,14 +27,14 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         let shown = main.unwrap_or_else(|| "–".to_owned());
         let ink = if unit.outside_words(drive).is_some() { palette.bad } else { ink };
         ui.label(RichText::new(shown).font(egui::FontId::monospace(theme.sizes.live)).color(ink));
-        // In the same line: nothing below it moves when it comes.
+        // On the same line: nothing below it moves when it appears.
         let measure = theme.label(say(theme, unit.measure.unit()));
         ui.label(measure);
         if let Some(badge) = warning.take_if(|own| fits(ui, own)) {
             ui.label(badge);
         }
     });
-    // Without room there, it is drawn before the state.
+    // If there is no space there, it is drawn before the state.
     let is_told_below = warning.is_some();
     let Some(actual) = actual else { return };
     let state = actual.status.state();
@@ -46,13 +46,13 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         State::NotReady | State::Ready | State::Operational => palette.muted,
     };
     let word = theme.words(&explain::state(state));
-    // Short enough for one line beside the widest state: the rows below stay where they are.
+    // Short enough for one line beside the widest state: the rows below do not move.
     let told_below = TEXTS.text("hd_outside.beside_state").with("state", &word);
     let word = if is_told_below { theme.words(&told_below) } else { word };
     let rpm = theme.number(unit.speed_scale(drive).rpm(actual.speed), 1);
     let speed = format!("{rpm} {}", theme.say("unit.revolutions_per_minute"));
     if ui.available_height() < LOW {
-        // In a low window the plot needs the room.
+        // In a low window the plot needs the space.
         let words = format!("{word} · {speed}");
         ui.add(egui::Label::new(RichText::new(words).size(theme.sizes.caption).color(colour)).truncate());
         return;

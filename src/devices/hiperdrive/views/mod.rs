@@ -1,5 +1,4 @@
-//! The HIPERDRIVE tab: its pages, each about one thing that a person wants of a drive, and above them what is never out of
-//! reach.
+//! The HIPERDRIVE tab: its pages, one per task, and above them the bar that is always visible.
 
 mod axis;
 mod bar;
@@ -32,18 +31,18 @@ use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, workspace};
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Page {
-    /// The drive's states, and what moves it.
+    /// The drive's states, and its motion.
     #[default]
     Motion,
     /// Every parameter.
     Parameters,
-    /// From a new drive to an axis that is saved.
+    /// From a new drive to a saved axis.
     Axis,
     /// Errors, LEDs, the cyclic connection.
     Diagnosis,
     /// Identity, and network.
     Device,
-    /// Profiles, backups and what was written.
+    /// Profiles, backups and the logbook.
     Backups,
 }
 
@@ -65,7 +64,7 @@ impl Page {
     }
 }
 
-/// The state of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct HiperdriveUiState {
     drives: BTreeMap<DriveNumber, DriveEntries>,
@@ -120,7 +119,7 @@ impl TypedDeviceView for HiperdriveView {
         let sides = |top, bottom| egui::Margin { left: around, right: around, top, bottom };
         let id = egui::Id::unique(unit.session.id);
         if unit.profile().is_none() {
-            // Stays where it is while the rest scrolls: STOP, and what it is not.
+            // Fixed while the rest scrolls: STOP and its note.
             egui::Panel::top(id.with("hiperdrive_bar"))
                 .frame(egui::Frame::NONE.inner_margin(sides(8, 8)))
                 .show(ui, |ui| bar::bar_ui(ui, theme, studio, unit, actions));
@@ -141,7 +140,7 @@ impl TypedDeviceView for HiperdriveView {
         }
         ScrollArea::vertical().id_salt((unit.session.id, page.place())).auto_shrink(false).show(ui, |ui| {
             frame.show(ui, |ui| match page {
-                // No entry, and nothing that undoes what was typed into it, is another drive's.
+                // Each drive has its own entries, with their own undo.
                 Page::Motion => {
                     let own = &mut view.drives.entry(drive).or_default().motion;
                     ui.push_id(drive, |ui| motion::page_ui(ui, theme, unit, own, actions));
@@ -174,7 +173,7 @@ impl TypedDeviceView for HiperdriveView {
         _page: Page,
         actions: &mut Vec<Action>,
     ) {
-        // Below, so that nothing moves away under the finger that holds a drive.
+        // Below, so that nothing moves under the pointer that holds a drive's button.
         if device.running().is_some() && !device.is_reviewing() {
             egui::Panel::bottom(egui::Id::unique(device.id()).with("hiperdrive_running"))
                 .frame(egui::Frame::NONE.inner_margin(egui::Margin { left: 0, right: 0, top: 0, bottom: 8 }))
@@ -200,7 +199,7 @@ impl TypedDeviceView for HiperdriveView {
     }
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -1,4 +1,4 @@
-//! The drive's states, and what moves it: by hand, to a position, at a speed.
+//! The states of the drive and its motion: by jogging, to a position, at a speed.
 
 use egui::{Id, RichText, Ui, UiBuilder, vec2};
 
@@ -17,7 +17,7 @@ use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
 use crate::ui::{Theme, icons};
 
-/// A percentage as it is typed.
+/// Percentage as entered.
 type Draft = Option<String>;
 
 /// The entered text.
@@ -36,10 +36,10 @@ pub(super) struct MotionUiState {
 const NUMBER: f32 = 88.0;
 const PERCENT: f32 = 56.0;
 const MEASURE: f32 = 64.0;
-/// Height of what says what is done with the drive, and the width from which that stands beside a heading.
+/// Height of the message about the drive, and the width from which it is beside a heading.
 const SAID: f32 = 32.0;
 const BESIDE: f32 = 560.0;
-/// Height of a window below which the states stand behind what moves the drive.
+/// Height of a window below which the states are after the motion widgets.
 const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
@@ -47,8 +47,8 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         empty(ui, theme, &say(theme, "hd_motion.offline"), None);
         return;
     }
-    // In a low window what moves the drive comes before the picture of its states, but not where that says what has failed.
-    // The window counts, not what is left of it: nothing changes its place because a notice comes.
+    // In a low window the motion widgets are before the state diagram, except if that shows a failure. The height of the
+    // window counts, not the remaining height: nothing moves when a notice appears.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
     let low = ui.ctx().content_rect().height() < LOW && !has_failed;
     locks(ui, theme, unit, actions);
@@ -56,7 +56,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         states(ui, theme, unit, actions);
         ui.add_space(theme.space.groups);
     }
-    // By a name of its own: what comes and goes above takes the keyboard from no entry.
+    // A unique id: widgets that appear above do not take the keyboard focus from an entry.
     let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
         two_columns(
@@ -106,8 +106,8 @@ fn locks(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     }
 }
 
-/// The diagram, and what the drive does just now: beside the heading, or below where that is narrow. Always as high, since
-/// nothing may move away under the finger that holds a drive.
+/// Draws the diagram and the present activity of the drive: beside the heading, or below in a narrow window. Its height is
+/// constant, since nothing may move under the pointer that holds a drive's button.
 fn states(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
     let beside = ui.available_width() >= BESIDE;
     let mut acts = Vec::new();
@@ -181,7 +181,8 @@ fn to_position(
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
     let (drive, id) = (unit.drive(), unit.session.id);
-    // Both rows stay where nothing is known for a moment: nothing below them moves, and no entry loses the keyboard.
+    // Both rows stay while the data are missing for a moment: nothing below them moves, and no entry loses the keyboard
+    // focus.
     let unknown = || "–".to_owned();
     let now = unit.actual(drive).map(|actual| theme.words(&unit.place(drive, actual.position)));
     row(ui, theme, &say(theme, "hd_move.now"), theme.mono(now.unwrap_or_else(unknown)));
@@ -208,7 +209,7 @@ fn to_position(
             Some(Phase::Paused { .. }) => {
                 let response = allowed_button(ui, theme, &allowed, icons::FAST_FORWARD, &say(theme, "hd_move.resume"));
                 let pressed = goes_down(ui, &response);
-                // It stands where the pause was: a second click in a fright is meant for that.
+                // It replaces the pause button: a hasty second click was meant for that.
                 if response.clicked() && !means_motion(ui.ctx(), false, pressed_at(ui, pressed)) {
                     motor(actions, id, Motor::Resume);
                 }
@@ -261,11 +262,11 @@ fn at_speed(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>,
     }
 }
 
-/// Speed and torque, in percent. What is typed counts at once, so that nothing begins with what stood there before; what is
-/// under way goes on as it began, which is said.
+/// Draws speed and torque, in percent. An entry takes effect at once, so that nothing starts with the old values; a running
+/// motion keeps its own, which is shown.
 ///
 /// # Errors
-/// What is typed is no percentage: nothing may begin with it.
+/// The entry is not a percentage: nothing may start with it.
 pub(super) fn effort_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -317,7 +318,7 @@ pub(super) fn effort_ui(
     taken
 }
 
-/// A length or a place: a number and its measure.
+/// Draws a length or a position: a number and its unit.
 pub(super) fn length_ui(
     ui: &mut Ui,
     theme: &Theme,

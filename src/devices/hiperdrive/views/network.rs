@@ -19,7 +19,7 @@ use crate::ui::{Theme, icons};
 /// Entered text that is not written yet.
 #[derive(Default)]
 pub(super) struct NetworkUiState {
-    /// As the device had it when typing began.
+    /// The settings of the device when typing began.
     of: Option<NetworkSettings>,
     form: Option<Form>,
 }
@@ -100,7 +100,7 @@ fn form_ui(ui: &mut Ui, theme: &Theme, before: &Form, form: &mut Form) {
         sources.push(before.source);
     }
     let named = sources.into_iter().map(|own| (own, theme.words(&network::source(own))));
-    // Below its name: beside it there is no room in a narrow column.
+    // Below its name: in a narrow column there is no space beside it.
     ui.label(theme.label(word.as_str()));
     options(ui, &word, &mut form.source, named);
     ui.add_space(theme.space.inside);

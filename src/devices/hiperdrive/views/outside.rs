@@ -1,4 +1,4 @@
-//! A drive outside its limits, said loudly: what is blocked, the way in, and what to do where the reference is wrong.
+//! The warning of a drive outside its limits: what is blocked, the way in, and what to do if the reference is wrong.
 
 use egui::{RichText, Ui};
 
@@ -19,7 +19,7 @@ pub(super) struct Draft {
     problem: Option<Text>,
 }
 
-/// The word for it in one line, where a drive is outside its limits.
+/// Returns the one-line warning if a drive is outside its limits.
 pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     unit.outside_words(unit.drive())?;
     let words = format!("{}  {}", icons::WARNING, say(theme, "hd_outside.short"));
@@ -52,7 +52,7 @@ pub(super) fn block_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draf
         (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
     };
     paragraph(ui, theme.caption(say(theme, words)));
-    // The buttons stay once one was pressed: what can be clicked below them does not move under the pointer.
+    // The buttons stay after one was pressed: the widgets below them do not move under the pointer.
     let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
     ui.horizontal_wrapped(|ui| {
         for way in ways {

@@ -1,4 +1,4 @@
-//! Every parameter: what it is, what is wanted of it, what it may be, what it comes with from the factory, whether it is kept.
+//! The table of parameters: value, edit, range, factory setting, and whether each is saved.
 
 use std::collections::BTreeMap;
 use std::iter::once;
@@ -29,11 +29,11 @@ pub(super) struct DriveParametersUiState {
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
-/// The filter of the parameters; or the scale, the meaning of two of them.
+/// Filter of the parameters; or the scale, which two of them define.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum ParameterFilter {
     All,
-    /// Those that can be written; whatever is looked for by name or number.
+    /// Writable parameters; a search by name or number covers all.
     #[default]
     Written,
     /// Those that are edited or were another value when they were read before.
@@ -41,7 +41,7 @@ pub(crate) enum ParameterFilter {
     Scale,
 }
 
-/// Width of what is looked for.
+/// Width of the search entry.
 const SOUGHT: f32 = 160.0;
 
 pub(super) fn page_ui(
@@ -110,7 +110,7 @@ fn head(ui: &mut Ui, theme: &Theme, view: &mut DriveParametersUiState) {
 }
 
 impl DriveParametersUiState {
-    /// The table goes once what is typed into it is taken or refused.
+    /// Returns whether the table closes its editor once the entry is accepted or refused.
     fn shows_scale(&self) -> bool {
         self.shown == ParameterFilter::Scale && (self.table.typed().is_none() || self.table.is_refused())
     }
@@ -184,7 +184,7 @@ fn table(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// A value as it is typed.
+/// Returns a value as an entry.
 fn own_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }
@@ -192,7 +192,7 @@ fn own_text(row: &Row) -> String {
 fn row_of(theme: &Theme, row: &Row) -> RegisterRow {
     let words = |text: Option<&Text>| text.map(|text| theme.words(text)).unwrap_or_default();
     let value = own_text(row);
-    // A unit that is a part of another one is multiplied.
+    // A unit that is part of another one is multiplied.
     let unit = match words(row.unit.as_ref()) {
         unit if unit.starts_with('0') => format!("× {unit}"),
         unit => unit,

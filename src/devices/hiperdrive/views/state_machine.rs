@@ -1,11 +1,11 @@
-//! A drive's seven states and what leads from one to another (reference of HIPERDRIVE, 3).
+//! The seven states of a drive and their transitions (reference of HIPERDRIVE, 3).
 //!
-//! * **Size**: as wide as there is room, five states in a row, fault and lock below them.
-//! * **Keyboard**: Tab goes through the states that can be gone to, Space or Enter goes there.
-//! * **Pointer**: a click on such a state.
-//! * **Accessible**: a button a state, by its name; the present one is selected, those that cannot be gone to are disabled.
-//! * **Painting**: the present state filled: accent, moving in the good colour, fault and lock as error and warning; states
-//!   that can be gone to outlined in the accent; arrows as the manual's figure has them.
+//! * **Size**: the available width, five states in a row, fault and lock below them.
+//! * **Keyboard**: Tab goes through the reachable states, Space or Enter requests one.
+//! * **Pointer**: a click on a reachable state.
+//! * **Accessible**: one button per state, by its name; the present one is selected, unreachable ones are disabled.
+//! * **Painting**: the present state filled: accent, moving in the good colour, fault and lock as error and warning;
+//!   reachable states outlined in the accent; arrows as in the manual's figure.
 
 use egui::accesskit::Role;
 use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2, vec2};
@@ -17,7 +17,7 @@ use crate::ui::widgets::focus_ring;
 /// A state machine to be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StateMachine<'a> {
-    /// The state in which the drive is; `None`: it is not known.
+    /// The present state of the drive; `None`: not known.
     pub(crate) present: Option<State>,
     /// States that can be reached from the present one.
     pub(crate) reachable: &'a [State],
@@ -35,7 +35,7 @@ const MOST: f32 = 128.0;
 /// Places of the arrows' heads, and half of how wide one is.
 const HEAD: f32 = 6.0;
 
-/// Columns and row of a state.
+/// Returns the columns and row of a state.
 const fn place(state: State) -> (f32, f32) {
     match state {
         State::NotReady => (0.0, 0.0),
@@ -71,7 +71,7 @@ impl Plan {
     }
 }
 
-/// Draws it; the state that was asked for.
+/// Draws the diagram; returns the requested state.
 pub(crate) fn state_machine(ui: &mut Ui, theme: &Theme, machine: &StateMachine<'_>) -> Option<State> {
     let size = vec2(ui.available_width().max(240.0), 2.0 * BOX + BETWEEN);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
@@ -144,10 +144,10 @@ fn box_ui(painter: &Painter, theme: &Theme, rect: Rect, name: &str, look: BoxSty
     painter.galley(Align2::CENTER_CENTER.align_size_within_rect(words.size(), rect).min, words, look.ink);
 }
 
-/// The lines between the boxes: there and back in the row, three into the fault, two out of the lock.
+/// Draws the lines between the boxes: both directions in the row, three into the fault, two out of the lock.
 fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>) {
     let faint = Color32::from(theme.palette.muted).gamma_multiply(0.7);
-    // The arrows that lead away from the present state.
+    // The arrows from the present state.
     let ink = |from: &[State]| {
         let own = present.is_some_and(|present| from.contains(&present));
         Stroke::new(if own { 1.5 } else { 1.0 }, if own { theme.palette.accent.into() } else { faint })
@@ -181,7 +181,7 @@ fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>)
     line(painter, &side, ink(&[State::Locked]));
 }
 
-/// A line with a head at its end.
+/// Draws a line with an arrow head.
 fn line(painter: &Painter, points: &[Pos2], stroke: Stroke) {
     for (from, to) in points.iter().zip(points.iter().skip(1)) {
         painter.line_segment([*from, *to], stroke);

@@ -1,4 +1,4 @@
-//! `do`: actions that are more than writing a value.
+//! `do`: actions other than writing a value.
 
 use serde_json::json;
 
@@ -75,7 +75,7 @@ fn change_code(number: &str, new: &str) -> Result<Change> {
         parse_number(number).ok_or_else(|| Failure::Usage(format!("{number:?} is not a number"))).and_then(|n| {
             u8::try_from(n).ok().and_then(CodeNumber::new).ok_or_else(|| out_of_range("access code", number, 0, 3))
         })?;
-    // The message does not repeat what may be a code.
+    // The message does not repeat the text, which may be a code.
     let new =
         parse_code(new).ok_or_else(|| Failure::Usage("the new code must be two hexadecimal digits".to_owned()))?;
     Ok(Change::ChangeCode { number, new })
@@ -93,7 +93,7 @@ fn size(text: &str) -> Result<FieldSize> {
     })
 }
 
-/// `32 code=2 ce=1 we=1`, or a status byte: `0xE9`. A field is writable and needs its code unless told otherwise.
+/// Parses `32 code=2 ce=1 we=1`, or a status byte: `0xE9`. By default a field is writable and needs its code.
 fn new_status(words: &[&str]) -> Result<DataFieldStatus> {
     let [first, options @ ..] = words else { return Err(Failure::Usage("the size is missing".to_owned())) };
     let is_hex = first.starts_with("0x") || first.starts_with("0X");
@@ -156,7 +156,7 @@ fn check_device(common: &Common, output: &Output, restart: bool) -> Result {
         CheckFinding::Line(quality) => Some(quality),
         _ => None,
     });
-    // A line on which nothing had to be repeated is no step: scripts have its figures in `line_quality`.
+    // A line without repetitions is not a step: scripts have its figures in `line_quality`.
     let shown: Vec<HiperfaceStepResult> =
         lines.iter().filter(|own| own.step != CheckStep::Line || own.verdict != Verdict::Good).cloned().collect();
     check::show_with(output, &words::check(&shown), quality)

@@ -14,7 +14,7 @@ use crate::devices::hiperface::protocol::{AccessCode, CodeNumber};
 pub(super) struct CodeOption {
     /// Access code N, if it is not 55h; repeatable. Also read from ENCODER_STUDIO_CODES="0=66,2=1A".
     #[arg(long = "code", global = true, value_name = "N=HEX")]
-    // Taken as text: a message about a wrong argument repeats it, and this may be a code.
+    // Taken as text: an error message about a wrong argument repeats it, and this may be a code.
     pub(super) codes: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ impl FromStr for Code {
     }
 }
 
-/// An access code: one or two hex digits, with or without `0x` or a final `h`.
+/// Parses an access code: one or two hex digits, with or without `0x` or a final `h`.
 pub(super) fn parse_code(text: &str) -> Option<AccessCode> {
     match crate::bits::parse_hex(text.trim()).ok()?.as_slice() {
         [byte] => Some(AccessCode::new(*byte)),

@@ -1,4 +1,4 @@
-//! `decode`: captured bytes in words, offline.
+//! `decode`: explains captured bytes, offline.
 
 use serde_json::Map;
 

@@ -1,4 +1,4 @@
-//! Commands that only look: `find`, `identify`, `status`, `position`, `read`.
+//! Commands that only read: `find`, `identify`, `status`, `position`, `read`.
 
 use std::time::Duration;
 
@@ -205,7 +205,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     if let Some(table) = &table {
         output.print(table.header())?;
     }
-    // A code that the encoder announced while it was identified is about this position too.
+    // A code that the encoder announced during identification applies to this position too.
     let mut codes_before = codes_met(&runner);
     let job = || HiperfaceJob::Position(identity.geometry);
     try_readings(&mut runner, position, job, |runner, came| {

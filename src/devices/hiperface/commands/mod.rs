@@ -137,7 +137,7 @@ impl Simulated for Bus {
     }
 }
 
-/// The item that a user names.
+/// Returns the item that a user names.
 fn item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: crate::devices::hiperface::profile::ItemError| Failure::Usage(error.to_string()))
 }

@@ -1,4 +1,4 @@
-//! The commands about profiles of a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
+//! The commands for profiles of a HIPERFACE encoder: `save`, `restore`, and reading it for a comparison.
 
 use std::collections::BTreeMap;
 
@@ -42,7 +42,7 @@ fn name_locked(output: &Output, saved: &SavedProfile, what: &str) {
     }
 }
 
-/// The encoder as it is, for a comparison.
+/// Reads the encoder for a comparison.
 pub(super) fn present(common: &Common, output: &Output, _profile: Option<&Body>) -> Result<Body> {
     let saved = saved(&mut Runner::open(common)?, SaveOptions::default())?;
     name_locked(output, &saved, "compared without its bytes");

@@ -49,7 +49,7 @@ impl Runs for Hiperface {
     }
 }
 
-/// The codes that the encoder announced on the way of the last job.
+/// Returns the codes that the encoder announced during the last job.
 pub(super) fn codes_met(runner: &Runner) -> Vec<StatusCode> {
     runner.remarks.iter().flat_map(codes).copied().collect()
 }

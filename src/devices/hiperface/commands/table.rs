@@ -1,21 +1,20 @@
-//! Positions as a table (CSV): commas and points, whatever the language, so that a script reads what another one wrote.
-//! Prints nothing itself.
+//! Positions as a table (CSV): commas and points, in any language, so that scripts can read it. Prints nothing itself.
 
 use crate::devices::hiperface::procedures::PositionReading;
 use crate::devices::hiperface::protocol::{Geometry, StatusCode};
 
-/// The format of positions: degrees for a shaft, millimetres for a scale.
+/// Format of positions: degrees for a shaft, millimetres for a scale.
 pub(super) struct Table {
     linear: bool,
 }
 
 impl Table {
-    /// The table of an encoder; of one that is not known, that of a shaft.
+    /// Returns the table for an encoder; for an unknown one, that of a shaft.
     pub(super) fn of(geometry: Option<Geometry>) -> Self {
         Table { linear: matches!(geometry, Some(Geometry::Linear { .. })) }
     }
 
-    /// The first line.
+    /// Returns the first line.
     pub(super) fn header(&self) -> &'static str {
         match self.linear {
             true => "t_s,raw,turns,steps,millimetres,valid,codes\n",
@@ -23,7 +22,7 @@ impl Table {
         }
     }
 
-    /// A line: what is not known stays empty; codes as two hexadecimal digits, separated by spaces.
+    /// Returns a line: unknown values are empty; codes as two hexadecimal digits, separated by spaces.
     pub(super) fn row(&self, reading: &PositionReading) -> String {
         let place = reading.position;
         let number = |number: Option<u64>| number.map_or_else(String::new, |number| number.to_string());
@@ -43,7 +42,7 @@ impl Table {
         )
     }
 
-    /// The line of a reading that gave no position.
+    /// Returns the line of a reading that gave no position.
     pub(super) fn row_without_position(&self, codes: &[StatusCode]) -> String {
         format!(",,,,,false,{}\n", words(codes))
     }

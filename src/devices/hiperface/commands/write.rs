@@ -1,4 +1,4 @@
-//! `write`, and what every writing command shares: the plan in words, consent, carrying it out.
+//! `write`, and the common parts of writing commands: the plan as text, consent, carrying it out.
 
 use serde_json::{Value as Json, json};
 
@@ -23,7 +23,7 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
     change_and_show(common, output, change, &write.consent, &item.to_string())
 }
 
-/// Prepares a change, asks, carries it out and prints what came of it.
+/// Prepares a change, asks, carries it out and prints the result.
 pub(super) fn change_and_show(
     common: &Common,
     output: &Output,
@@ -77,7 +77,7 @@ fn change_of(item: Item, value: &str) -> Result<Change> {
     }
 }
 
-/// A settings byte without reserved values.
+/// Returns a settings byte without reserved values.
 pub(super) fn settings(value: &str) -> Result<LineSettings> {
     let settings = LineSettings::from_byte(byte_within(Item::Settings, value, 0..=0xFF)?);
     if settings.is_valid() {
@@ -102,7 +102,7 @@ fn number(item: Item, value: &str) -> Result<i64> {
     parse_number(value).ok_or_else(|| Failure::Usage(format!("{item}: {value:?} is not a number")))
 }
 
-/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+/// Asks for consent if required, and carries the plan out. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -119,7 +119,7 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// The plan for a person: each operation old → new, and what it costs.
+/// Returns the plan as text: each operation old → new, and the cost.
 pub(super) fn plan_text(prepared: &Prepared) -> String {
     let plan = &prepared.plan;
     let mut lines = Lines::default();
@@ -146,7 +146,7 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
                     let byte = |status: DataFieldStatus| format!("{:02X}", status.byte());
                     (from.map(byte), Some(byte(*to)))
                 }
-                // An access code is shown nowhere.
+                // An access code is never shown.
                 Op::ChangeCode { .. } => (None, None),
                 op => {
                     let (old, new) = change_words(op);
@@ -158,7 +158,8 @@ pub(super) fn operations(plan: &HiperfacePlan) -> Vec<Json> {
         .collect()
 }
 
-/// Status and settings with their bytes, which `status:N` and `settings` take; the rest as everybody is told it.
+/// Returns old and new value of an operation: status and settings as bytes, which `status:N` and `settings` take, others as
+/// text.
 fn change_words(op: &Op) -> (String, String) {
     match op {
         Op::Define { from, to, .. } => {

@@ -13,42 +13,42 @@ use crate::devices::hiperface::protocol::{
     AccessCode, CodeNumber, DataFieldStatus, DeviceAddress, FieldSize, Geometry, LineSettings, StatusCode,
 };
 
-/// Persistent writes after which an encoder counts as worn: the manual says of the counter, which lives in the same
-/// EEPROM, that it can be incremented about a million times.
+/// Persistent writes after which an encoder counts as worn: by the manual, the counter, which is in the same EEPROM, can be
+/// incremented about a million times.
 pub const WEAR_LIMIT: u64 = 1_000_000;
 
 /// A job of a session with a HIPERFACE encoder.
 #[derive(Debug)]
 pub enum HiperfaceJob {
-    /// Everything there is to see: for a window, after connecting.
+    /// Reads everything that is displayed: for a window, after connecting.
     Survey,
     /// Reads the identity.
     Identify,
     /// The whole error queue.
     Status,
-    /// The position, once. With the geometry, where it is known already.
+    /// Reads the position once. With the geometry, if it is already known.
     Position(Option<Geometry>),
-    /// The shaft at rest: position, and sine and cosine where the encoder gives them.
+    /// Reads the shaft at rest: position, and sine and cosine if the encoder provides them.
     Rest,
     /// One value.
     Read(Item),
     /// Everything that can be restored.
     Save(SaveOptions),
-    /// The start-up sequence with a verdict a line; with a restart first.
+    /// Carries out the start-up sequence with one verdict per item; with a restart first if requested.
     Check {
         /// Send 53h first.
         restart: bool,
     },
-    /// 53h and its waits.
+    /// Sends 53h and waits for the restart.
     Reset,
-    /// All speeds, parities and addresses.
+    /// Searches all speeds, parities and addresses.
     Find(FindOptions),
     /// 67h, and our side after it.
     ConfigureForNow(LineSettings),
     /// Uses an access code from now on; nothing is sent.
     UseCode {
         number: CodeNumber,
-        /// Its value; it is shown nowhere.
+        /// Its value, which is never shown.
         code: AccessCode,
     },
     /// Makes a plan; writes nothing.
@@ -60,21 +60,21 @@ pub enum HiperfaceJob {
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Make the encoder as the profile says.
+    /// Restores a profile.
     Restore {
         profile: Box<HiperfaceProfile>,
         options: RestoreOptions,
     },
-    /// Write bytes of data fields: where, and which; a count has to be that of the bytes.
+    /// Writes bytes of data fields: ranges and bytes; a count must equal the number of bytes.
     Store(Vec<(FieldRange, Vec<u8>)>),
     CreateField {
         number: u8,
         status: DataFieldStatus,
     },
-    /// Give a field another status: protection, access code, or, for the last, size.
+    /// Changes the status of a field: protection, access code, or, for the last one, size.
     Redefine {
         number: u8,
-        /// Its status from then on; it exists.
+        /// Its new status; the field exists.
         status: DataFieldStatus,
     },
     /// Write-protect a field, or make it writable.
@@ -92,25 +92,25 @@ pub enum Change {
     DeleteField {
         number: u8,
     },
-    /// Change an access code; its present value is the session's.
+    /// Changes an access code; its present value is the session's.
     ChangeCode {
         number: CodeNumber,
         /// Its new value.
         new: AccessCode,
     },
-    /// Set the position; at standstill.
+    /// Sets the position, at standstill.
     SetPosition {
-        /// The position wanted.
+        /// The requested position.
         wanted: u32,
-        /// Exactly that, also when it breaks the phase to the sine; else the nearest that keeps it.
+        /// Exactly this value, even if it breaks the phase to the sine; otherwise the nearest that keeps it.
         exact: bool,
         /// 63h: align the code tracks as well.
         synchronise: bool,
-        /// The user says that the encoder is a kit, where the type does not tell.
+        /// The user states that the encoder is a kit, if the type does not tell.
         kit: bool,
     },
-    /// Add steps to the position, round the end of the measuring range; at standstill. It undoes a set position wherever
-    /// the shaft is by now.
+    /// Adds steps to the position, modulo the measuring range; at standstill. It undoes setting a position wherever the
+    /// shaft is now.
     ShiftPosition {
         /// Number of steps.
         steps: i64,
@@ -125,12 +125,12 @@ pub enum Change {
     IncrementCounter,
 }
 
-/// Kinds of change that differ in what completes one that was cut off.
+/// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// A profile is restored: doing it again completes it.
+    /// Restore of a profile: repeating it completes it.
     Restore,
-    /// Edited bytes are written: those that are not yet stay edited.
+    /// Edited bytes: those not yet written remain edits.
     Bytes,
     /// One thing, which is done or not.
     Single,
@@ -146,30 +146,31 @@ impl Change {
     }
 }
 
-/// A plan, ready to be looked at.
+/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: HiperfacePlan,
-    /// The encoder it is for.
+    /// The encoder that it is for.
     pub identity: Identity,
-    /// Persistent writes that this computer has seen the encoder take; `None` where the logbook does not tell.
+    /// Number of persistent writes of the encoder recorded on this computer; `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
-    /// Things that are as they should be already.
+    /// Number of items that already have the right value.
     pub unchanged: u64,
-    /// Items that are left alone because one side does not have them or cannot read them.
+    /// Items left alone because one side does not have them or cannot read them.
     pub missing: Vec<FieldRange>,
     /// Values of the mounting that differ and are left alone.
     pub mounting_left: Vec<FieldRange>,
-    /// Values of another device's mounting that are written: they have to be set up again.
+    /// Values of another device's mounting that are written: they must be set up again.
     pub mounting_written: Vec<FieldRange>,
     /// Data fields with bytes of unknown meaning that differ from another encoder's.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields that the write created which this undoes, and that are left: they have changed since, or are not the last.
+    /// Data fields created by the write that this one undoes, and left in place: they have changed since, or are not the
+    /// last.
     pub created_left: Vec<u8>,
     /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
-    /// The position asked for, where the plan sets another one that keeps the phase.
+    /// The requested position, if the plan sets another one that keeps the phase.
     pub wanted_position: Option<u32>,
 }
 
@@ -177,7 +178,7 @@ pub struct Prepared {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OtherType {
     pub profile: u8,
-    /// In the encoder.
+    /// Type of the encoder.
     pub device: u8,
 }
 
@@ -192,7 +193,7 @@ impl Prepared {
     }
 }
 
-/// A plan that a person consented to.
+/// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 /// The result of a commit.
@@ -202,7 +203,7 @@ pub type Committed = crate::worker::Committed<Written>;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(i64),
-    /// An analogue value, and what it should not exceed, where the encoder's extended label says so.
+    /// Analogue value, and its limit if the encoder's extended label contains one.
     Analogue {
         value: i16,
         limit: Option<i16>,
@@ -224,16 +225,16 @@ pub struct SavedProfile {
 pub enum DeviceMessage {
     /// Status codes that replies announced.
     Codes(Vec<StatusCode>),
-    /// Number of status codes that may have been lost: 50h takes them out of the encoder, and its reply was lost or
+    /// Number of status codes that may have been lost: 50h removes them from the encoder, and its reply was lost or
     /// damaged.
     CodesUnheard(u32),
     /// An encoder that answered while one searched.
     Found(FoundEncoder),
-    /// Something had to be repeated, or came too late.
+    /// Something was repeated, or arrived too late.
     Line(LineQuality),
 }
 
-/// The step that a HIPERFACE job is at. Its text is the command line's.
+/// Step of a running HIPERFACE job. Its text is that of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     /// The data field of that number is read.
@@ -283,7 +284,7 @@ impl From<PlanError> for JobError {
 }
 
 impl JobError {
-    /// The encoder is there and has no position to give at the moment.
+    /// Returns whether the encoder is there and has no position to give at the moment.
     pub fn means_no_position(&self) -> bool {
         matches!(self, JobError::Device(error) if error.means_no_position())
     }

@@ -1,4 +1,4 @@
-//! A HIPERFACE encoder at the end of a session, and its jobs.
+//! A HIPERFACE encoder as seen by a session, and its jobs.
 
 mod commit;
 mod job;
@@ -31,12 +31,12 @@ use crate::link::{ByteLink, Clock, LinkError};
 use crate::store::{DeviceKey, Store};
 use crate::worker::{Device, JobReport, Progress, Session, SessionContext, Watched};
 
-/// A HIPERFACE encoder at the end of its wire.
+/// HIPERFACE encoder with its connection.
 pub struct Hiperface {
     wire: Box<dyn ByteLink>,
     station: Station,
     types: Arc<EncoderTypes>,
-    /// As the encoder was last identified in this session: samples are seen with it.
+    /// Geometry from the last identification in this session: samples are interpreted with it.
     geometry: Option<Geometry>,
     /// The last identified encoder, as the logbook knows it.
     identified: Option<DeviceKey>,
@@ -52,19 +52,19 @@ impl fmt::Debug for Hiperface {
 }
 
 impl Hiperface {
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 
-    /// Notes who has answered.
+    /// Notes the identity of the encoder that has replied.
     fn identified(&mut self, context: &SessionContext, identity: &Identity) {
         self.geometry = identity.geometry;
         self.identified = Some(device_key(identity, context.is_virtual));
     }
 
-    /// Keeps the status codes that were read, before they are shown. An encoder that is not known yet is asked who it is:
-    /// its logbook is to have them.
+    /// Stores the status codes that were read, before they are shown. An encoder that is not known yet is identified first,
+    /// since the codes go into its logbook.
     fn keep_codes(&mut self, context: &mut SessionContext, codes: &[StatusCode]) {
         if codes.is_empty() {
             return;
@@ -79,7 +79,7 @@ impl Hiperface {
         status::record_codes(&context.store, &device, codes);
     }
 
-    /// The same for what is sampled, where a code that stays comes with each sample.
+    /// Stores the codes of samples, in which a persistent code is repeated.
     fn keep_sampled_codes(&mut self, context: &mut SessionContext) {
         let codes = self.station.take_codes_read();
         if !codes.is_empty() && self.status.is_news(&codes, context.clock.now()) {
@@ -89,7 +89,8 @@ impl Hiperface {
 }
 
 impl Session<Hiperface> {
-    /// A session on an open wire. `is_virtual`: the encoder lives in this process, and its wear counts apart.
+    /// Creates a session on an open connection. `is_virtual`: the encoder is a virtual one in this process, and its writes
+    /// are counted separately.
     pub fn new(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -104,7 +105,7 @@ impl Session<Hiperface> {
         Session::with(device, clock, store, is_virtual)
     }
 
-    /// The access codes that the user knows.
+    /// Returns the access codes that the user knows.
     pub fn codes_mut(&mut self) -> &mut Codes {
         &mut self.device.station.codes
     }
@@ -142,7 +143,7 @@ impl Device for Hiperface {
         let sample = read_sample(&mut self.master(context), geometry);
         self.keep_sampled_codes(context);
         let sample = sample?;
-        // The codes met are in it.
+        // It contains the codes collected.
         self.station.codes_met.truncate(met_before);
         Ok(sample)
     }
@@ -152,7 +153,7 @@ impl Device for Hiperface {
         let reading = read_watched(&mut self.master(context), *what);
         self.keep_sampled_codes(context);
         let reading = reading?;
-        // The codes met are in it.
+        // It contains the codes collected.
         self.station.codes_met.truncate(met_before);
         let refused = reading.is_refused();
         let sample = Sample::Watched(reading);
@@ -264,7 +265,7 @@ fn read_item(master: &mut Master<'_>, item: Item) -> Result<Value, JobError> {
     if let (Item::Field(FieldRange { field, .. }) | Item::Status(field), Err(error)) = (item, &value)
         && error.is_rejection(StatusCode::NO_SUCH_FIELD)
     {
-        // Which ones there are says more than the encoder's refusal.
+        // The list of existing fields is more useful than the encoder's refusal.
         let count = procedures::write::read_memory(master)?.fields;
         return Err(PlanError::NoSuchField { field, count }.into());
     }

@@ -1,4 +1,4 @@
-//! From a link URL to a session with a HIPERFACE encoder.
+//! Opening a session with a HIPERFACE encoder from a link URL.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to a HIPERFACE encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
+/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
@@ -40,7 +40,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Hiperface>, OpenError
     Ok(Session::new(wire, clock, station, store, types, url.scheme == Scheme::Sim))
 }
 
-/// The line, and the virtual encoder, which counts for a link to it alone.
+/// Returns the line, and the virtual encoder, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if matches!(url.scheme, Scheme::Bridge | Scheme::Modbus | Scheme::Enip) {
         return Err(leads_elsewhere(url.scheme, "sim:, serial:, tcp:, replay:"));
@@ -48,7 +48,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     let mut station = Station::from_query(&url.query, margin(url.scheme))?;
     let settings = simulated(url, LinkParameters::KEYS, Config::KEYS)?;
     if url.scheme == Scheme::Sim {
-        // The virtual encoder's converter may echo; whether it does is learned as with a real one.
+        // The virtual encoder's converter may echo; this is detected as with a real one.
         station.line.echo = Echo::Unknown;
         let line = LinkParameters::KEYS.iter().filter(|key| !Config::KEYS.contains(key));
         check_parameters(&url.query, url.scheme, &line.chain(Config::KEYS).copied().collect::<Vec<_>>())?;

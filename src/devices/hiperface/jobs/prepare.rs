@@ -1,4 +1,4 @@
-//! From a change that a user wants to a plan. Reads; writes nothing.
+//! Makes a plan from a change. Reads; writes nothing.
 
 use std::collections::BTreeSet;
 
@@ -86,7 +86,7 @@ pub(super) fn prepare(
         Change::SetAddress(to) => {
             let memory = read_memory(&mut master)?;
             let from = master.station().address;
-            // Broadcast: one encoder is connected, which may be there itself.
+            // Broadcast: one encoder is connected, which may have this address itself.
             if from != to.byte() && from != BROADCAST {
                 ensure_free(&mut master, to)?;
             }
@@ -160,7 +160,7 @@ fn set_position(
     let to = if exact { wanted } else { nearest_in_phase(now, wanted, range) };
     prepared.wanted_position = (to != wanted).then_some(wanted);
     let fields = prepared.identity.memory.map_or(0, |memory| memory.fields);
-    // Synchronising aligns the tracks even where the position stays.
+    // Synchronising aligns the tracks even if the position does not change.
     let op = (to != now || synchronise).then_some(Op::SetPosition { from: now, to, synchronise });
     Ok(plan_scalar(fields, Scalar::Position(now), op))
 }

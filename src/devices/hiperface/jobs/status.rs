@@ -1,5 +1,5 @@
-//! Status codes into the logbook, before anything shows them: 50h takes them out of the encoder, so that a code that was read
-//! and not kept is gone.
+//! Status codes in the logbook, before they are shown: 50h removes them from the encoder, so a code that was read and not
+//! stored is lost.
 
 use std::time::Duration;
 
@@ -31,7 +31,7 @@ impl StatusKeeper {
     }
 }
 
-/// Writes codes into the log and the logbook. The log has them where the logbook cannot be used.
+/// Writes codes to the log and the logbook. The log has them even if the logbook cannot be used.
 pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCode]) {
     let words = codes.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     tracing::info!("{} {}: status codes read: {words}", device.kind, device.serial_number);
@@ -42,7 +42,7 @@ pub(super) fn record_codes(store: &Store, device: &DeviceKey, codes: &[StatusCod
     }
 }
 
-/// An encoder that did not tell who it is.
+/// Returns the key of an encoder that was not identified.
 pub(super) fn unknown_device(is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, "", "", is_virtual)
 }

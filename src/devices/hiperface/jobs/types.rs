@@ -1,4 +1,4 @@
-//! The table of encoder types: the built-in one, and the rows of the user's own before it.
+//! The table of encoder types: the user's own rows, then the built-in ones.
 
 use std::path::PathBuf;
 
@@ -16,11 +16,11 @@ pub struct BrokenTypes {
     pub cause: TypeTableError,
 }
 
-/// The built-in table of encoder types; rows in the user's own file go before its rows.
+/// Returns the built-in table of encoder types; rows in the user's own file go before its rows.
 ///
 /// # Errors
-/// Where the user's file exists but cannot be read or understood ([`BrokenTypes`]). [`EncoderTypes::built_in`] is there to
-/// go on with.
+/// If the user's file exists but cannot be read or parsed ([`BrokenTypes`]). [`EncoderTypes::built_in`] can be used
+/// instead.
 pub fn encoder_types(store: &Store) -> Result<EncoderTypes, StoreError> {
     let built_in = EncoderTypes::built_in();
     let path = store.device_file(KIND);

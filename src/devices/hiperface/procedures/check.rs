@@ -1,4 +1,4 @@
-//! The device check: the start-up sequence of the manual (figures 8 and 9) with a verdict a line.
+//! The device check: the start-up sequence of the manual (figures 8 and 9) with one verdict per item.
 
 use super::fields::tolerated;
 use super::{
@@ -36,12 +36,12 @@ pub enum CheckStep {
 pub enum CheckFinding {
     Code(StatusCode),
     Position(Position),
-    /// The position word, where periods and turns are not known.
+    /// The position word, if periods and turns are not known.
     RawPosition(u32),
     /// The encoder's name.
     Name(String),
     SerialNumber(String),
-    /// An analogue value and what it should not exceed.
+    /// Analogue value and its limit.
     Limit {
         channel: u8,
         value: i16,
@@ -53,7 +53,7 @@ pub enum CheckFinding {
         number: u8,
         status: DataFieldStatus,
     },
-    /// A data field whose access code, which its status names, is not known.
+    /// A data field with an unknown access code, the number of which is in its status.
     FieldLocked {
         number: u8,
         status: DataFieldStatus,
@@ -68,16 +68,16 @@ pub enum CheckFinding {
         number: u8,
         why: Error,
     },
-    /// Something else that cannot be read.
+    /// Another item that cannot be read.
     Unreadable(Error),
     Line(LineQuality),
 }
 
-/// Carries out the check; with `restart` it begins with 53h, as after power-on. It ends early only when the encoder does
-/// not answer any more.
+/// Runs the check; with `restart` it begins with 53h, as after power-on. It ends early only if the encoder no longer
+/// replies.
 ///
 /// # Errors
-/// The line, or the user's wish.
+/// Errors of the exchange, or cancellation.
 pub fn check(master: &mut Master<'_>, types: &EncoderTypes, restart: bool) -> Result<Vec<HiperfaceStepResult>, Error> {
     let mut lines = Vec::new();
     let codes = if restart {
@@ -124,7 +124,7 @@ fn check_position(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperf
     }
 }
 
-/// The limits of the extended label, as far as their channels answer.
+/// Returns the limits of the extended label, as far as their channels answer.
 fn check_limits(master: &mut Master<'_>, identity: &Identity) -> Result<Option<HiperfaceStepResult>, Error> {
     let Some(label) = identity.extended() else { return Ok(None) };
     let mut findings = Vec::new();
@@ -172,7 +172,7 @@ fn check_fields(master: &mut Master<'_>, identity: &Identity) -> Result<Hiperfac
     Ok(HiperfaceStepResult { step: CheckStep::DataFields, verdict, findings })
 }
 
-/// Checks the line. One on which something had to be repeated works, but its wiring needs attention.
+/// Checks the line. If something had to be repeated it works, but its wiring needs attention.
 fn check_line(master: &mut Master<'_>) -> HiperfaceStepResult {
     let quality = master.station().line.quality.clone();
     let verdict = if quality.is_troubled() { Verdict::Attention } else { Verdict::Good };

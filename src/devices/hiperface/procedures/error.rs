@@ -12,7 +12,7 @@ pub enum Error {
     /// The wire.
     #[error(transparent)]
     Link(#[from] LinkError),
-    /// Nothing came back.
+    /// No reply.
     #[error("no reply from address {address:02X}h to {} (attempts: {tries})", command.row().name)]
     NoReply {
         /// Address of the request.
@@ -20,10 +20,10 @@ pub enum Error {
         command: Command,
         /// Number of attempts.
         tries: u32,
-        /// Our own bytes came back: the adapter echoes, so the line itself works.
+        /// The sent bytes came back: the adapter echoes, so the line itself works.
         echo_heard: bool,
     },
-    /// Something came back and was broken every time.
+    /// A reply came and was damaged every time.
     #[error("damaged reply to {} (attempts: {tries}): {cause}", command.row().name)]
     Damaged {
         command: Command,
@@ -32,13 +32,13 @@ pub enum Error {
         /// Damage of the last reply.
         cause: Damage,
     },
-    /// Bytes keep arriving where there should be silence.
+    /// Bytes keep arriving during the required silence.
     #[error("the line is never silent")]
     NeverSilent,
     /// The encoder refused.
     #[error("{} was refused: {}", command.row().name, list(codes))]
     Rejected { command: Command, codes: Vec<StatusCode> },
-    /// Whether a change was carried out is not known: the encoder can no longer be reached.
+    /// It is not known whether a change was carried out: the encoder can no longer be reached.
     #[error("whether {} was carried out is not known: {cause}", command.row().name)]
     Unclear {
         /// The command sent.
@@ -46,10 +46,10 @@ pub enum Error {
         /// Why it cannot be read back.
         cause: Box<Error>,
     },
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
-    /// The shaft turns where it must stand still.
+    /// The shaft turns but must stand still.
     #[error("the shaft moves: {readings:?}")]
     Moving {
         /// The positions read one after the other.
@@ -58,7 +58,7 @@ pub enum Error {
     /// 63h is for encoders without bearing.
     #[error("{encoder} is not a kit encoder")]
     NotAKit {
-        /// Its name.
+        /// Name of the encoder.
         encoder: String,
     },
     /// Another encoder answers at the new address.
@@ -83,7 +83,7 @@ pub enum Error {
         /// Bytes there are.
         size: usize,
     },
-    /// A field cannot be read because its access code is another.
+    /// A field cannot be read because its access code is not the known one.
     #[error("the access code {number} is not known")]
     CodeUnknown {
         field: u8,
@@ -100,7 +100,7 @@ pub enum Error {
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
         item: PlanItem,
-        /// As it should be.
+        /// Expected value.
         expected: String,
         got: ReadBack,
     },
@@ -147,19 +147,19 @@ pub enum ReadBack {
 pub enum Damage {
     #[error(transparent)]
     Reply(#[from] ReplyError),
-    /// The reply to a request with an access code; which bytes it has is not told, they may be our own.
+    /// The reply to a request with an access code; its bytes are not shown, since they may be the echo.
     #[error("unreadable frame")]
     Unreadable,
     /// More bytes than a reply has.
     #[error("extra bytes after the reply")]
     Trailing,
-    /// It began after the time it had.
+    /// It began too late.
     #[error("the reply came too late")]
     Late,
-    /// Our own bytes came back changed.
+    /// The echo was changed.
     #[error("the echo differs from what was sent")]
     Echo,
-    /// The encoder heard a damaged request.
+    /// The encoder received a damaged request.
     #[error("the encoder reports: {0}")]
     AtEncoder(StatusCode),
     /// Two readings in a row of the same thing differ.
@@ -184,7 +184,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// The device can no longer be reached: trying anything else makes no sense.
+    /// Returns whether the device can no longer be reached, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } => true,
@@ -193,12 +193,12 @@ impl Error {
         }
     }
 
-    /// The encoder is there and has no position to give at the moment.
+    /// Returns whether the encoder is there and has no position to give at the moment.
     pub fn means_no_position(&self) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.iter().any(|code| code.spoils_position()))
     }
 
-    /// The encoder refused with this code.
+    /// Returns whether the encoder refused with this code.
     pub fn is_rejection(&self, code: StatusCode) -> bool {
         matches!(self, Error::Rejected { codes, .. } if codes.contains(&code))
     }

@@ -9,13 +9,13 @@ use crate::devices::hiperface::protocol::{
     AccessCode, Command, DataFieldStatus, MAX_TRANSFER, Reply, Request, StatusCode,
 };
 
-/// Fewest bytes in a transfer: below that the frame is mostly head.
+/// Minimum number of bytes in a transfer: below that the frame is mostly header.
 const LEAST_TRANSFER: usize = 4;
 
 /// Reads the status byte of a field.
 ///
 /// # Errors
-/// The line, or a refusal: there is no such field.
+/// Errors of the exchange, or a refusal: no such field.
 pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataFieldStatus, Error> {
     match master.ask_confirmed(&Request::FieldStatus { field })? {
         Reply::FieldStatus(status) => Ok(status),
@@ -23,10 +23,10 @@ pub fn read_field_status(master: &mut Master<'_>, field: u8) -> Result<DataField
     }
 }
 
-/// Reads a field whole. With a wrong access code the field is given without bytes.
+/// Reads a complete field. With a wrong access code the field is returned without bytes.
 ///
 /// # Errors
-/// The line, or a refusal for another reason.
+/// Errors of the exchange, or a refusal for another reason.
 pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Error> {
     let status = read_field_status(master, number)?;
     let code = master.station().codes.get(status.code());
@@ -37,7 +37,7 @@ pub fn read_field(master: &mut Master<'_>, number: u8) -> Result<FieldImage, Err
     }
 }
 
-/// Reads all fields, the extended label excepted; `progress` hears how many of how many are done.
+/// Reads all fields except the extended label; `progress` gets the number done and the total.
 ///
 /// # Errors
 /// As [`read_field`].
@@ -58,15 +58,15 @@ pub fn read_all_fields(
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnreadableField {
     pub number: u8,
-    /// Its status, where that could be read.
+    /// Its status, if it could be read.
     pub status: Option<DataFieldStatus>,
     pub why: Error,
 }
 
-/// Reads a field, or says why it cannot be read, as long as the encoder answers to anything else.
+/// Reads a field, or returns why it cannot be read, as long as the encoder replies to other requests.
 ///
 /// # Errors
-/// The encoder does not answer any more, or the user's wish.
+/// The encoder no longer replies, or cancellation.
 pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<FieldImage, UnreadableField>, Error> {
     let status = read_field_status(master, number);
     let status = match tolerated(master, status)? {
@@ -80,7 +80,7 @@ pub fn try_read_field(master: &mut Master<'_>, number: u8) -> Result<Result<Fiel
 /// Converts an error into a reason, as long as the encoder answers another request.
 ///
 /// # Errors
-/// It does not, or the user's wish.
+/// The encoder no longer replies, or cancellation.
 pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) -> Result<Result<T, Error>, Error> {
     match result {
         Ok(value) => Ok(Ok(value)),
@@ -96,12 +96,11 @@ pub(super) fn tolerated<T>(master: &mut Master<'_>, result: Result<T, Error>) ->
 
 /// Reads `count` bytes of a field from `address`, in transfers of at most 128 bytes.
 ///
-/// A transfer that fails is halved for the next try; after five failures in a row without a success in between the
-/// reading fails. On a line that has damaged something before, each transfer has to give the same bytes twice: an XOR
-/// lets some pairs of flipped bits through.
+/// A transfer that fails is halved for the next attempt; after five consecutive failures the reading fails. If the line has
+/// damaged anything before, each transfer must give the same bytes twice: an XOR misses some pairs of flipped bits.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub fn read_range(
     master: &mut Master<'_>,
     field: u8,
@@ -113,7 +112,7 @@ pub fn read_range(
         return read_byte(master, field, address, code);
     }
     let mut bytes = Vec::with_capacity(count);
-    // The first reading, which has to be repeated.
+    // The first reading, which must be confirmed by a second one.
     let mut first: Option<Vec<u8>> = None;
     let mut failures = 0;
     let mut in_a_row = 0;
@@ -162,8 +161,8 @@ pub fn read_range(
     Ok(bytes)
 }
 
-/// Reads one byte with a neighbour: the reply to a transfer of one byte can equal its request, access code and all, so
-/// that an adapter's echo would pass for it. A field has at least sixteen bytes.
+/// Reads one byte with a neighbour: the reply to a transfer of one byte can equal its request, including the access code,
+/// so that an adapter's echo could be mistaken for it. A field has at least sixteen bytes.
 fn read_byte(master: &mut Master<'_>, field: u8, address: usize, code: AccessCode) -> Result<Vec<u8>, Error> {
     let start = address.saturating_sub(1);
     let pair = read_range(master, field, start, 2, code)?;

@@ -1,8 +1,8 @@
 //! The search for encoders with unknown settings.
 //!
-//! It listens a second before its first byte: foreign traffic means a running machine, and then it only listens. It
-//! probes with 52h, never with 50h, which would take codes out of an encoder's queue. Broadcast comes last and only when
-//! the user says that one encoder is connected, because several would answer at once.
+//! The search listens for a second before its first byte: foreign traffic means a running machine, and then nothing is
+//! sent. It probes with 52h, never with 50h, which would remove codes from an encoder's queue. Broadcast comes last and
+//! only if the user states that one encoder is connected, because several would reply at once.
 
 use std::fmt;
 use std::time::Duration;
@@ -18,9 +18,9 @@ pub const LISTEN: Duration = Duration::from_secs(1);
 /// The settings to try.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FindOptions {
-    /// The user says that exactly one encoder is connected: broadcast may be used where no address answers.
+    /// The user states that exactly one encoder is connected: broadcast may be used if no address replies.
     pub one_encoder: bool,
-    /// The user will switch the encoder's supply off and on: wait so long for it and use the default window.
+    /// The user will switch the encoder's supply off and on: wait this long for it and use the default window.
     pub power_cycle: Option<Duration>,
 }
 
@@ -30,7 +30,7 @@ pub struct FoundEncoder {
     pub address: u8,
     /// The format that was used.
     pub format: CharacterFormat,
-    /// Its type label, with the settings it has stored.
+    /// Its type label, with its stored settings.
     pub label: TypeLabel,
 }
 
@@ -43,7 +43,7 @@ pub enum Attempt {
     DefaultWindow,
     /// Asking an address, or FFh.
     Probing {
-        /// Whom.
+        /// Address being probed.
         address: u8,
         format: CharacterFormat,
     },
@@ -79,23 +79,23 @@ pub enum SearchProgress<'a> {
 pub enum Findings {
     /// Another device sends on this line: nothing was sent.
     ForeignTraffic {
-        /// Bytes heard in the time of listening.
+        /// Bytes received while listening.
         bytes: usize,
     },
     /// The line was searched.
     Searched {
-        /// All that answered, in the order in which they did; maybe none.
+        /// All encoders that replied, in this order; may be empty.
         found: Vec<FoundEncoder>,
-        /// Everything was tried; else the user wished an end before.
+        /// All combinations were tried; false if the user cancelled before.
         complete: bool,
     },
 }
 
-/// Searches all speeds, parities and addresses; through a link that has no speed of its own, all addresses. Afterwards our
-/// side is set as it was before. A wish to end ends the search with what answered until then.
+/// Searches all speeds, parities and addresses; through a link without a speed of its own, all addresses. Afterwards the
+/// port is set as before. Cancellation ends the search with the encoders found until then.
 ///
 /// # Errors
-/// The wire.
+/// Errors of the connection.
 pub fn find(
     master: &mut Master<'_>,
     options: &FindOptions,
@@ -124,7 +124,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// Returns the number of foreign bytes if they prevented the search.
     fn run(&mut self, master: &mut Master<'_>, options: &FindOptions) -> Result<Option<usize>, Error> {
-        // Through a device server every format would be the same one, and each would be found.
+        // Through a device server all formats would be the same, and the encoder would be found in each.
         let formats = if master.sets_format() { formats() } else { vec![master.station().format] };
         let per_format = 32 + u64::from(options.one_encoder);
         let total = 1 + per_format * formats.len() as u64;
@@ -168,7 +168,7 @@ impl Search<'_> {
     }
 }
 
-/// The likely first: 9600 with each parity, then the other speeds.
+/// Returns the formats, most likely first: 9600 with each parity, then the other speeds.
 fn formats() -> Vec<CharacterFormat> {
     let rest = BAUDS.into_iter().rev().filter(|baud| *baud != Baud::B9600);
     std::iter::once(Baud::B9600)
@@ -177,7 +177,7 @@ fn formats() -> Vec<CharacterFormat> {
         .collect()
 }
 
-/// Asks every tenth of a second at factory settings until an encoder that has just been switched on answers.
+/// Sends a request every tenth of a second with factory settings until an encoder that has just been switched on replies.
 fn catch_default_window(
     master: &mut Master<'_>,
     patience: Duration,
@@ -195,7 +195,7 @@ fn catch_default_window(
     Ok(None)
 }
 
-/// Sends one request without repetition. After a broken reply it asks once more: a device is there.
+/// Sends one request without repetition. After a damaged reply it asks once more: a device is present.
 fn probe(master: &mut Master<'_>, address: u8, format: CharacterFormat) -> Result<Option<FoundEncoder>, Error> {
     master.station().address = address;
     for _ in 0..2 {

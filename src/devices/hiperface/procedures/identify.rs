@@ -14,17 +14,17 @@ pub struct Identity {
     pub address: u8,
     /// Reply to 52h.
     pub label: TypeLabel,
-    /// Reply to 56h; empty texts where the encoder does not have the command.
+    /// Reply to 56h; empty texts if the encoder does not have the command.
     pub serial: SerialLabel,
-    /// Reply to 4Eh; `None` where the encoder does not have the command.
+    /// Reply to 4Eh; `None` if the encoder does not have the command.
     pub memory: Option<FreeMemory>,
     /// Family, or the designation of the extended label.
     pub name: String,
-    /// Periods and turns: as the user gave them, from the extended label, or from the table of types.
+    /// Periods and turns: as given by the user, from the extended label, or from the table of types.
     pub geometry: Option<Geometry>,
     /// Without bearing: its tracks are synchronised with 63h. `None` if not known.
     pub kit: Option<bool>,
-    /// The content of data field FFh where the encoder has it.
+    /// The content of data field FFh, if the encoder has it.
     pub extended_label: Option<Vec<u8>>,
 }
 
@@ -34,7 +34,7 @@ impl Identity {
     }
 }
 
-/// The encoder as a profile remembers it: memory that is free is not recorded.
+/// Returns the identity recorded in a profile: free memory is not recorded.
 pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity {
     let own = &profile.identity;
     let label = TypeLabel {
@@ -62,10 +62,10 @@ pub fn identity_of(profile: &HiperfaceProfile, types: &EncoderTypes) -> Identity
     }
 }
 
-/// Reads type label, serial number, memory and, where the type byte is FFh, the extended label.
+/// Reads type label, serial number, memory and, if the type byte is FFh, the extended label.
 ///
 /// # Errors
-/// The line, or a refusal of anything but 56h and 4Eh, which some types do not have.
+/// Errors of the exchange, or a refusal except of 56h and 4Eh, which some types do not have.
 pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identity, Error> {
     let label = read_type_label(master)?;
     let serial = read_serial(master)?;
@@ -95,7 +95,7 @@ pub fn identify(master: &mut Master<'_>, types: &EncoderTypes) -> Result<Identit
 /// Reads the type label.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Error> {
     match master.ask_confirmed(&Request::ReadTypeLabel)? {
         Reply::TypeLabel(label) => Ok(label),
@@ -103,10 +103,10 @@ pub(super) fn read_type_label(master: &mut Master<'_>) -> Result<TypeLabel, Erro
     }
 }
 
-/// Reads serial number and firmware; empty texts where the encoder does not have the command.
+/// Reads serial number and firmware; empty texts if the encoder does not have the command.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error> {
     Ok(match have(master.ask_confirmed(&Request::ReadSerial))? {
         Some(Reply::Serial(serial)) => serial,
@@ -119,23 +119,23 @@ pub(super) fn read_serial(master: &mut Master<'_>) -> Result<SerialLabel, Error>
 /// Reads the stored interface settings.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub fn read_settings(master: &mut Master<'_>) -> Result<LineSettings, Error> {
     Ok(read_type_label(master)?.settings)
 }
 
-/// Asks who answers at the session's address: after a broadcast that is the encoder's own.
+/// Reads the address of the encoder that replies at the session's address: after a broadcast, its own address.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub fn read_address(master: &mut Master<'_>) -> Result<u8, Error> {
     master.ask_timed(&Request::ReadTypeLabel).map(|timed| timed.sender)
 }
 
-/// Reads data field FFh whole: 4Ch for its size, then 4Ah with code 0.
+/// Reads the complete data field FFh: 4Ch for its size, then 4Ah with code 0.
 ///
 /// # Errors
-/// The line, or a refusal: the encoder has no extended label.
+/// Errors of the exchange, or a refusal: the encoder has no extended label.
 pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
     let status = super::read_field_status(master, EXTENDED_LABEL_FIELD)?;
     let code = master.station().codes.get(CodeNumber::ZERO);
@@ -145,7 +145,7 @@ pub fn read_extended_label(master: &mut Master<'_>) -> Result<Vec<u8>, Error> {
 /// Reads the whole error queue; every code is kept, in the encoder's order.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_status(master: &mut Master<'_>) -> Result<Vec<StatusCode>, Error> {
     master.collect_codes()?;
     Ok(master.station().take_codes())

@@ -1,7 +1,7 @@
-//! The host's side of the line: what is asked again, what is read back, and which codes are collected on the way. One
-//! exchange is in [`exchange`].
+//! The host's side of the line: repeating requests, reading back, and collecting announced codes. A single exchange is in
+//! [`exchange`].
 //!
-//! Reading is repeated, at most five times and for at most eight seconds; what writes is never repeated blindly.
+//! A read is repeated, at most five times and for at most eight seconds; a write is never repeated blindly.
 
 mod codes;
 mod exchange;
@@ -27,12 +27,12 @@ pub(super) struct Timed {
     pub(super) reply: Reply,
     /// The falling edge of the start bit of the reply's address.
     pub(super) at: Moment,
-    /// The address it came from.
+    /// Address of the sender.
     pub(super) sender: u8,
 }
 
 impl<'a> Master<'a> {
-    /// A master on this line, for one job: it has its patience before it.
+    /// Creates a master for one job, with the whole time limit ahead.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
@@ -47,7 +47,7 @@ impl<'a> Master<'a> {
         self.line.now()
     }
 
-    /// Runs `work`, which returns the encoder to a safe state; a request to end is ignored meanwhile.
+    /// Runs `work`, which returns the encoder to a safe state; cancellation is ignored meanwhile.
     pub fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.line.shield(true);
         let result = work(self);
@@ -55,7 +55,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Waits; ends early when the user wishes.
+    /// Waits; ends early when cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -63,10 +63,10 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(duration)?)
     }
 
-    /// Listens without sending; gives back what it heard.
+    /// Listens without sending; returns the bytes received.
     ///
     /// # Errors
-    /// The wire, or [`Error::Cancelled`].
+    /// Errors of the connection, or [`Error::Cancelled`].
     pub fn drain(&mut self, duration: Duration) -> Result<Vec<u8>, Error> {
         Ok(self.line.drain(duration)?)
     }
@@ -74,7 +74,7 @@ impl<'a> Master<'a> {
     /// Sets baud rate and parity of our side.
     ///
     /// # Errors
-    /// The wire.
+    /// Errors of the connection.
     pub fn set_format(&mut self, format: crate::units::CharacterFormat) -> Result<(), Error> {
         self.line.ctx.wire.set_format(format)?;
         self.station.format = format;
@@ -89,12 +89,12 @@ impl<'a> Master<'a> {
     /// Asks something that changes nothing in the encoder, and repeats it when the line fails.
     ///
     /// # Errors
-    /// When every try failed, when the encoder refused, or when the user wished an end.
+    /// If every attempt failed, the encoder refused, or the user cancelled.
     pub(super) fn ask(&mut self, request: &Request) -> Result<Reply, Error> {
         self.ask_timed(request).map(|timed| timed.reply)
     }
 
-    /// Runs `work`, which reads something that is kept; every reply has to come twice.
+    /// Runs `work`, which reads values to be stored; every reply must come twice.
     pub fn thoroughly<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = std::mem::replace(&mut self.station.thorough, true);
         let result = work(self);
@@ -102,7 +102,7 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Asks like [`ask`](Self::ask); on a line that has damaged something before, the reply has to come twice.
+    /// Sends a request like [`ask`](Self::ask); if the line has damaged anything before, the reply must come twice.
     ///
     /// # Errors
     /// See [`ask`](Self::ask).
@@ -133,11 +133,11 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Sends something that changes the encoder. Where it is unclear whether it was carried out, `is_done` reads back;
-    /// only when it was not, it is sent again. Gives back how often it may have been carried out.
+    /// Sends a request that changes the encoder. If it is unclear whether it was carried out, `is_done` reads back; it is
+    /// sent again only if it was not. Returns how often it may have been carried out.
     ///
     /// # Errors
-    /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five tries.
+    /// The encoder refused, `is_done` could not tell ([`Error::Unclear`]), or it was not done after five attempts.
     pub(super) fn send_until_done(
         &mut self,
         request: &Request,
@@ -152,7 +152,7 @@ impl<'a> Master<'a> {
             };
             let failure = self.may_try_again(request, tries, trouble);
             let unclear = |cause| Error::Unclear { command: request.command(), cause: Box::new(cause) };
-            // From here on the line has to tell what happened, also when the user wishes an end.
+            // From here on the result must be determined, even after cancellation.
             match self.shielded(&mut is_done) {
                 Ok(true) => return Ok(tries),
                 Ok(false) => failure?,
@@ -164,7 +164,7 @@ impl<'a> Master<'a> {
     /// Sends a request that has no reply.
     ///
     /// # Errors
-    /// The wire, or [`Error::Cancelled`].
+    /// Errors of the connection, or [`Error::Cancelled`].
     pub(super) fn tell_all(&mut self, request: &Request) -> Result<(), Error> {
         self.begin()?;
         let frame = request.emit(self.station.address);
@@ -180,7 +180,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Prepares the line for the next attempt; returns an error when there is to be none.
+    /// Prepares the line for the next attempt; returns an error if there is none.
     pub(super) fn may_try_again(
         &mut self,
         request: &Request,
@@ -210,7 +210,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Reads the codes that an answer announces, and tells a refusal from a reply.
+    /// Reads the codes that a reply announces, and distinguishes a refusal from a reply.
     pub(super) fn settle(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<Timed, Error> {
         self.station.line.recovered();
         let (Answer::Reply { pending, .. } | Answer::Rejected { pending, .. }) = &answered.answer;
@@ -223,9 +223,9 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes that a reply announces are
-    /// left to the next exchange, which announces them again: no request to end comes between a change and its being
-    /// counted, and after 55h and 67h the encoder no longer answers as it was asked.
+    /// Settles like [`settle`](Self::settle), for requests that change the encoder. Codes announced by a reply are left to
+    /// the next exchange, which announces them again. This way no cancellation comes between a change and its counting, and
+    /// after 55h and 67h the encoder no longer replies with the old settings.
     pub(super) fn acknowledge(&mut self, request: &Request, answered: ReceivedAnswer) -> Result<(), Error> {
         if matches!(answered.answer, Answer::Reply { .. }) {
             self.station.line.recovered();

@@ -1,7 +1,7 @@
 //! The procedures of a HIPERFACE encoder. Each takes a [`Master`], which sends requests, repeats what may be repeated
 //! and keeps the protocol's times; the manual is SICK 8010701.
 //!
-//! Whatever changes an encoder's memory goes through [`mod@write`] with a plan and a consent to it.
+//! Every change of an encoder's memory goes through [`mod@write`] with a plan and a consent to it.
 
 pub mod check;
 mod error;

@@ -1,4 +1,4 @@
-//! Position, analogue values and the counter, also as what polling gives; and whether the shaft stands still.
+//! Position, analogue values and the counter, also as samples; and the check for standstill.
 
 use std::time::Duration;
 
@@ -16,18 +16,18 @@ pub struct PositionReading {
     pub at: Moment,
     /// The word as received.
     pub raw: u32,
-    /// The position; `None` while periods and turns are not known.
+    /// The position; `None` if periods and turns are not known.
     pub position: Option<Position>,
-    /// It lies in the measuring range and no code spoils it.
+    /// The position is within the measuring range and no code makes it invalid.
     pub valid: bool,
-    /// Codes that came with it.
+    /// Codes read with it.
     pub codes: Vec<StatusCode>,
 }
 
-/// Reads the position (42h) and, where the reply announces them, all codes.
+/// Reads the position (42h) and, if the reply announces them, all codes.
 ///
 /// # Errors
-/// The line, or a refusal: the encoder has no position to give.
+/// Errors of the exchange, or a refusal: the encoder has no position.
 pub fn read_position(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<PositionReading, Error> {
     let met_before = master.station().codes_met.len();
     let timed = master.ask_timed(&Request::ReadPosition)?;
@@ -47,47 +47,48 @@ pub enum Sample {
     Position(PositionReading),
     /// The encoder is there and has no position to give at the moment.
     NoPosition {
-        /// When it said so.
+        /// Time of the refusal.
         at: Moment,
         /// The status codes, the reason first.
         codes: Vec<StatusCode>,
     },
-    /// A value that is watched beside the position.
+    /// Value that is watched in addition to the position.
     Watched(WatchedReading),
 }
 
-/// A value that can be watched while the position is polled. All else that can be read of an encoder changes only when it
-/// is written.
+/// Value that can be watched while the position is polled. All other values of an encoder change only when they are
+/// written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Watch {
-    /// An analogue channel (44h): 48h is the temperature in °C, others are as the data sheet says, most often 00h and 01h
-    /// the sine and cosine signals in counts of 10 bits for 5 V.
+    /// Analogue channel (44h): 48h is the temperature in °C, others depend on the data sheet, usually 00h and 01h are the
+    /// sine and cosine signals in counts of 10 bits for 5 V.
     Analogue(u8),
     /// The counter (46h), 0…FFFFFFh.
     Counter,
 }
 
 impl Watch {
-    /// The temperature in °C of every encoder that tells it.
+    /// The temperature in °C, of every encoder that provides it.
     pub const TEMPERATURE: Watch = Watch::Analogue(0x48);
 }
 
 /// A watched value as it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WatchedReading {
-    /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. Of a counter
-    /// and of a refusal, when it was understood.
+    /// When the encoder sampled an analogue value: the falling edge of the start bit of the reply's address. For a counter
+    /// and a refusal, when the reply was parsed.
     pub at: Moment,
     /// The watched value.
     pub watch: Watch,
     /// The value, or the encoder's refusal.
     pub value: Result<i64, Error>,
-    /// Codes that came with it.
+    /// Codes read with it.
     pub codes: Vec<StatusCode>,
 }
 
 impl WatchedReading {
-    /// The encoder does not have this: it does not know the command or the channel. Another refusal is for the moment.
+    /// Returns whether the encoder does not have this value: it does not know the command or the channel. Any other refusal
+    /// is temporary.
     pub fn is_refused(&self) -> bool {
         match &self.value {
             Err(Error::Rejected { codes, .. }) => {
@@ -98,10 +99,10 @@ impl WatchedReading {
     }
 }
 
-/// Reads a watched value once; that the encoder refuses it is an answer too.
+/// Reads a watched value once; a refusal is a valid result.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReading, Error> {
     let met_before = master.station().codes_met.len();
     let answer = match what {
@@ -117,10 +118,10 @@ pub fn read_watched(master: &mut Master<'_>, what: Watch) -> Result<WatchedReadi
     Ok(WatchedReading { at, watch: what, value, codes })
 }
 
-/// Reads the position once, as [`read_position`]; that the encoder has none at the moment is an answer too.
+/// Reads the position once, like [`read_position`]; no position at the moment is a valid result.
 ///
 /// # Errors
-/// The line, or a refusal for another reason.
+/// Errors of the exchange, or a refusal for another reason.
 pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<Sample, Error> {
     let met_before = master.station().codes_met.len();
     match read_position(master, geometry) {
@@ -140,15 +141,15 @@ pub fn read_sample(master: &mut Master<'_>, geometry: Option<Geometry>) -> Resul
     }
 }
 
-/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, else as the data sheet says.
+/// Reads an analogue channel (44h): usually signed 10 bits for 5 V, otherwise by the data sheet.
 ///
 /// # Errors
-/// The line, or a refusal: the encoder has no such channel.
+/// Errors of the exchange, or a refusal: the encoder has no such channel.
 pub fn read_analogue(master: &mut Master<'_>, channel: u8) -> Result<i16, Error> {
     ask_analogue(master, channel).map(|(_, value)| value)
 }
 
-/// An analogue channel, and when the encoder sampled it.
+/// Returns an analogue channel, and when the encoder sampled it.
 fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), Error> {
     let timed = master.ask_timed(&Request::ReadAnalogue { channel })?;
     match timed.reply {
@@ -157,10 +158,10 @@ fn ask_analogue(master: &mut Master<'_>, channel: u8) -> Result<(Moment, i16), E
     }
 }
 
-/// The value that an analogue channel should not exceed, where the encoder has an extended label that says so.
+/// Returns the limit of an analogue channel, if the encoder has an extended label that contains it.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Option<i16>, Error> {
     if read_type_label(master)?.encoder_type != TypeLabel::EXTENDED {
         return Ok(None);
@@ -178,7 +179,7 @@ pub fn read_analogue_limit(master: &mut Master<'_>, channel: u8) -> Result<Optio
 /// Reads the counter (46h), 0…FFFFFFh.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     match master.ask_confirmed(&Request::ReadCounter)? {
         Reply::Counter(value) => Ok(value),
@@ -186,11 +187,11 @@ pub fn read_counter(master: &mut Master<'_>) -> Result<u32, Error> {
     }
 }
 
-/// Reads the position three times, a tenth of a second apart, and gives the last when the shaft stands still: the
-/// readings differ by one step at most.
+/// Reads the position three times, a tenth of a second apart, and returns the last if the shaft stands still: the readings
+/// differ by at most one step.
 ///
 /// # Errors
-/// [`Error::Moving`], or what reading gives.
+/// [`Error::Moving`], or errors of reading.
 pub fn ensure_standstill(master: &mut Master<'_>, geometry: Option<Geometry>) -> Result<u32, Error> {
     let first = read_position(master, geometry)?.raw;
     let (mut last, mut readings) = (first, vec![first]);
@@ -212,7 +213,7 @@ pub(super) fn range_of(geometry: Option<Geometry>) -> u64 {
     geometry.and_then(Geometry::range).unwrap_or(1 << 32)
 }
 
-/// Steps between two positions, the short way round: a shaft at rest may dither across zero.
+/// Returns the steps between two positions, the shorter way round: a shaft at rest may jitter across zero.
 pub(super) fn distance(a: u32, b: u32, range: u64) -> u64 {
     let straight = u64::from(a.abs_diff(b));
     straight.min(range.saturating_sub(straight))

@@ -1,21 +1,21 @@
-//! The shaft at rest as both channels of an encoder tell it: the absolute position, and sine and cosine where analogue
-//! channels give them. For what has to be as fine as it can be: commutation, synchronising.
+//! The shaft at rest from both channels of an encoder: the absolute position, and sine and cosine if analogue channels
+//! provide them. For the highest accuracy: commutation, synchronising.
 
 use super::{Error, Master, ensure_standstill, read_analogue, read_position};
 use crate::devices::hiperface::protocol::Geometry;
 
-/// A shaft that stands still.
+/// Reading of a shaft at standstill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rest {
     /// The position word.
     pub raw: u32,
-    /// It lies in the measuring range and no code spoils it.
+    /// The position is within the measuring range and no code makes it invalid.
     pub valid: bool,
-    /// Sine and cosine, where the encoder gives them.
+    /// Sine and cosine, if the encoder provides them.
     pub signals: Option<Signals>,
 }
 
-/// Sine and cosine, each against its reference.
+/// Sine and cosine, each relative to its reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Signals {
     /// Sine in volts.

@@ -7,14 +7,14 @@ use crate::profile::Unknown;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SaveOptions {
-    /// A field whose access code is not known is an error.
+    /// If set, a field with an unknown access code is an error.
     pub complete: bool,
 }
 
-/// Reads the whole encoder, everything but the position twice: what is kept for years is not to hang on one XOR.
+/// Reads the whole encoder, everything but the position twice: data stored for years must not depend on one XOR.
 ///
 /// # Errors
-/// The line; with [`complete`](SaveOptions::complete) also a field that cannot be read.
+/// Errors of the exchange; with [`complete`](SaveOptions::complete) also a field that cannot be read.
 pub fn save(
     master: &mut Master<'_>,
     types: &EncoderTypes,
@@ -43,7 +43,7 @@ fn save_once(
     Ok(profile_of(&identity, fields, Recorded { position, counter, ..Recorded::default() }))
 }
 
-/// A profile of an encoder with these fields.
+/// Returns a profile of an encoder with these fields.
 pub fn profile_of(identity: &Identity, fields: Vec<FieldImage>, recorded: Recorded) -> HiperfaceProfile {
     let mut profile = HiperfaceProfile {
         identity: ProfileIdentity {

@@ -14,29 +14,29 @@ use crate::parameters;
 use crate::units::{Baud, CharacterFormat, Parity};
 
 parameters! {
-    /// The line and the encoder, as a link says. What is left out is the factory setting.
+    /// Parameters of the line and the encoder in a link. The default is the factory setting.
     pub struct LinkParameters: UrlError {
         /// Speed.
         pub baud: Baud = CharacterFormat::FACTORY.baud, "baud" => Bauds;
         /// Parity.
         pub parity: Parity = CharacterFormat::FACTORY.parity, "parity" => Parity::WORDS;
-        /// Whom requests go to: 40h…5Fh or broadcast.
+        /// Destination of requests: 40h…5Fh or broadcast.
         pub address: u8 = DeviceAddress::FACTORY.byte(),
             "address" => Checked(Expected::AddressOrOnlyOne, read_address);
         /// Whether the adapter echoes.
         pub echo: Echo = Echo::Unknown, "echo" => Echo::WORDS;
-        /// The encoder's time-out is 44 bits, else 11.
+        /// If set, the encoder's time-out is 44 bits, else 11.
         pub long_timeout: bool = true, "timeout" => Checked(Expected::TimeoutBits, read_timeout);
-        /// How much later than the protocol's worst case a reply may arrive; `None` for the default of the link.
+        /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
-        /// Of a type that is not in the table.
+        /// For a type that is not in the table.
         pub periods: Option<u32> = None, "periods" => Maybe(Checked(Expected::Periods { most: MOST_PERIODS }, read_periods)), "connect.periods" like "128";
         /// The same.
         pub turns: Option<u32> = None, "turns" => Maybe(Checked(Expected::MostTurns { most: MOST_PERIODS }, read_periods)), "connect.turns" like "4096";
     }
 }
 
-/// The four access codes as far as the user told them; 55h where not.
+/// The four access codes; 55h for those not given by the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Codes([AccessCode; 4]);
 
@@ -59,8 +59,7 @@ impl Codes {
     }
 }
 
-/// Access codes that a person gave at the start, with their numbers; sessions begin with them. The later one of a number
-/// counts.
+/// Access codes given at the start, with their numbers; sessions begin with them. The later one of a number counts.
 #[derive(Clone, Debug, Default)]
 pub struct AccessCodes(Vec<(CodeNumber, AccessCode)>);
 
@@ -82,13 +81,13 @@ impl FromIterator<(CodeNumber, AccessCode)> for AccessCodes {
 /// The state of a line and its encoder.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Whom requests go to: 40h…5Fh or broadcast.
+    /// Destination of requests: 40h…5Fh or broadcast.
     pub address: u8,
-    /// Speed and parity we talk with.
+    /// Speed and parity of the port.
     pub format: CharacterFormat,
-    /// The encoder's time-out is 44 bits, else 11.
+    /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
-    /// Silences, echo and damage: what every line has.
+    /// Silence, echo and damage on the line.
     pub line: LineState,
     /// Access codes.
     pub codes: Codes,
@@ -96,18 +95,18 @@ pub struct Station {
     pub geometry: Option<Geometry>,
     /// Announced status codes, in the order in which they were read; displaying removes them.
     pub codes_met: Vec<StatusCode>,
-    /// The same codes, for the logbook: 50h takes them out of the encoder, so that they are nowhere else.
+    /// The same codes, for the logbook: 50h removes them from the encoder, so there is no other copy.
     codes_read: Vec<StatusCode>,
-    /// Replies to 50h that did not come or were damaged: each may have been a status code.
+    /// Number of replies to 50h that were missing or damaged: each may have been a status code.
     pub(super) codes_unheard: u32,
-    /// Read values are kept: each has to be read twice, even on a line that seems good.
+    /// Set while values to be stored are read: each must be read twice, even on a line that seems good.
     pub(super) thorough: bool,
-    /// Most bytes to read at once: halved when the line damages long replies, doubled when it does not.
+    /// Maximum number of bytes to read at once: halved if the line damages long replies, doubled if it does not.
     pub(super) chunk: usize,
 }
 
 impl Station {
-    /// A line with factory settings.
+    /// Creates a line with factory settings.
     pub fn new(margin: Duration) -> Self {
         Station {
             address: DeviceAddress::FACTORY.byte(),
@@ -124,10 +123,10 @@ impl Station {
         }
     }
 
-    /// A line as the parameters of its link say; what they leave out is the factory setting, or `margin`.
+    /// Creates the station from the parameters of its link; the defaults are the factory setting, and `margin`.
     ///
     /// # Errors
-    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the line are ignored.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         let link = LinkParameters::read(query.pairs())?;
         let mut station = Station::new(link.margin.unwrap_or(margin));
@@ -138,12 +137,12 @@ impl Station {
         Ok(station)
     }
 
-    /// The times of the line as it is set.
+    /// Returns the times of the line with its present settings.
     pub fn timing(&self) -> Timing {
         Timing::new(self.format, self.long_timeout)
     }
 
-    /// Once is not enough: an XOR lets some pairs of flipped bits through.
+    /// Returns whether values must be read twice: an XOR misses some pairs of flipped bits.
     pub(super) fn reads_twice(&self) -> bool {
         self.thorough || self.line.damaged > 0
     }
@@ -155,7 +154,7 @@ impl Station {
         self.codes_met.extend(codes);
     }
 
-    /// Takes what is to be written into the logbook, before any of it is shown.
+    /// Takes the codes to be written to the logbook, before any of them is shown.
     pub fn take_codes_read(&mut self) -> Vec<StatusCode> {
         std::mem::take(&mut self.codes_read)
     }
@@ -212,14 +211,14 @@ fn read_timeout(text: &str) -> Option<bool> {
     }
 }
 
-/// 32 steps a period in a word of 32 bits.
+/// 32 steps per period in a word of 32 bits.
 pub const MOST_PERIODS: u32 = 1 << 27;
 
 fn read_periods(text: &str) -> Option<u32> {
     number(text).filter(|periods| (1..=MOST_PERIODS).contains(periods))
 }
 
-/// `periods=` and `turns=`; one turn where only the periods are given.
+/// Returns the geometry of `periods=` and `turns=`; one turn if only the periods are given.
 fn geometry(link: &LinkParameters) -> Result<Option<Geometry>, Refused> {
     let turns = link.turns.unwrap_or(1);
     match link.periods {

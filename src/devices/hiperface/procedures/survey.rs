@@ -12,35 +12,35 @@ use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Survey {
     pub identity: Identity,
-    /// The error queue, in the encoder's order, and what came to it meanwhile.
+    /// The error queue, in the encoder's order, with the codes announced meanwhile.
     pub codes: Vec<StatusCode>,
-    /// All data fields, without bytes where they cannot be read: the access code is not known, or it says why in
+    /// All data fields, without bytes if they cannot be read: the access code is not known, or the reason is in
     /// `unreadable`.
     pub fields: Vec<FieldImage>,
     /// Data fields that could not be read, for another reason than their access code.
     pub unreadable: Vec<UnreadableField>,
     /// Quality of the line until then.
     pub line: LineQuality,
-    /// The counter, where the type has one.
+    /// The counter, if the type has one.
     pub counter: Option<u32>,
-    /// The position, where the encoder does not refuse it for another reason than that it has none at the moment.
+    /// The position, unless the encoder refuses it for another reason than having none at the moment.
     pub position: Option<Sample>,
 }
 
-/// Reads the error queue first, then all the rest. What a type does not have is no error.
+/// Reads the error queue first, then everything else. A feature that a type does not have is no error.
 ///
 /// # Errors
-/// The line, or a refusal of what every type has.
+/// Errors of the exchange, or a refusal of something that every type has.
 pub fn survey(
     master: &mut Master<'_>,
     types: &EncoderTypes,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Survey, Error> {
-    // They stay among the met codes until the survey is complete: if it fails, they are reported regardless.
+    // They stay among the collected codes until the survey is complete: if it fails, they are reported regardless.
     master.collect_codes()?;
     let mut survey = look_around(master, types, progress, Reading::AsFarAsPossible)?;
     survey.codes = master.station().take_codes();
-    // A code that the encoder announced before is about this position too.
+    // A code that the encoder announced before applies to this position too.
     let spoilt = survey.codes.iter().any(|code| code.spoils_position());
     if let Some(Sample::Position(reading)) = &mut survey.position {
         reading.valid &= !spoilt;
@@ -53,11 +53,11 @@ pub fn survey(
 pub(super) enum Reading {
     /// Reads the others regardless.
     AsFarAsPossible,
-    /// It ends the reading: what is kept for years has to be whole.
+    /// It ends the reading: data stored for years must be complete.
     Whole,
 }
 
-/// All but the error queue.
+/// Reads everything except the error queue.
 pub(super) fn look_around(
     master: &mut Master<'_>,
     types: &EncoderTypes,
@@ -80,7 +80,7 @@ pub(super) fn look_around(
     Ok(Survey { identity, codes: Vec::new(), fields, unreadable, line, counter, position })
 }
 
-/// All fields as far as they can be read; of one that cannot, its status stands among them, where that is known.
+/// Reads all fields as far as possible; for one that cannot be read, its status is included if known.
 fn read_readable_fields(
     master: &mut Master<'_>,
     count: u8,

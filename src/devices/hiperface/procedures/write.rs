@@ -1,4 +1,4 @@
-//! Writes a plan into an encoder: reads its base again, carries out each operation, and finally reads all of them back.
+//! Writes a plan to an encoder: reads its base again, carries out each operation, and finally reads all of them back.
 
 pub use crate::profile::Written;
 
@@ -21,7 +21,7 @@ type Confirmed<'p> = crate::profile::Confirmed<'p, Base, Op>;
 /// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
-/// In which state an encoder was left.
+/// State in which an encoder was left.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct EndState {
     /// Fields that should be write protected and are not, because the encoder could no longer be reached.
@@ -49,7 +49,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Written = Written;
     type Left = EndState;
 
-    /// Checks that this is the encoder for which the plan was made, by its memory too: two new encoders have the same.
+    /// Checks that this is the encoder of the plan, by its memory as well: two new encoders have the same identity.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
         let (master, identity) = (&mut self.master, self.identity);
         let label = read_type_label(master)?;
@@ -67,7 +67,7 @@ impl Write for EncoderWrite<'_, '_> {
         plan.base.scalars.iter().try_for_each(|scalar| confirm_scalar(master, *scalar, identity.geometry))
     }
 
-    /// A wish to end is heard between two operations.
+    /// Cancellation is checked between two operations.
     fn apply(&mut self, op: &Op, confirmed: &Confirmed<'_>, done: &mut Written) -> Result<(), Error> {
         let sent = perform(&mut self.master, op, confirmed, range_of(self.identity.geometry));
         // A change that was not sent, or was refused, was not carried out; any other may have been.
@@ -86,7 +86,7 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(())
     }
 
-    /// Locks again what was unlocked on the way, as far as the encoder can be reached.
+    /// Locks again what was unlocked, as far as the encoder can be reached.
     fn lead_back(
         &mut self,
         confirmed: &Confirmed<'_>,
@@ -145,18 +145,18 @@ fn lock_again(
     let now = match read_field_status(master, *field) {
         Ok(now) if now.is_writable() => now,
         Ok(_) => return Ok(()),
-        // It was yet to be created.
+        // It had not been created yet.
         Err(error) if error.is_rejection(StatusCode::NO_SUCH_FIELD) => return Ok(()),
         Err(error) => return Err(error),
     };
-    // Whatever else the plan would have changed stays: only the protection is restored.
+    // The other changes of the plan are not made: only the protection is restored.
     let lock = Op::Define { field: *field, from: Some(now), to: now.with_write_enable(to.is_writable()) };
     let sent = perform(master, &lock, confirmed, range)?;
     done.write_cycles += u64::from(sent);
     Ok(())
 }
 
-/// Carries out one operation on an encoder with this many different positions. Returns how often it was sent.
+/// Carries out one operation on an encoder with this number of positions. Returns how often it was sent.
 fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u64) -> Result<u32, Error> {
     let code0 = master.station().codes.get(CodeNumber::ZERO);
     match op {
@@ -204,7 +204,7 @@ fn perform(master: &mut Master<'_>, op: &Op, confirmed: &Confirmed<'_>, range: u
         Op::IncrementCounter { from } => {
             let next = next_count(*from);
             match master.send_until_done(&Request::IncrementCounter, |master| Ok(read_counter(master)? == next)) {
-                // Some types tell the overflow in this way (manual, "Zähler erhöhen"): it was carried out.
+                // Some types report the overflow this way (manual, "Zähler erhöhen"): it was carried out.
                 Err(Error::Rejected { codes, .. }) if codes == [StatusCode::COUNTER_OVERFLOW] => {
                     master.station().meet_codes(codes);
                     Ok(1)
@@ -228,7 +228,7 @@ fn set_address(master: &mut Master<'_>, to: DeviceAddress) -> Result<u32, Error>
         master.station().address = to.byte();
         let moved = read_type_label(master).is_ok();
         master.station().address = before;
-        // An encoder that does not answer at the new address has to be at the old one, or it is lost.
+        // An encoder that does not reply at the new address must be at the old one, or it is lost.
         if moved { Ok(true) } else { read_type_label(master).map(|_| false) }
     })?;
     if before != BROADCAST {
@@ -263,7 +263,7 @@ fn opens(
     }
 }
 
-/// Reads back what the plan has changed: the last word on every field and every byte.
+/// Reads back everything that the plan has changed: the final value of every field and byte.
 fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u64, Error> {
     let mut verified = 0;
     for (at, op) in plan.ops.iter().enumerate() {
@@ -280,7 +280,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
             Op::Store { field, address, new, .. } => {
                 let status = read_field_status(master, *field)?;
                 let code = master.station().codes.get(status.code());
-                // A field that shrank afterwards no longer has all of what was written.
+                // A field that was shrunk afterwards no longer has all of the written bytes.
                 let size = status.size().bytes().saturating_sub(usize::from(*address)).min(new.len());
                 let expected = new.get(..size).unwrap_or_default();
                 let got = read_range(master, *field, usize::from(*address), size, code)?;
@@ -318,7 +318,7 @@ fn verify(master: &mut Master<'_>, plan: &HiperfacePlan, range: u64) -> Result<u
                 }
                 verified += 1;
             }
-            // A code cannot be read; that the encoder acknowledged it is all there is.
+            // A code cannot be read: only the encoder's acknowledgement confirms it.
             Op::ChangeCode { .. } => {}
         }
     }
@@ -329,10 +329,10 @@ fn mismatch(op: &Op, expected: String, got: String) -> Error {
     Error::NotVerified { item: op.item(), expected, got: ReadBack::Value(got) }
 }
 
-/// Checks that no encoder answers at an address: two encoders at one address can never be separated again.
+/// Checks that no encoder replies at an address: two encoders at one address can never be separated again.
 ///
 /// # Errors
-/// [`Error::AddressTaken`], where anything comes back; the wire, or the user's wish.
+/// [`Error::AddressTaken`], if anything is received; errors of the connection, or cancellation.
 pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<(), Error> {
     let before = std::mem::replace(&mut master.station().address, address.byte());
     let answers = (0..2).map(|_| master.attempt(&Request::ReadTypeLabel)).collect::<Result<Vec<_>, _>>();
@@ -343,10 +343,10 @@ pub fn ensure_free(master: &mut Master<'_>, address: DeviceAddress) -> Result<()
     }
 }
 
-/// Free memory and number of fields.
+/// Returns the free memory and number of fields.
 ///
 /// # Errors
-/// The line, or a refusal.
+/// Errors of the exchange, or a refusal.
 pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     match master.ask_confirmed(&Request::FreeMemory)? {
         Reply::FreeMemory(memory) => Ok(memory),
@@ -354,10 +354,10 @@ pub fn read_memory(master: &mut Master<'_>) -> Result<FreeMemory, Error> {
     }
 }
 
-/// All fields that an access code guards: what is needed to tell whether it was changed.
+/// Reads all fields that an access code guards, which show whether it was changed.
 ///
 /// # Errors
-/// The line.
+/// Errors of the exchange.
 pub fn read_guarded_fields(
     master: &mut Master<'_>,
     number: CodeNumber,

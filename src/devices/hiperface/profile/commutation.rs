@@ -1,4 +1,4 @@
-//! A commutation offset as this program stores it in a data field. The manual leaves the format free (SICK 8010701,
+//! A commutation offset as stored by this program in a data field. The manual leaves the format open (SICK 8010701,
 //! commutation; section 5 of the project's sine/cosine reference): sixteen bytes, so that it fills a block of the EEPROM
 //! and is recognised in a backup as a value of the mounting.
 
@@ -36,7 +36,7 @@ impl CommutationRecord {
     /// Its length in bytes.
     pub const BYTES: usize = HiperfaceProfile::COMMUTATION_BYTES;
 
-    /// The bytes to be stored.
+    /// Returns the bytes to be stored.
     pub fn emit(&self) -> [u8; Self::BYTES] {
         let [o3, o2, o1, o0] = self.offset.bits().to_be_bytes();
         let flags = u8::from(self.confirmed);
@@ -48,7 +48,7 @@ impl CommutationRecord {
         bytes
     }
 
-    /// Reads what stands at the beginning of `bytes`; `None` where no record begins.
+    /// Parses the record at the beginning of `bytes`; `None` if there is none.
     pub fn parse(bytes: &[u8]) -> Option<Result<Self, Damaged>> {
         if !bytes.starts_with(HiperfaceProfile::COMMUTATION_MAGIC) {
             return None;
@@ -65,7 +65,7 @@ impl CommutationRecord {
     }
 }
 
-/// CRC-16 with polynomial 1021h from FFFFh, bit by bit.
+/// Returns CRC-16 with polynomial 1021h from FFFFh, bit by bit.
 fn crc(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc, byte| {
         let start = crc ^ u16::from(*byte) << 8;

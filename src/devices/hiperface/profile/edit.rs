@@ -3,11 +3,11 @@
 use super::{Base, FieldImage, FieldRange, HiperfacePlan, Op, PlanError, Scalar};
 use crate::devices::hiperface::protocol::{DataFieldStatus, FieldSize, FreeMemory};
 
-/// Writes exactly these bytes, edits that adjoin or overlap in one operation, of two for the same byte the later. Nothing
-/// where all bytes of such an operation stand there already. `fields` are those that the edits touch, once each.
+/// Plans to write exactly these bytes; adjoining or overlapping edits become one operation, and of two edits of the same
+/// byte the later counts. Operations without a change are left out. `fields` are the edited ones, once each.
 ///
 /// # Errors
-/// A field is not there, protected or unreadable, or the bytes do not fit into it or into the range they are for.
+/// A field is missing, protected or unreadable, or the bytes do not fit into it or into their range.
 pub fn plan_store(
     field_count: u8,
     fields: &[FieldImage],
@@ -25,7 +25,7 @@ pub fn plan_store(
     Ok(plan(field_count, fields, ops))
 }
 
-/// The operations for one field, by ascending address. A field has at most 128 bytes, as has a transfer.
+/// Returns the operations for one field, by ascending address. A field has at most 128 bytes, as has a transfer.
 fn stores<'e>(
     field: &FieldImage,
     edits: impl Iterator<Item = &'e (FieldRange, Vec<u8>)>,
@@ -70,7 +70,7 @@ fn stores<'e>(
 /// Creates the next field.
 ///
 /// # Errors
-/// Another number is next, or there is no room.
+/// Another number is next, or there is no space.
 pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     if number != memory.fields {
         return Err(PlanError::NotNext { field: number, next: memory.fields });
@@ -84,7 +84,7 @@ pub fn plan_create(memory: FreeMemory, number: u8, status: DataFieldStatus) -> R
 /// Changes protection, access code or, for the last field, the size of a field.
 ///
 /// # Errors
-/// Another size for a field that is not the last, or no room for it.
+/// Another size for a field that is not the last, or no space for it.
 pub fn plan_redefine(memory: FreeMemory, field: &FieldImage, to: DataFieldStatus) -> Result<HiperfacePlan, PlanError> {
     let from = field.status;
     if to.size() != from.size() {

@@ -3,7 +3,7 @@
 /// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A data field that stands in the list already.
+    /// A data field that is already in the list.
     #[error("field {0} appears twice")]
     Twice(u8),
     /// A status byte without a field.
@@ -12,7 +12,7 @@ pub enum EntryError {
     /// Bytes of a field that could not be read.
     #[error("a locked field has no bytes")]
     Locked,
-    /// No bytes of a field that could be read.
+    /// Not the bytes of a readable field.
     #[error("missing; a field without bytes has locked: true")]
     NotLocked,
     /// Another number of bytes than the field has.

@@ -1,4 +1,4 @@
-//! The names of things in an encoder: `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address`, `settings`.
+//! The names of items in an encoder: `field:1@3+2`, `status:1`, `analogue:0x48`, `counter`, `address`, `settings`.
 
 use std::fmt;
 use std::str::FromStr;
@@ -8,7 +8,7 @@ use crate::devices::hiperface::protocol::CodeNumber;
 /// Something that can be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Item {
-    /// A data field or a part of it.
+    /// Data field or a part of it.
     Field(FieldRange),
     /// The status byte of a data field.
     Status(u8),
@@ -22,7 +22,7 @@ pub enum Item {
     Settings,
 }
 
-/// A data field or a part of it.
+/// Data field or a part of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FieldRange {
     /// The field's number, FFh for the extended label.
@@ -36,7 +36,7 @@ pub struct FieldRange {
 /// An item that a write confirms, changes and reads back.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanItem {
-    /// Something that can be read by its name.
+    /// Readable item.
     #[error("{0}")]
     Item(Item),
     /// The identity of the encoder.
@@ -92,17 +92,17 @@ impl fmt::Display for Item {
 }
 
 impl FieldRange {
-    /// A whole field.
+    /// Creates a whole field.
     pub fn of(field: u8) -> Self {
         FieldRange { field, start: 0, count: None }
     }
 
-    /// A part of a field.
+    /// Creates a part of a field.
     pub fn new(field: u8, start: usize, count: usize) -> Self {
         FieldRange { field, start, count: Some(count) }
     }
 
-    /// A byte of a field of that number lies in this range.
+    /// Returns whether a byte of a field with this number is in this range.
     pub fn contains(&self, field: u8, address: usize) -> bool {
         self.field == field
             && address >= self.start

@@ -1,4 +1,4 @@
-//! HIPERFACE: what is saved of an encoder, how two differ, and what restoring would do.
+//! HIPERFACE profiles: the content saved of an encoder, the differences between two, and the effect of restoring.
 
 #![warn(missing_docs)]
 

@@ -1,4 +1,4 @@
-//! The operations that change an encoder's memory, and what they rest upon.
+//! The operations that change an encoder's memory, and their base.
 
 use super::item::PlanItem;
 use super::{FieldImage, FieldRange, Item};
@@ -35,35 +35,35 @@ pub enum Scalar {
 /// One persistent write.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// 4Dh: create (no status before), change, or delete (E = 0 after) a field.
+    /// 4Dh: creates a field (no status before), changes one, or deletes one (E = 0 after).
     Define {
         /// The field.
         field: u8,
-        /// Its status now; `None` where it does not exist yet.
+        /// Present status; `None` if the field does not exist yet.
         from: Option<DataFieldStatus>,
-        /// Its status from then on.
+        /// New status.
         to: DataFieldStatus,
     },
-    /// 4Bh: write bytes.
+    /// 4Bh: writes bytes.
     Store {
         /// The field.
         field: u8,
         /// First byte.
         address: u8,
-        /// The field's status at that time: it names the access code.
+        /// Status of the field at that time: it contains the number of the access code.
         status: DataFieldStatus,
         /// The old bytes; `None` if not known, in a field that is yet to be created.
         old: Option<Vec<u8>>,
         /// The new bytes, 1…128.
         new: Vec<u8>,
     },
-    /// 4Fh: another access code.
+    /// 4Fh: changes an access code.
     ChangeCode {
         /// The access code.
         number: CodeNumber,
-        /// Its value now.
+        /// Present value.
         old: AccessCode,
-        /// Its value from then on.
+        /// New value.
         new: AccessCode,
     },
     /// 43h, or 63h with `synchronise`.
@@ -79,14 +79,14 @@ pub enum Op {
     SetAddress {
         /// Now.
         from: u8,
-        /// From then on.
+        /// New address.
         to: DeviceAddress,
     },
     /// 57h.
     Configure {
         /// Stored now.
         from: LineSettings,
-        /// Stored from then on; in force after the next restart.
+        /// New settings, used after the next restart.
         to: LineSettings,
     },
     /// 49h.
@@ -108,7 +108,7 @@ impl Operation for Op {
 }
 
 impl Op {
-    /// The name of what it changes, as `read` takes it where it can be read.
+    /// Returns the name of the changed item, as `read` takes it if it can be read.
     pub fn item(&self) -> PlanItem {
         PlanItem::Item(match self {
             Op::Define { field, .. } => Item::Status(*field),
@@ -123,7 +123,7 @@ impl Op {
         })
     }
 
-    /// Things it changes, counted as a comparison counts them: bytes of a field, or one.
+    /// Returns the number of changes as a comparison counts them: bytes of a field, or one.
     pub fn weight(&self) -> u64 {
         match self {
             Op::Store { new, .. } => new.len() as u64,
@@ -131,8 +131,8 @@ impl Op {
         }
     }
 
-    /// Returns whether it leaves a field writable that was not: if another operation protects it again, that one has to
-    /// follow whatever happens in between.
+    /// Returns whether it leaves a field writable that was not: an operation that protects it again must then be carried
+    /// out whatever happens in between.
     pub fn unlocks(&self) -> bool {
         matches!(self, Op::Define { from, to, .. }
             if to.exists() && to.is_writable() && from.is_none_or(|from| !from.is_writable()))
@@ -143,7 +143,7 @@ impl Op {
         matches!(self, Op::Define { field, to, .. } if *field == number && to.exists() && !to.is_writable())
     }
 
-    /// The field it touches.
+    /// Returns the field it touches.
     pub fn field(&self) -> Option<u8> {
         match self {
             Op::Define { field, .. } | Op::Store { field, .. } => Some(*field),

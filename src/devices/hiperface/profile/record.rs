@@ -7,7 +7,7 @@ use crate::profile::mounting::NEVER_BY_ITSELF;
 use crate::profile::ron_text::{Entries, Unknown, Writer};
 use crate::profile::{Comparison, Profile, ProfileError};
 
-/// A HIPERFACE encoder as it is saved.
+/// Profile of a HIPERFACE encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HiperfaceProfile {
     /// The identity.
@@ -20,7 +20,7 @@ pub struct HiperfaceProfile {
     pub mounting: Vec<MountingMark>,
     /// Data fields in ascending order.
     pub fields: Vec<FieldImage>,
-    /// Of a before-image: fields that the write created, as it wrote them. Restoring the before-image deletes them again.
+    /// In a before-image: fields created by the write, as written. Restoring the before-image deletes them again.
     pub created: Vec<FieldImage>,
     /// Unknown entries of the fields, by field number.
     pub unknown_in_fields: Vec<(u8, Unknown)>,
@@ -29,7 +29,7 @@ pub struct HiperfaceProfile {
 /// The identity of an encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProfileIdentity {
-    /// Serial number; empty where the encoder does not tell.
+    /// Serial number; empty if the encoder has none.
     pub serial_number: String,
     /// Type byte.
     pub encoder_type: u8,
@@ -77,11 +77,11 @@ pub type MountingMark = crate::profile::MountingMark<FieldRange>;
 /// A data field.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct FieldImage {
-    /// Its number.
+    /// Number of the field.
     pub number: u8,
     /// Its status byte.
     pub status: DataFieldStatus,
-    /// Its bytes, as many as the status says; `None` where the access code is not known.
+    /// Its bytes, as many as the status gives; `None` if the access code is not known.
     pub bytes: Option<Vec<u8>>,
 }
 
@@ -91,7 +91,7 @@ impl HiperfaceProfile {
     /// Bytes of a commutation offset as this program stores it.
     pub const COMMUTATION_BYTES: usize = 16;
 
-    /// Marks what is recognised as a value of the mounting, and is not marked yet.
+    /// Marks items that are recognised as values of the mounting and are not marked yet.
     pub fn mark_mounting(&mut self) {
         for field in &self.fields {
             let Some(bytes) = &field.bytes else { continue };
@@ -111,7 +111,7 @@ impl HiperfaceProfile {
         }
     }
 
-    /// A byte of a data field belongs to the mounting.
+    /// Returns whether a byte of a data field belongs to the mounting.
     pub fn is_mounting(&self, field: u8, address: usize) -> bool {
         self.mounting.iter().any(|mark| mark.item.contains(field, address))
     }

@@ -30,17 +30,18 @@ pub struct RestoreOptions {
     pub allow_other_type: bool,
     /// Values of the mounting may go onto another encoder.
     pub with_mounting: bool,
-    /// A field that has another size and is not the last may be deleted and created again, with all that come after it.
+    /// If set, a field that has another size and is not the last may be deleted and created again, with all fields after
+    /// it.
     pub recreate: bool,
-    /// Answers about data fields whose bytes have no known meaning and would go onto another encoder: copied, or left.
-    /// A field without an answer is left.
+    /// Answers about data fields whose bytes have no known meaning and would be written to another encoder: copied, or left
+    /// out. A field without an answer is left out.
     pub copy: BTreeMap<u8, bool>,
 }
 
-/// An encoder's memory as it is.
+/// Present state of an encoder's memory.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeviceState {
-    /// Serial number; empty where the encoder does not tell.
+    /// Serial number; empty if the encoder has none.
     pub serial_number: String,
     /// Type byte.
     pub encoder_type: u8,
@@ -57,11 +58,12 @@ pub struct Restore {
     pub common: crate::profile::Restore<HiperfacePlan, FieldRange, FieldRange>,
     /// Data fields with bytes of unknown meaning that differ from another encoder's.
     pub unknown_fields: Vec<UnknownField>,
-    /// Data fields that the write created which this undoes, and that are left: they have changed since, or are not the last.
+    /// Data fields created by the write that this restore undoes, and left in place: they have changed since, or are not
+    /// the last.
     pub created_left: Vec<u8>,
 }
 
-/// A value that has to be set up again after a restore from another encoder.
+/// Value that must be set up again after a restore from another encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Redo {
     /// The offset between encoder and motor.

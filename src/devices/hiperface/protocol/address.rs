@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// Every encoder on the line obeys; each answers with its own address. Allowed only with one encoder connected, unless
-/// the command has no reply.
+/// The address that every encoder on the line obeys; each answers with its own address. Allowed only with one encoder
+/// connected, unless the command has no reply.
 pub const BROADCAST: u8 = 0xFF;
 
 /// The address byte of one encoder: device number 0…31 plus 40h, so 40h…5Fh.
@@ -20,17 +20,17 @@ impl DeviceAddress {
     /// 5Fh, the highest.
     pub const LAST: DeviceAddress = DeviceAddress(0x5F);
 
-    /// An address byte 40h…5Fh; `None` for any other.
+    /// Creates an address from the byte 40h…5Fh; `None` for any other.
     pub const fn new(byte: u8) -> Option<Self> {
         if byte & 0xE0 == 0x40 { Some(DeviceAddress(byte)) } else { None }
     }
 
-    /// All 32 addresses, 40h first.
+    /// Returns all 32 addresses, 40h first.
     pub fn all() -> impl Iterator<Item = DeviceAddress> {
         (Self::FIRST.0..=Self::LAST.0).map(DeviceAddress)
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }

@@ -34,15 +34,15 @@ pub enum Command {
 pub struct CommandRow {
     /// The command.
     pub command: Command,
-    /// The manual's name of it.
+    /// The name in the manual.
     pub name: &'static str,
-    /// "Code 0" has to be given.
+    /// Whether "Code 0" is required.
     pub code0: bool,
     /// Longest time to process it, without transfer and protocol time-out; zero for a command without reply.
     pub max_time: Duration,
     /// Bytes between command and checksum of the request; for 4Bh the least number.
     pub request_payload: usize,
-    /// It changes what the encoder keeps without power.
+    /// Whether it changes persistent content of the encoder.
     pub persistent: bool,
 }
 
@@ -84,19 +84,19 @@ pub const COMMANDS: [CommandRow; 20] = [
 ];
 
 impl Command {
-    /// The command of a command byte, whatever its error bit.
+    /// Returns the command of a command byte, ignoring its error bit.
     pub fn from_byte(byte: u8) -> Option<Self> {
         COMMANDS.iter().map(|row| row.command).find(|command| command.byte() == byte & 0x7F)
     }
 
-    /// The command byte without the error bit.
+    /// Returns the command byte without the error bit.
     pub const fn byte(self) -> u8 {
         self as u8
     }
 
-    /// The command's line of the manual's table.
+    /// Returns the command's line of the manual's table.
     pub fn row(self) -> &'static CommandRow {
-        // The table lists every variant (tested); its first line stands in for the impossible.
+        // The table lists every variant (tested); its first line is a fallback that is never used.
         let [first, ..] = &COMMANDS;
         COMMANDS.iter().find(|row| row.command == self).unwrap_or(first)
     }

@@ -16,17 +16,17 @@ impl CodeNumber {
     /// Code 0 also guards the settings of the encoder itself.
     pub const ZERO: CodeNumber = CodeNumber(0);
 
-    /// 0…3; `None` above.
+    /// Creates a number 0…3; `None` above.
     pub const fn new(number: u8) -> Option<Self> {
         if number < 4 { Some(CodeNumber(number)) } else { None }
     }
 
-    /// All four.
+    /// Returns all four.
     pub fn all() -> impl Iterator<Item = CodeNumber> {
         (0..4).map(CodeNumber)
     }
 
-    /// The number on the line.
+    /// Returns the number on the line.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -38,7 +38,7 @@ impl fmt::Display for CodeNumber {
     }
 }
 
-/// An access code. It shows itself nowhere: not in a log, a trace, an error or a test's output.
+/// An access code. It is never shown: not in a log, a trace, an error or a test's output.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct AccessCode(u8);
 
@@ -46,12 +46,12 @@ impl AccessCode {
     /// 55h, the factory value of all four codes.
     pub const FACTORY: AccessCode = AccessCode(0x55);
 
-    /// Any byte is an access code.
+    /// Creates it: any byte is an access code.
     pub const fn new(byte: u8) -> Self {
         AccessCode(byte)
     }
 
-    /// The byte for the line.
+    /// Returns the byte for the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -68,10 +68,10 @@ impl fmt::Debug for AccessCode {
 pub struct FieldSize(u8);
 
 impl FieldSize {
-    /// Bytes in a block, the unit in which memory is given out.
+    /// Bytes in a block, the unit in which memory is allocated.
     pub const BLOCK: usize = 16;
 
-    /// A size in bytes; `None` unless it is a multiple of 16 from 16 to 128.
+    /// Creates a size from bytes; `None` unless it is a multiple of 16 from 16 to 128.
     pub fn from_bytes(bytes: usize) -> Option<Self> {
         if !bytes.is_multiple_of(Self::BLOCK) {
             return None;
@@ -79,22 +79,22 @@ impl FieldSize {
         Self::from_blocks(u8::try_from(bytes / Self::BLOCK).ok()?)
     }
 
-    /// A size in blocks of 16 bytes, 1…8.
+    /// Creates a size in blocks of 16 bytes, 1…8.
     pub const fn from_blocks(blocks: u8) -> Option<Self> {
         if 0 < blocks && blocks <= 8 { Some(FieldSize(blocks)) } else { None }
     }
 
-    /// Every size, smallest first.
+    /// Returns every size, smallest first.
     pub fn all() -> impl Iterator<Item = FieldSize> {
         (1..=8).map(FieldSize)
     }
 
-    /// Size in bytes.
+    /// Returns the size in bytes.
     pub const fn bytes(self) -> usize {
         self.0 as usize * Self::BLOCK
     }
 
-    /// Size in blocks of 16 bytes.
+    /// Returns the size in blocks of 16 bytes.
     pub const fn blocks(self) -> u8 {
         self.0
     }
@@ -113,28 +113,28 @@ impl DataFieldStatus {
     const WRITE_ENABLE: u8 = 0x40;
     const CODE_REQUIRED: u8 = 0x08;
 
-    /// Every byte is a status byte.
+    /// Creates it: every byte is a status byte.
     pub const fn from_byte(byte: u8) -> Self {
         DataFieldStatus(byte)
     }
 
-    /// An existing, writable field.
+    /// Creates an existing, writable field.
     pub const fn new(size: FieldSize, code: CodeNumber, code_required: bool) -> Self {
         let required = if code_required { Self::CODE_REQUIRED } else { 0 };
         DataFieldStatus(Self::EXISTS | Self::WRITE_ENABLE | code.0 << 4 | required | (size.0 - 1))
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// E: the field is defined.
+    /// Returns E: the field is defined.
     pub const fn exists(self) -> bool {
         self.0 & Self::EXISTS != 0
     }
 
-    /// WE: the field may be written.
+    /// Returns WE: the field may be written.
     pub const fn is_writable(self) -> bool {
         self.0 & Self::WRITE_ENABLE != 0
     }
@@ -144,36 +144,36 @@ impl DataFieldStatus {
         CodeNumber(self.0 >> 4 & 3)
     }
 
-    /// CE: reading and writing need the access code.
+    /// Returns CE: reading and writing need the access code.
     pub const fn code_required(self) -> bool {
         self.0 & Self::CODE_REQUIRED != 0
     }
 
-    /// (SIZE + 1) · 16 bytes.
+    /// Returns (SIZE + 1) · 16 bytes.
     pub const fn size(self) -> FieldSize {
         FieldSize((self.0 & 7) + 1)
     }
 
-    /// The same field, writable or not.
+    /// Returns the same field, writable or not.
     #[must_use]
     pub const fn with_write_enable(self, writable: bool) -> Self {
         DataFieldStatus(if writable { self.0 | Self::WRITE_ENABLE } else { self.0 & !Self::WRITE_ENABLE })
     }
 
-    /// The same field, guarded by another access code, which reading asks for or not.
+    /// Returns the same field, guarded by another access code, which reading asks for or not.
     #[must_use]
     pub const fn with_code(self, code: CodeNumber, required: bool) -> Self {
         let rest = self.0 & !(Self::CODE_REQUIRED | 0x30);
         DataFieldStatus(rest | code.0 << 4 | if required { Self::CODE_REQUIRED } else { 0 })
     }
 
-    /// The same field with another size.
+    /// Returns the same field with another size.
     #[must_use]
     pub const fn with_size(self, size: FieldSize) -> Self {
         DataFieldStatus(self.0 & !7 | (size.0 - 1))
     }
 
-    /// The status that deletes this field: E is 0.
+    /// Returns the status that deletes this field: E is 0.
     #[must_use]
     pub const fn deleted(self) -> Self {
         DataFieldStatus(self.0 & !Self::EXISTS)
@@ -207,7 +207,7 @@ pub struct FreeMemory {
 }
 
 impl FreeMemory {
-    /// Free memory in bytes.
+    /// Returns the free memory in bytes.
     pub fn bytes(self) -> usize {
         usize::from(self.blocks) * FieldSize::BLOCK
     }

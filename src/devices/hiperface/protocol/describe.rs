@@ -5,25 +5,25 @@ use super::{
     Request, RequestError, StatusCode,
 };
 
-/// One thing that a frame says.
+/// A fact in a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFact {
-    /// Whom it concerns, and which command.
+    /// Its address and command.
     Heading {
         /// 40h…5Fh, FFh in a broadcast.
         address: u8,
-        /// The command byte as it came, error bit included.
+        /// The command byte as received, including the error bit.
         command: u8,
     },
-    /// It asks.
+    /// A request.
     Request(Arguments),
-    /// It is neither a request nor a reply that can be told without its request.
+    /// Neither a request nor a reply that can be recognised without its request.
     NoRequest(RequestError),
-    /// It refuses, with this code.
+    /// A refusal with this code.
     Refused(StatusCode),
-    /// It tells a code of the encoder's queue.
+    /// A code of the encoder's queue.
     Code(StatusCode),
-    /// It answers; a reply with codes is said code by code.
+    /// A reply; one with codes has a fact for each code.
     Reply(Reply),
 }
 
@@ -60,7 +60,7 @@ pub enum Arguments {
     Define {
         /// Data field number.
         field: u8,
-        /// Its status from then on.
+        /// Its new status.
         status: DataFieldStatus,
     },
     /// The access code of that number.
@@ -71,10 +71,10 @@ pub enum Arguments {
     Settings(LineSettings),
 }
 
-/// Describes a captured frame, the heading first. `request` is the request before it, when the frame may be its reply.
+/// Describes a captured frame, the heading first. `request` is the previous request, if the frame may be its reply.
 ///
 /// # Errors
-/// When the bytes are no frame.
+/// Returns an error if the bytes are no frame.
 pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact>, FrameError> {
     let frame = Frame::parse(bytes)?;
     let mut facts = vec![FrameFact::Heading { address: frame.address, command: frame.command }];
@@ -92,7 +92,7 @@ pub fn describe(bytes: &[u8], request: Option<&Request>) -> Result<Vec<FrameFact
     Ok(facts)
 }
 
-/// A reply is recognised without its request wherever its length tells it from one.
+/// Recognises a reply without its request if its length distinguishes it from a request.
 fn guess_reply(frame: &Frame<'_>, bytes: &[u8]) -> Option<Answer> {
     let code = AccessCode::FACTORY;
     let candidate = match (Command::from_byte(frame.command)?, frame.payload) {

@@ -1,4 +1,4 @@
-//! Encoder types: what the type byte of 52h says about periods and turns. The table is data
+//! Encoder types: periods and turns for the type byte of 52h. The table is data
 //! (`assets/devices/hiperface/encoder_types.ron`), so that a user can add an encoder.
 
 use std::ops::RangeInclusive;
@@ -14,17 +14,17 @@ pub struct EncoderType {
     pub code: u8,
     /// Family name, as on the data sheet.
     pub name: String,
-    /// Periods and turns; `None` where the extended label or the user has to tell.
+    /// Periods and turns; `None` if the extended label or the user has to supply them.
     pub geometry: Option<Geometry>,
-    /// Without bearing of its own: its code tracks are aligned with 63h after mounting.
+    /// Whether it has no bearing of its own: its code tracks are aligned with 63h after mounting.
     pub kit: bool,
 }
 
-/// All encoder types known.
+/// All known encoder types.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EncoderTypes(Vec<EncoderType>);
 
-/// Why a table cannot be used.
+/// The reason why a table is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TypeTableError {
     /// The text is not the RON expected.
@@ -63,7 +63,7 @@ pub enum ShapeEntry {
     PeriodLength,
 }
 
-/// The table as it stands in the file.
+/// The table as written in the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -95,8 +95,7 @@ impl EncoderTypes {
     /// Reads a table.
     ///
     /// # Errors
-    /// With line and column where the text is not RON or has unknown keys; with both limits where a number is out of
-    /// its range.
+    /// Returns line and column if the text is not RON or has unknown keys; both limits if a number is out of its range.
     pub fn parse(text: &str) -> Result<Self, TypeTableError> {
         let file: File = ron::from_str(text).map_err(|error| TypeTableError::Syntax {
             line: error.span.start.line,
@@ -106,13 +105,13 @@ impl EncoderTypes {
         file.types.into_iter().map(Row::check).collect::<Result<_, _>>().map(EncoderTypes)
     }
 
-    /// The built-in table.
+    /// Creates the built-in table.
     pub fn built_in() -> Self {
-        // Parsing it is tested; an empty table would only make every type unknown.
+        // A test checks that it can be parsed; an empty table would only make every type unknown.
         Self::parse(Self::BUILT_IN).unwrap_or(EncoderTypes(Vec::new()))
     }
 
-    /// This table, with the rows of `other` going before its own.
+    /// Returns this table with the rows of `other`, which take precedence.
     #[must_use]
     pub fn overlaid_with(self, other: EncoderTypes) -> Self {
         let mut rows = other.0;
@@ -120,7 +119,7 @@ impl EncoderTypes {
         EncoderTypes(rows)
     }
 
-    /// The row of a type byte.
+    /// Returns the row of a type byte.
     pub fn find(&self, code: u8) -> Option<&EncoderType> {
         self.0.iter().find(|row| row.code == code)
     }

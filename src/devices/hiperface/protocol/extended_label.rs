@@ -6,12 +6,12 @@ use super::{Geometry, checksum};
 /// The extended label of an encoder with type FFh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExtendedLabel {
-    /// The stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a difference warns, it
-    /// never rejects.
+    /// Whether the stored checksum is the XOR of all other bytes. The algorithm is not public (`U`): a difference causes a
+    /// warning, never a refusal.
     pub checksum_fits: bool,
     /// Byte 01h: bit 0 linear, bit 1 bipolar counting; shown raw, because another public source has bit 1 reversed.
     pub flags: u8,
-    /// Periods and turns, or period length and range; `None` where a number is zero or too large.
+    /// Periods and turns, or period length and range; `None` if a number is zero or too large.
     pub geometry: Option<Geometry>,
     /// Designation, 18 characters, blank padded.
     pub designation: String,
@@ -19,8 +19,8 @@ pub struct ExtendedLabel {
     pub parameters: Vec<LabelParameter>,
 }
 
-/// A limit. What each number stands for is in the encoder's data sheet (`U`); a quantity that 44h can read has its
-/// analogue channel as the first word.
+/// A limit. The encoder's data sheet defines the meaning of each number (`U`); the first word of a quantity that 44h can
+/// read is its analogue channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LabelParameter {
     /// 0…14 in the first set, 15…29 in the second, 30…44 in the third.
@@ -36,7 +36,7 @@ pub enum LabelPart {
     Checksum,
     /// 01h.
     Flags,
-    /// 02h…05h: periods in a revolution, or the length of a period in nanometres.
+    /// 02h…05h: periods per revolution, or the length of a period in nanometres.
     Resolution(u32),
     /// 06h…09h: revolutions, or the coded range in periods.
     Range(u32),
@@ -44,18 +44,18 @@ pub enum LabelPart {
     Designation,
     /// The valid limits of a set: bits 0 to 14, and bit 15 if another set follows.
     Selector(u16),
-    /// A limit; one that its selector leaves out is not used.
+    /// A limit; one that its selector omits is not used.
     Limit {
-        /// Its number.
+        /// Number of the limit.
         number: u8,
         /// The word.
         value: i16,
-        /// Its selector bit is set.
+        /// Whether its selector bit is set.
         valid: bool,
     },
 }
 
-/// Why a data field is not an extended label.
+/// The reason why a data field is not an extended label.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LabelError {
     /// Too short for the description in bytes 00h…1Bh.
@@ -79,7 +79,7 @@ impl ExtendedLabel {
     /// Reads the content of field FFh.
     ///
     /// # Errors
-    /// [`LabelError::Short`] when the description is not complete. Limits beyond the end of the field are left out.
+    /// [`LabelError::Short`] if the description is not complete. Limits beyond the end of the field are left out.
     pub fn parse(bytes: &[u8]) -> Result<Self, LabelError> {
         let (description, sets) =
             bytes.split_first_chunk::<{ Self::MIN_BYTES }>().ok_or(LabelError::Short { got: bytes.len() })?;
@@ -95,9 +95,9 @@ impl ExtendedLabel {
         })
     }
 
-    /// Limits of quantities that 44h can read: the analogue channel and the value that its reading should not exceed.
-    /// Two parameters that follow each other are taken for such a pair; which ones are is in the data sheet (`U`), so a
-    /// pair is good for a remark where its channel answers, and for nothing else.
+    /// Returns limits of quantities that 44h can read: the analogue channel and the value that its reading should not
+    /// exceed. Two consecutive parameters are taken for such a pair; the data sheet defines which ones are (`U`), so a pair
+    /// is only used for a remark if its channel answers.
     pub fn limits(&self) -> Vec<(u8, i16)> {
         let mut limits = Vec::new();
         let mut rest = self.parameters.as_slice();
@@ -112,7 +112,7 @@ impl ExtendedLabel {
         limits
     }
 
-    /// The label taken apart, byte by byte: address, number of bytes, and what they are.
+    /// Returns the parts of the label, byte by byte: address, number of bytes, and meaning.
     ///
     /// # Errors
     /// [`LabelError::Short`] when the description is not complete.
@@ -185,7 +185,7 @@ impl ExtendedLabel {
 mod tests {
     use super::*;
 
-    /// The synthetic label of the reference, 64 bytes, XOR checksum.
+    /// Returns the synthetic label of the reference, 64 bytes, XOR checksum.
     fn label() -> Vec<u8> {
         let mut bytes = crate::bits::parse_hex(
             "53 00 00 00 00 10 00 00 10 00 53 45 4C 33 37 2D 48 46 42 30 2D 4B 30 32 20 20 20 20 00 03 00 48 00 73",

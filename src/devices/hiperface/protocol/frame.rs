@@ -1,11 +1,11 @@
 //! The frame: address, command byte, payload, XOR checksum (manual, "Das Übertragungsprotokoll").
 
-/// XOR of all bytes; zero over a whole valid frame.
+/// Returns the XOR of all bytes; zero over a complete valid frame.
 pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
 
-/// A frame whose checksum was right. What the payload means depends on the command.
+/// A frame with a valid checksum. The command defines the meaning of the payload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
     /// Address byte as received: 40h…5Fh, FFh in a broadcast.
@@ -16,7 +16,7 @@ pub struct Frame<'a> {
     pub payload: &'a [u8],
 }
 
-/// Why bytes are not a frame.
+/// The reason why bytes are not a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameError {
     /// Fewer than the three bytes that every frame has.
@@ -39,7 +39,7 @@ impl<'a> Frame<'a> {
     /// The error bit of a reply's command byte.
     pub const ERROR_BIT: u8 = 0x80;
 
-    /// Parses a frame. The whole slice is the frame: its end is shown by silence on the line.
+    /// Parses a frame, which is the complete slice: silence on the line marks its end.
     ///
     /// # Errors
     /// [`FrameError::Short`] below three bytes, [`FrameError::Checksum`] if the last byte does not fit.
@@ -54,7 +54,7 @@ impl<'a> Frame<'a> {
         Ok(Frame { address: *address, command: *command, payload })
     }
 
-    /// The bytes on the line, checksum last.
+    /// Returns the bytes on the line, checksum last.
     pub fn emit(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.payload.len() + 3);
         bytes.extend([self.address, self.command]);
@@ -75,7 +75,7 @@ mod tests {
         (&[0x40, 0x4E, 0x08, 0x00, 0x06], true),
         (&[0x40, 0x4D, 0x00, 0xC9, 0x55, 0x91], true),
         (&[0x40, 0x4D, 0x00, 0xC9, 0xC4], true),
-        (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0x69], false), // printed wrong: B9 is right
+        (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0x69], false), // misprint: B9 is right
         (&[0x40, 0x4D, 0x01, 0xE0, 0x55, 0xB9], true),
         (&[0x40, 0x4D, 0x01, 0xE0, 0xEC], true),
         (&[0x40, 0x4F, 0x02, 0x55, 0x66, 0x3E], true),

@@ -30,17 +30,17 @@ impl LineSettings {
     const STANDARD: u8 = 0x80;
     const LONG_TIMEOUT: u8 = 0x40;
 
-    /// Every byte is kept, also one with reserved values.
+    /// Creates it: every byte is kept, also one with reserved values.
     pub const fn from_byte(byte: u8) -> Self {
         LineSettings(byte)
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
 
-    /// The same interface with another character format; `None` for a speed that the byte cannot express.
+    /// Returns the same interface with another character format; `None` for a speed that the byte cannot express.
     pub fn with_format(self, format: CharacterFormat) -> Option<Self> {
         let speed = u8::try_from(BAUDS.iter().position(|baud| *baud == format.baud)?).ok()?;
         let parity = match format.parity {
@@ -51,24 +51,24 @@ impl LineSettings {
         Some(LineSettings(self.0 & 0xC8 | parity << 4 | speed))
     }
 
-    /// The same interface with a time-out of 44/baud, or of 11/baud.
+    /// Returns the same interface with a time-out of 44/baud, or of 11/baud.
     #[must_use]
     pub const fn with_long_timeout(self, long: bool) -> Self {
         LineSettings(if long { self.0 | Self::LONG_TIMEOUT } else { self.0 & !Self::LONG_TIMEOUT })
     }
 
-    /// The same interface for a bus of several encoders, or for one.
+    /// Returns the same interface for a bus of several encoders, or for one.
     #[must_use]
     pub const fn with_bus(self, bus: bool) -> Self {
         LineSettings(if bus { self.0 & !Self::STANDARD } else { self.0 | Self::STANDARD })
     }
 
-    /// Speed; `None` for the reserved code 111.
+    /// Returns the speed; `None` for the reserved code 111.
     pub fn baud(self) -> Option<Baud> {
         BAUDS.get(usize::from(self.0 & 7)).copied()
     }
 
-    /// Parity; `None` for the reserved code 01.
+    /// Returns the parity; `None` for the reserved code 01.
     pub const fn parity(self) -> Option<Parity> {
         match self.0 >> 4 & 3 {
             0b00 => Some(Parity::None),
@@ -78,17 +78,17 @@ impl LineSettings {
         }
     }
 
-    /// Speed and parity; `None` where either is reserved.
+    /// Returns speed and parity; `None` if either is reserved.
     pub fn format(self) -> Option<CharacterFormat> {
         Some(CharacterFormat { baud: self.baud()?, parity: self.parity()? })
     }
 
-    /// Bit 6: the time-out is 44/baud, else 11/baud.
+    /// Returns whether bit 6 is set: the time-out is 44/baud, else 11/baud.
     pub const fn long_timeout(self) -> bool {
         self.0 & Self::LONG_TIMEOUT != 0
     }
 
-    /// Bit 7 is 0: an encoder for a bus of several.
+    /// Returns whether bit 7 is 0: an encoder for a bus of several.
     pub const fn is_bus(self) -> bool {
         self.0 & Self::STANDARD == 0
     }

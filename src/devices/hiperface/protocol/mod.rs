@@ -1,7 +1,7 @@
 //! The HIPERFACE parameter channel: frames, commands, status codes, data fields, labels and timing.
 //!
-//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual" below). What the manual leaves open is
-//! marked `U` (unknown) and treated tolerantly; what other public sources say is marked `P`.
+//! Source: SICK 8010701 *HIPERFACE® – Beschreibung / Description* ("the manual" below). Facts that the manual leaves open
+//! are marked `U` (unknown) and treated tolerantly; facts from other public sources are marked `P`.
 //!
 //! ```text
 //! request : ADDR CMD [args…] CHK        reply : ADDR CMD [data…] CHK
@@ -27,7 +27,7 @@ mod type_label;
 #[cfg(test)]
 mod vectors;
 
-/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+/// The word for this kind of device: on the command line, in profiles, and in stored data.
 pub const KIND: &str = "hiperface";
 
 pub use address::{BROADCAST, DeviceAddress};

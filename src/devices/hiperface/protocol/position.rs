@@ -1,8 +1,8 @@
-//! The position word: 5 bits a signal period, least significant bit right-aligned (manual, "Position lesen").
+//! The position word: 5 bits per signal period, least significant bit right-aligned (manual, "Position lesen").
 
 use std::fmt;
 
-/// Steps in one signal period: the position always resolves 5 bits of it.
+/// Steps per signal period: the position always resolves 5 bits of it.
 pub const STEPS_PER_PERIOD: u32 = 32;
 
 /// The meaning of the steps of an encoder.
@@ -12,20 +12,20 @@ pub enum Geometry {
     Rotary {
         /// Signal periods in a revolution, at least 1.
         periods: u32,
-        /// Revolutions that the encoder tells apart: 1 for a singleturn.
+        /// Revolutions that the encoder distinguishes: 1 for a singleturn.
         turns: u32,
     },
     /// A scale or a distance.
     Linear {
         /// Length of a signal period in nanometres, at least 1.
         period_nm: u32,
-        /// Coded range in periods; 0 where nothing is said about it.
+        /// Coded range in periods; 0 if it is not known.
         periods: u32,
     },
 }
 
 impl Geometry {
-    /// Steps in one revolution; `None` for a linear encoder.
+    /// Returns the steps per revolution; `None` for a linear encoder.
     pub fn steps_per_turn(self) -> Option<u64> {
         match self {
             Geometry::Rotary { periods, .. } => Some(u64::from(periods.max(1)) * u64::from(STEPS_PER_PERIOD)),
@@ -33,7 +33,7 @@ impl Geometry {
         }
     }
 
-    /// Number of different positions, so that they run from 0 to one less; `None` where it is not known.
+    /// Returns the number of different positions, which run from 0 to one less; `None` if it is not known.
     pub fn range(self) -> Option<u64> {
         match self {
             Geometry::Rotary { turns, .. } => Some(self.steps_per_turn()?.saturating_mul(u64::from(turns.max(1)))),
@@ -75,7 +75,7 @@ impl fmt::Display for Geometry {
 pub struct Position {
     /// The word as received.
     pub raw: u32,
-    /// The word lies within the encoder's measuring range.
+    /// Whether the word is within the encoder's measuring range.
     pub in_range: bool,
     place: Location,
 }
@@ -87,7 +87,7 @@ enum Location {
 }
 
 impl Position {
-    /// Whole revolutions; `None` for a linear encoder.
+    /// Returns whole revolutions; `None` for a linear encoder.
     pub fn turns(self) -> Option<u64> {
         match self.place {
             Location::Rotary { turns, .. } => Some(turns),
@@ -95,7 +95,7 @@ impl Position {
         }
     }
 
-    /// Steps within the revolution; `None` for a linear encoder.
+    /// Returns steps within the revolution; `None` for a linear encoder.
     pub fn steps(self) -> Option<u64> {
         match self.place {
             Location::Rotary { steps, .. } => Some(steps),
@@ -103,7 +103,7 @@ impl Position {
         }
     }
 
-    /// Degrees within the revolution, 0 up to 360; `None` for a linear encoder.
+    /// Returns degrees within the revolution, 0 up to 360; `None` for a linear encoder.
     pub fn degrees(self) -> Option<f64> {
         match self.place {
             Location::Rotary { degrees, .. } => Some(degrees),
@@ -111,7 +111,7 @@ impl Position {
         }
     }
 
-    /// Millimetres; `None` for a rotary encoder.
+    /// Returns millimetres; `None` for a rotary encoder.
     pub fn millimetres(self) -> Option<f64> {
         match self.place {
             Location::Rotary { .. } => None,
@@ -129,8 +129,8 @@ impl fmt::Display for Position {
     }
 }
 
-/// The value nearest to `wanted` that has the five lowest bits of `now`, so that setting it keeps the phase between the
-/// absolute value and the sine signal (manual, "Position setzen": the five lowest bits equal the five highest of the
+/// Returns the value nearest to `wanted` that has the five lowest bits of `now`, so that setting it keeps the phase between
+/// the absolute value and the sine signal (manual, "Position setzen": the five lowest bits equal the five highest of the
 /// arctangent). It stays within `range`; of two equally near values the lower is taken.
 pub fn nearest_in_phase(now: u32, wanted: u32, range: Option<u64>) -> u32 {
     let phase = u64::from(now % STEPS_PER_PERIOD);

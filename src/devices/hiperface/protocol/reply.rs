@@ -1,6 +1,7 @@
 //! The replies of an encoder. Replies repeat address and command, then the requested data (manual, "Fehlerbehandlung").
 //!
-//! The layouts of the replies to 55h, 57h and 67h are not printed (`U`): with and without the repeated argument is taken.
+//! The layouts of the replies to 55h, 57h and 67h are not printed (`U`): both are accepted, with and without the repeated
+//! argument.
 
 use super::{
     Command, DataFieldStatus, DeviceAddress, Frame, FrameError, FreeMemory, LineSettings, Request, SerialLabel,
@@ -10,7 +11,7 @@ use super::{
 /// The data of a reply.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Reply {
-    /// Carried out; there is nothing to tell.
+    /// Carried out, without data.
     Done,
     /// 42h: position in steps (1/32 period).
     Position(u32),
@@ -18,7 +19,7 @@ pub enum Reply {
     Analogue(i16),
     /// 46h: 0…FFFFFFh.
     Counter(u32),
-    /// 4Ah: the bytes asked for.
+    /// 4Ah: the requested bytes.
     Data(Vec<u8>),
     /// 4Ch: the field's status byte.
     FieldStatus(DataFieldStatus),
@@ -51,13 +52,13 @@ pub enum Answer {
     },
 }
 
-/// Why bytes are not the reply to a request.
+/// The reason why bytes are not the reply to a request.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ReplyError {
-    /// Not a frame at all.
+    /// Not a frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// From another address.
+    /// A reply from another address.
     #[error("reply from address {got:02X}h instead of {expected:02X}h")]
     Address {
         /// The address of the request.
@@ -65,7 +66,7 @@ pub enum ReplyError {
         /// The address of the reply.
         got: u8,
     },
-    /// To another command.
+    /// A reply to another command.
     #[error("reply to command {got:02X}h instead of {expected:02X}h")]
     Command {
         /// The command sent.
@@ -91,13 +92,13 @@ pub enum ReplyError {
 pub struct ReplyLength {
     /// Shortest.
     pub min: usize,
-    /// Longest: no more bytes are to come.
+    /// Greatest length: no more bytes follow.
     pub max: usize,
 }
 
 impl Request {
-    /// The reply's length, as far as the request and the bytes `received` so far tell. `None` for a request without
-    /// reply.
+    /// Returns the reply's length, as far as it follows from the request and the bytes `received` so far. `None` for a
+    /// request without reply.
     pub fn reply_length(&self, received: &[u8]) -> Option<ReplyLength> {
         let rejected = received.get(1).is_some_and(|command| command & 0x7F == Command::ReadStatus.byte());
         let payload = |min, max| Some(ReplyLength { min: min + 3, max: max + 3 });
@@ -124,8 +125,8 @@ impl Request {
     /// Reads the reply to this request, which was sent to `address` (40h…5Fh or broadcast).
     ///
     /// # Errors
-    /// A broken frame, another sender, another command, a wrong length or other arguments: nothing of such a reply may
-    /// be shown as a value.
+    /// A damaged frame, another sender, another command, a wrong length or other arguments: no value of such a reply may be
+    /// shown.
     pub fn parse_reply(&self, address: u8, bytes: &[u8]) -> Result<Answer, ReplyError> {
         let frame = Frame::parse(bytes)?;
         self.check_sender(address, frame.address)?;

@@ -13,7 +13,7 @@ use crate::bits::MaskedBytes;
 pub enum Request {
     /// 42h: the absolute position.
     ReadPosition,
-    /// 43h: give the shaft's present place a position. Only at standstill.
+    /// 43h: sets the position of the shaft. Only at standstill.
     SetPosition {
         /// New position in steps (1/32 period).
         position: u32,
@@ -27,7 +27,7 @@ pub enum Request {
     },
     /// 46h: the 24-bit counter.
     ReadCounter,
-    /// 47h: counter + 1. Wears the EEPROM: about a million times in a life.
+    /// 47h: counter + 1. Wears the EEPROM: about a million times in its life.
     IncrementCounter,
     /// 49h: counter to 0.
     ClearCounter {
@@ -42,7 +42,7 @@ pub enum Request {
         address: u8,
         /// Number of bytes, 1…128.
         count: u8,
-        /// The field's access code; ignored by the encoder where CE is 0.
+        /// The field's access code; ignored by the encoder if CE is 0.
         code: AccessCode,
     },
     /// 4Bh: write bytes of a data field.
@@ -65,7 +65,7 @@ pub enum Request {
     DefineField {
         /// Data field number.
         field: u8,
-        /// Its status from now on; E = 0 deletes.
+        /// Its new status; E = 0 deletes.
         status: DataFieldStatus,
         /// Access code of the field.
         code: AccessCode,
@@ -81,7 +81,7 @@ pub enum Request {
         /// Its new value.
         new: AccessCode,
     },
-    /// 50h: takes the oldest code out of the encoder's queue.
+    /// 50h: removes the oldest code from the encoder's queue.
     ReadStatus,
     /// 52h: the type label.
     ReadTypeLabel,
@@ -96,7 +96,7 @@ pub enum Request {
     },
     /// 56h: serial number and firmware.
     ReadSerial,
-    /// 57h: interface settings, in force after the next reset.
+    /// 57h: interface settings, effective after the next reset.
     ConfigureLine {
         /// New settings.
         settings: LineSettings,
@@ -110,14 +110,14 @@ pub enum Request {
         /// Code 0.
         code0: AccessCode,
     },
-    /// 67h: interface settings at once and until the next reset.
+    /// 67h: interface settings, effective at once and until the next reset.
     ConfigureLineTemporarily {
         /// New settings.
         settings: LineSettings,
     },
 }
 
-/// Why an encoder does not understand a request.
+/// The reason why an encoder does not understand a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RequestError {
     /// Not one of the twenty commands.
@@ -137,7 +137,7 @@ pub enum RequestError {
 }
 
 impl RequestError {
-    /// The status code an encoder answers with.
+    /// Returns the status code an encoder answers with.
     pub fn status(self) -> StatusCode {
         match self {
             RequestError::Command(_) => StatusCode::UNKNOWN_COMMAND,
@@ -174,14 +174,14 @@ impl Request {
         }
     }
 
-    /// The frame for the line. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
+    /// Returns the frame for the line. `address` is 40h…5Fh or [`BROADCAST`](super::BROADCAST).
     pub fn emit(&self, address: u8) -> SecretFrame {
         let (payload, codes) = self.payload();
         let frame = Frame { address, command: self.command().byte(), payload: &payload };
         let bytes = frame.emit();
         let mut secret: Vec<usize> = codes.iter().map(|at| at + 2).collect();
         if !secret.is_empty() {
-            secret.push(bytes.len() - 1); // the checksum is an XOR: it gives the code away
+            secret.push(bytes.len() - 1); // the checksum is an XOR: it reveals the code
         }
         SecretFrame { bytes, secret }
     }
@@ -189,7 +189,7 @@ impl Request {
     /// Reads the request in a frame.
     ///
     /// # Errors
-    /// In the order in which an encoder checks (`U`): the command, the number of arguments, their ranges.
+    /// Errors in the order in which an encoder checks (`U`): the command, the number of arguments, their ranges.
     pub fn parse(frame: &Frame<'_>) -> Result<Self, RequestError> {
         let command = Command::from_byte(frame.command)
             .filter(|_| frame.command & Frame::ERROR_BIT == 0)
@@ -291,7 +291,7 @@ impl Request {
         }))
     }
 
-    /// The ranges that the frame alone decides; what depends on the encoder is the encoder's business.
+    /// Checks the ranges that depend on the frame only; those that depend on the encoder are checked by the encoder.
     fn checked(request: Result<Self, RequestError>) -> Result<Self, RequestError> {
         match request? {
             Request::ReadData { count, .. } if count == 0 || usize::from(count) > MAX_TRANSFER => {
@@ -307,7 +307,7 @@ impl Request {
     }
 }
 
-/// A request's bytes, knowing which of them give an access code away.
+/// A request's bytes, with the information which of them reveal an access code.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SecretFrame {
     bytes: Vec<u8>,

@@ -60,7 +60,7 @@ const CODES: [(u8, StatusClass, &str); 27] = [
 impl StatusCode {
     /// 00h: nothing to report.
     pub const OK: StatusCode = StatusCode(0x00);
-    /// 08h: the counter went from FFFFFFh to 0.
+    /// 08h: the counter overflowed from FFFFFFh to 0.
     pub const COUNTER_OVERFLOW: StatusCode = StatusCode(0x08);
     /// 09h: a character with the wrong parity bit.
     pub const PARITY: StatusCode = StatusCode(0x09);
@@ -74,25 +74,25 @@ impl StatusCode {
     pub const ARGUMENT: StatusCode = StatusCode(0x0D);
     /// 0Eh: WE is 0.
     pub const WRITE_PROTECTED: StatusCode = StatusCode(0x0E);
-    /// 0Fh: not this data field's access code.
+    /// 0Fh: another code than this data field's access code.
     pub const WRONG_CODE: StatusCode = StatusCode(0x0F);
-    /// 10h: only the last field changes its size, and only as far as memory reaches.
+    /// 10h: only the last field can change its size, and only within the memory.
     pub const SIZE_FIXED: StatusCode = StatusCode(0x10);
     /// 11h: beyond the end of the data field.
     pub const OUT_OF_FIELD: StatusCode = StatusCode(0x11);
-    /// 12h: no data field of that number.
+    /// 12h: no data field with that number.
     pub const NO_SUCH_FIELD: StatusCode = StatusCode(0x12);
     /// 1Eh: the encoder is too hot or too cold.
     pub const TEMPERATURE: StatusCode = StatusCode(0x1E);
     /// 1Fh: the shaft turns too fast.
     pub const TOO_FAST: StatusCode = StatusCode(0x1F);
 
-    /// Any byte is a status code.
+    /// Creates it: any byte is a status code.
     pub const fn new(byte: u8) -> Self {
         StatusCode(byte)
     }
 
-    /// The byte on the line.
+    /// Returns the byte on the line.
     pub const fn byte(self) -> u8 {
         self.0
     }
@@ -107,13 +107,13 @@ impl StatusCode {
         self.entry().map_or("unknown status code", |(_, text)| text)
     }
 
-    /// 08h, 1Ch, 1Dh and 1Eh warn; every other code but 00h is an error.
+    /// Returns whether it is a warning: 08h, 1Ch, 1Dh and 1Eh are; every other code but 00h is an error.
     pub fn is_warning(self) -> bool {
         matches!(self.0, 0x08 | 0x1C..=0x1E)
     }
 
-    /// 01h…06h and 1Fh…23h: a position read at the same time cannot be relied upon. Codes 09h…12h concern a frame or a
-    /// data field and never make a position invalid.
+    /// Returns whether a position read at the same time is unreliable: 01h…06h and 1Fh…23h. Codes 09h…12h concern a frame
+    /// or a data field and never make a position invalid.
     pub fn spoils_position(self) -> bool {
         matches!(self.0, 0x01..=0x06 | 0x1F..=0x23)
     }

@@ -10,17 +10,16 @@ use crate::units::CharacterFormat;
 pub struct Timing {
     /// One character: 11 bits.
     pub character: Duration,
-    /// Silence that ends a frame: 44 bits, or 11 where the settings say so. The dead time before the next request is
-    /// longer than this.
+    /// Silence that ends a frame: 44 bits, or 11 if set. The dead time before the next request is longer than this.
     pub timeout: Duration,
 }
 
 impl Timing {
-    /// After power-on or reset the encoder hears nothing for up to this long.
+    /// Longest time after power-on or reset during which the encoder does not receive.
     pub const INITIALISATION: Duration = Duration::from_millis(100);
-    /// Time after power-on during which the encoder uses factory settings; then it takes up the stored ones.
+    /// Time after power-on during which the encoder uses factory settings; then it applies the stored ones.
     pub const DEFAULT_WINDOW_END: Duration = Duration::from_millis(900);
-    /// Taking up the stored settings: the encoder hears nothing for up to this long.
+    /// Longest time during which the encoder does not receive while it applies the stored settings.
     pub const SWITCH: Duration = Duration::from_millis(200);
 
     /// Times for a character format and the long (44 bits) or short (11 bits) time-out.
@@ -29,7 +28,7 @@ impl Timing {
         Timing { character: format.character_time(), timeout: format.baud.time_of_bits(bits) }
     }
 
-    /// Times for a settings byte; `None` where it is reserved.
+    /// Returns the times for a settings byte; `None` if it is reserved.
     pub fn of_settings(settings: LineSettings) -> Option<Self> {
         Some(Self::new(settings.format()?, settings.long_timeout()))
     }
@@ -42,7 +41,7 @@ impl Timing {
         self.characters(sent + reply) + self.timeout + request.command().row().max_time
     }
 
-    /// Time of `count` characters back to back.
+    /// Returns the time of `count` characters back to back.
     pub fn characters(&self, count: usize) -> Duration {
         self.character.saturating_mul(u32::try_from(count).unwrap_or(u32::MAX))
     }

@@ -19,7 +19,7 @@ impl TypeLabel {
     /// The encoder describes itself in data field FFh.
     pub const EXTENDED: u8 = 0xFF;
 
-    /// EEPROM size in bytes; part of it is the encoder's own.
+    /// Returns the EEPROM size in bytes; the encoder itself uses a part of it.
     pub fn eeprom_bytes(self) -> usize {
         usize::from(self.eeprom_units) * 16
     }
@@ -28,7 +28,7 @@ impl TypeLabel {
 /// Reply to 56h: nine characters of serial number, up to twenty of firmware version, eight of date.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SerialLabel {
-    /// Serial number as the encoder gives it, blanks and NUL at its ends removed.
+    /// Serial number as sent by the encoder, without blanks and NUL at its ends.
     pub serial_number: String,
     /// Firmware version, trimmed in the same way.
     pub firmware_version: String,
@@ -42,7 +42,7 @@ impl SerialLabel {
     /// Longest payload: a version of 20 characters.
     pub const MAX_PAYLOAD: usize = 9 + 20 + 8;
 
-    /// Reads the payload: the first nine bytes, the last eight, and what stands between. `None` unless it has
+    /// Parses the payload: the first nine bytes, the last eight, and those in between. `None` unless it has
     /// [17](Self::MIN_PAYLOAD)…[37](Self::MAX_PAYLOAD) bytes. Bytes that are not printable ASCII are shown as `\xNN`.
     pub fn parse(payload: &[u8]) -> Option<Self> {
         if payload.len() > Self::MAX_PAYLOAD {
@@ -54,7 +54,7 @@ impl SerialLabel {
     }
 }
 
-/// Text of a fixed-width field: padding (blanks, NUL) trimmed, anything unprintable made visible.
+/// Returns the text of a fixed-width field: padding (blanks, NUL) trimmed, unprintable bytes made visible.
 pub(super) fn text(bytes: &[u8]) -> String {
     let start = bytes.iter().position(|b| !matches!(b, 0 | b' ')).unwrap_or(bytes.len());
     let end = bytes.iter().rposition(|b| !matches!(b, 0 | b' ')).map_or(start, |last| last + 1);

@@ -1,6 +1,6 @@
 //! The golden vectors of `tests/vectors/hiperface.txt` against frames, requests and replies; damage; and noise.
 //!
-//! What the vectors mean as typed values is in [`table`].
+//! [`table`] has the vectors as typed values.
 
 use std::collections::BTreeSet;
 
@@ -35,7 +35,7 @@ struct Line {
     request: Option<Vec<u8>>,
 }
 
-/// The bytes of a text; `0*30` stands for thirty zero bytes.
+/// Returns the bytes of a text; `0*30` means thirty zero bytes.
 fn bytes(text: &str) -> Vec<u8> {
     text.split(' ')
         .flat_map(|word| match word.strip_prefix("0*") {
@@ -93,7 +93,7 @@ impl Line {
     }
 }
 
-/// XOR of a frame by its own loop, so that nothing hangs on the function under test.
+/// Returns whether the XOR of a frame is zero, by a separate loop independent of the function under test.
 fn sums_to_zero(bytes: &[u8]) -> bool {
     let mut sum = 0;
     for byte in bytes {
@@ -252,7 +252,7 @@ fn file_and_table_hold_the_same_requests_and_replies() {
     assert_eq!(table.difference(&file).collect::<Vec<_>>(), Vec::<&String>::new(), "only in the table");
 }
 
-/// Noise, half of it made a valid frame so that it reaches the parsers behind the checksum.
+/// Returns noise; half of it is made a valid frame so that it reaches the parsers after the checksum.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     let payload = proptest::collection::vec(any::<u8>(), 0..160);
     let command = prop_oneof![any::<u8>(), (0..COMMANDS.len()).prop_map(|at| COMMANDS[at].command.byte())];

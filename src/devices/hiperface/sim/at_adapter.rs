@@ -1,4 +1,4 @@
-//! The encoder at the serial line of a virtual adapter, where it is asked for.
+//! The encoder at the serial line of a virtual adapter, if requested.
 
 use super::{Bus, Config};
 use crate::buses::bridge::sim::{Attachable, Attached, SerialDevice};
@@ -13,7 +13,7 @@ parameters! {
     }
 }
 
-/// An encoder as delivered at the adapter's serial line, where its settings ask for one.
+/// Encoder as delivered at the adapter's serial line, if its settings request one.
 #[derive(Clone, Copy, Debug)]
 pub struct AtAdapter;
 

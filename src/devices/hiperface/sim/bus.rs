@@ -1,6 +1,6 @@
-//! The line between the host's UART and the encoders: every character with its start and end, in time order. It adds
-//! the converter's echo, noise, and what happens when two talk at a time or with different settings. It has no meaning
-//! of its own for a single byte; half duplex and pull-ups: manual, "Parameterkanal".
+//! The line between the host's UART and the encoders: every character with its start and end, in time order. It adds the
+//! converter's echo, noise, and the effects of simultaneous transmissions or different settings. It does not interpret
+//! bytes; half duplex and pull-ups: manual, "Parameterkanal".
 
 use std::time::Duration;
 
@@ -13,13 +13,13 @@ use crate::sim::Faults;
 use crate::sim::line::{Character, Queue, VirtualLine, Wires};
 use crate::units::{CharacterFormat, Moment, Parity};
 
-/// A line with one or several encoders, seen from the host. Made of a [`Config`].
+/// Line with one or several encoders, as seen from the host. Created from a [`Config`].
 #[derive(Clone)]
 pub struct Bus {
     encoders: Vec<Encoder>,
     echo: bool,
     wires: Wires,
-    /// Characters that encoders are going to hear, by their start.
+    /// Characters on their way to the encoders, by their start.
     to_encoders: Queue<Travelling>,
     /// Characters that the host is going to receive, by their end.
     to_host: Queue<Travelling>,
@@ -48,7 +48,7 @@ struct Talk {
     end: Moment,
 }
 
-/// The next event; of events at the same moment the first of these.
+/// Next event; of simultaneous events the first of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Event {
     EncoderActs(usize),
@@ -57,10 +57,11 @@ pub(crate) enum Event {
 }
 
 impl Bus {
-    /// More than the slowest character takes: a talk that ended before touches no character still under way.
+    /// More than the slowest character takes: a transmission that ended before does not overlap any character still in
+    /// transit.
     const LONGEST_CHARACTER: Duration = Duration::from_millis(20);
 
-    /// The virtual line as `config` wants it. Its encoders got their power long ago.
+    /// Creates the virtual line from `config`. Its encoders have been powered for a long time.
     pub fn new(config: &Config) -> Self {
         Bus {
             encoders: (0..config.encoders).map(|index| Encoder::new(config, index)).collect(),
@@ -72,22 +73,22 @@ impl Bus {
         }
     }
 
-    /// The encoders, in the order of their first addresses.
+    /// Returns the encoders, in the order of their first addresses.
     pub fn encoders(&self) -> &[Encoder] {
         &self.encoders
     }
 
-    /// One encoder, 0 first.
+    /// Returns one encoder, 0 first.
     pub fn encoder(&self, index: usize) -> Option<&Encoder> {
         self.encoders.get(index)
     }
 
-    /// One encoder, to turn its shaft or to warm it.
+    /// Returns one encoder, to turn its shaft or to heat it.
     pub fn encoder_mut(&mut self, index: usize) -> Option<&mut Encoder> {
         self.encoders.get_mut(index)
     }
 
-    /// Other faults from now on: a cable that was mended, or one that breaks only now.
+    /// Replaces the faults, for a cable that is repaired or breaks later.
     pub fn set_faults(&mut self, faults: &Faults) {
         self.wires.faults = faults.clone();
         for encoder in &mut self.encoders {
@@ -95,13 +96,13 @@ impl Bus {
         }
     }
 
-    /// Power of all encoders goes and comes back at `now`.
+    /// Switches the power of all encoders off and on at `now`.
     pub fn power_cycle(&mut self, now: Moment) {
         self.advance(now);
         for encoder in &mut self.encoders {
             encoder.power_cycle(self.wires.now);
         }
-        // An encoder without power falls silent.
+        // An encoder without power stops sending.
         let now = self.wires.now;
         let is_sent = |own: &Travelling| own.talker == Talker::Host || own.character.start < now;
         self.to_encoders.retain(is_sent);
@@ -120,7 +121,7 @@ impl Bus {
         let collides = self.collides(&travelling);
         let Character { start, end, byte, flipped } = travelling.character;
         for (index, encoder) in self.encoders.iter_mut().enumerate() {
-            // A driver that is on hears only itself.
+            // A driver that is on receives only its own bytes.
             if travelling.talker == Talker::Encoder(index) {
                 continue;
             }
@@ -135,7 +136,7 @@ impl Bus {
 
     fn let_host_receive(&mut self) {
         let Some((_, travelling)) = self.to_host.pop() else { return };
-        // The usual driver setting passes bytes with a wrong parity bit on as they are.
+        // The usual driver setting passes on bytes with a wrong parity bit unchanged.
         let clean = !self.collides(&travelling) && travelling.format == self.wires.host;
         let byte = if clean { travelling.character.byte } else { garbage(&mut self.wires.rng) };
         self.wires.inbox.push(byte);

@@ -1,5 +1,5 @@
-//! The settings of a virtual encoder, as the query of a `sim:` link gives them: `seed=7&fault=drop:0.01&encoders=2`. It
-//! opens nothing; [`Bus::new`](super::Bus::new) makes the virtual line.
+//! The settings of a virtual encoder, as in the query of a `sim:` link: `seed=7&fault=drop:0.01&encoders=2`. Nothing is
+//! opened here; [`Bus::new`](super::Bus::new) creates the virtual line.
 
 use super::encoder::Pace;
 use super::models::{MODELS, Model};
@@ -32,11 +32,11 @@ parameters! {
 }
 
 impl Config {
-    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
-    /// `0x…`; several encoders have addresses and serial numbers counting up from the first's.
+    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
+    /// `0x…`; several encoders have consecutive addresses and serial numbers from the first's.
     ///
     /// # Errors
-    /// With a sentence that names the key and what is allowed.
+    /// A sentence that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let config: Config = setting::read(VirtualDevice::Encoder, pairs)?;
         config.check_together()?;
@@ -63,7 +63,7 @@ impl Config {
         format!("{own:<9}")
     }
 
-    /// Periods and turns: of the type given, where it is a known one, else of the model.
+    /// Returns periods and turns: of the given type if it is known, else of the model.
     pub(super) fn geometry(&self, types: &EncoderTypes) -> Geometry {
         self.encoder_type.and_then(|code| types.find(code)?.geometry).unwrap_or(self.model.geometry)
     }
@@ -132,7 +132,7 @@ impl Values for Codes {
         Expected::AccessCodes
     }
 
-    // The text itself is not repeated in the error: it holds access codes.
+    // The text is not repeated in the error: it contains access codes.
     fn take(&self, key: &str, value: &str) -> Result<Self::Value, Refused> {
         self.read(value).ok_or_else(|| Refused::new(key, "**", self.allowed()))
     }

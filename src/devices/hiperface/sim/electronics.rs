@@ -33,7 +33,7 @@ impl Wear {
     }
 }
 
-/// Codes to be fetched with 50h, oldest first. It holds four; what comes when it is full is lost.
+/// Codes to be fetched with 50h, oldest first. It holds four; later ones are lost while it is full.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StatusQueue(VecDeque<StatusCode>);
 
@@ -55,7 +55,7 @@ impl StatusQueue {
     }
 }
 
-/// An encoder without its line.
+/// Encoder without its line.
 #[derive(Clone, Debug)]
 pub(super) struct Electronics {
     model: Model,
@@ -63,7 +63,7 @@ pub(super) struct Electronics {
     encoder_type: u8,
     serial_number: String,
     pub(super) address: DeviceAddress,
-    /// In force after the next start.
+    /// Used after the next start.
     pub(super) stored_settings: LineSettings,
     pub(super) memory: Memory,
     pub(super) shaft: Shaft,
@@ -81,7 +81,7 @@ impl Electronics {
     const COSINE: u8 = 0x01;
     const TEMPERATURE: u8 = 0x48;
 
-    /// The encoder number `index` of a line, 0 first.
+    /// Creates the encoder number `index` of a line, 0 first.
     pub(super) fn new(config: &Config, index: u8) -> Self {
         let model = config.model;
         let types = EncoderTypes::built_in();
@@ -115,12 +115,12 @@ impl Electronics {
         self.watch_temperature(before);
     }
 
-    /// The encoder has this command: 63h is for kit encoders only.
+    /// Returns whether the encoder has this command: 63h is for kit encoders only.
     pub(super) fn has(&self, command: Command) -> bool {
         command != Command::Synchronise || self.kit
     }
 
-    /// Carries a request out at `at` and gives the data of its reply. 53h has neither effect nor data here.
+    /// Carries out a request at `at` and returns the data of its reply. 53h has neither effect nor data here.
     ///
     /// # Errors
     /// The code with which the encoder refuses; then nothing has changed.
@@ -212,7 +212,7 @@ impl Electronics {
         }
     }
 
-    /// 4Bh while power fails: the first half of the bytes is written.
+    /// 4Bh during a power failure: the first half of the bytes is written.
     ///
     /// # Errors
     /// As for the whole store.
@@ -259,12 +259,12 @@ impl Electronics {
     }
 }
 
-/// The memory as the motor's maker delivers it: field 0 with the name plate, the rest free.
+/// Returns the memory as delivered by the motor's maker: field 0 with the name plate, the rest free.
 fn delivered_memory(model: &Model, codes: [AccessCode; 4]) -> Memory {
     let mut memory = Memory::new(model.user_blocks);
     if let Some(size) = FieldSize::from_bytes(model.name_plate.len()) {
         let status = DataFieldStatus::new(size, CodeNumber::ZERO, true);
-        // A name plate that does not fit leaves the field out.
+        // If the name plate does not fit, the field is left out.
         let _ = memory
             .define(0, status, AccessCode::FACTORY)
             .and_then(|()| memory.store(0, 0, model.name_plate, AccessCode::FACTORY));

@@ -1,14 +1,14 @@
-//! One virtual encoder on the line: when it hears, how long it works, when it answers, and with which settings (manual,
-//! "Dialog Timing", figure 38 "Einschaltverhalten", "Fehlerbehandlung"). What a command does is in
-//! [`electronics`](super::electronics); who else talks at the same time is known to the [`Bus`](super::Bus) alone.
+//! One virtual encoder on the line: when it listens, how long it works, when it replies, and with which settings (manual,
+//! "Dialog Timing", figure 38 "Einschaltverhalten", "Fehlerbehandlung"). The effects of commands are in
+//! [`electronics`](super::electronics); other senders are known only to the [`Bus`](super::Bus).
 //!
 //! ```text
 //! off ── power ──▶ INIT (deaf) ── 100 ms ──▶ DEFAULT (factory settings) ── 900 ms ──▶ SWITCH (deaf) ── 200 ms ──▶ USER
 //!                                               └── plausible command: keeps the factory settings
 //! listening ── silence ≥ time-out ──▶ executing ──▶ talking ──▶ listening
 //! ```
-//! Left open by the manual (`U`) and chosen here: what the encoder is sent while it works or talks is lost, to the end of
-//! that frame; its own reply ends a frame at once; a broken broadcast is not answered.
+//! Left open by the manual (`U`) and chosen here: bytes sent to the encoder while it works or sends are lost, to the end of
+//! that frame; its own reply ends a frame at once; a damaged broadcast is not answered.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ use crate::units::Moment;
 /// The processing time of commands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pace {
-    /// As observed: 3.7 ms for the position, 20 ms and 1.5 ms a byte for a store, half of the longest time for the rest.
+    /// As observed: 3.7 ms for the position, 20 ms and 1.5 ms per byte for a store, half of the longest time for the rest.
     #[default]
     Typical,
     /// Always the longest time of the manual's table.
@@ -36,7 +36,7 @@ impl Pace {
     const STORE: Duration = Duration::from_millis(20);
     const STORE_A_BYTE: Duration = Duration::from_micros(1_500);
 
-    /// A refused frame takes the time of the status that answers it.
+    /// Returns the time of a refused frame: that of the status that answers it.
     fn time(self, verdict: &Result<Request, StatusCode>) -> Duration {
         let longest = |command: Command| command.row().max_time;
         match (self, verdict) {
@@ -58,7 +58,7 @@ pub(super) struct ReceivedCharacter {
     pub(super) start: Moment,
     pub(super) end: Moment,
     pub(super) byte: u8,
-    /// Its parity bit fits, and its stop bit is where it belongs.
+    /// The parity bit matches, and the stop bit is in its place.
     pub(super) intact: bool,
 }
 
@@ -70,8 +70,7 @@ pub(super) struct Transmission {
     pub(super) bytes: Vec<u8>,
 }
 
-/// A virtual encoder. Moments are those of the [`Bus`](super::Bus) it is on. It has no `Debug`: frames in it may carry
-/// access codes.
+/// Virtual encoder. Moments are those of its [`Bus`](super::Bus). It has no `Debug`: frames in it may contain access codes.
 #[derive(Clone)]
 pub struct Encoder {
     electronics: Electronics,
@@ -83,7 +82,7 @@ pub struct Encoder {
     /// 67h.
     temporary: Option<LineSettings>,
     activity: Activity,
-    /// End of the last character that was lost, and the rest of its frame with it.
+    /// End of the last character that was lost, with the rest of its frame.
     lost: Option<Moment>,
     frames_processed: u32,
     stores_begun: u32,
@@ -93,7 +92,7 @@ pub struct Encoder {
 #[derive(Clone, Debug)]
 enum Power {
     Off,
-    /// Switched on at that moment; in the DEFAULT window came a plausible command, or not.
+    /// Switched on at that moment; whether a plausible command arrived in the DEFAULT window.
     Starting {
         since: Moment,
         keeps_default: bool,
@@ -108,7 +107,7 @@ enum Activity {
     Talking { until: Moment },
 }
 
-/// A frame that is being heard.
+/// Frame being received.
 #[derive(Clone)]
 struct Reception {
     bytes: Vec<u8>,
@@ -144,12 +143,12 @@ impl Encoder {
         }
     }
 
-    /// The address it obeys.
+    /// Returns the address it obeys.
     pub fn address(&self) -> DeviceAddress {
         self.electronics.address
     }
 
-    /// Its data fields and access codes.
+    /// Returns its data fields and access codes.
     pub fn memory(&self) -> &Memory {
         &self.electronics.memory
     }
@@ -159,7 +158,7 @@ impl Encoder {
         &self.electronics.wear
     }
 
-    /// The 24-bit counter.
+    /// Returns the 24-bit counter.
     pub fn counter(&self) -> u32 {
         self.electronics.counter
     }
@@ -169,7 +168,7 @@ impl Encoder {
         self.electronics.counter = counter & 0x00FF_FFFF;
     }
 
-    /// The position word at a moment.
+    /// Returns the position word at a moment.
     pub fn position(&self, at: Moment) -> u32 {
         self.electronics.shaft.position(at)
     }
@@ -179,7 +178,7 @@ impl Encoder {
         self.electronics.shaft.set_rpm(now, rpm);
     }
 
-    /// Warms or cools it; beyond the limit it warns once (code 1Eh).
+    /// Sets its temperature; beyond the limit it warns once (code 1Eh).
     pub fn set_temperature(&mut self, celsius: i16) {
         self.electronics.set_temperature(celsius);
     }
@@ -189,12 +188,12 @@ impl Encoder {
         self.electronics.queue.push(code);
     }
 
-    /// The settings stored with 57h, in force after the next start.
+    /// Returns the settings stored with 57h, in force after the next start.
     pub fn stored_settings(&self) -> LineSettings {
         self.electronics.stored_settings
     }
 
-    /// The settings it listens with at a moment; `None` while it is deaf.
+    /// Returns the settings with which it listens at a moment; `None` while it does not listen.
     pub fn settings_at(&self, at: Moment) -> Option<LineSettings> {
         if self.silent {
             return None;
@@ -219,19 +218,19 @@ impl Encoder {
         }
     }
 
-    /// Other faults from now on; frames and stores are counted on.
+    /// Replaces the faults; frames and stores keep their counts.
     pub(super) fn set_faults(&mut self, faults: Faults) {
         self.silent = faults.silent_after().is_some_and(|frames| frames <= self.frames_processed);
         self.faults = faults;
     }
 
-    /// Power goes and comes back at `now`.
+    /// Switches the power off and on at `now`.
     pub(super) fn power_cycle(&mut self, now: Moment) {
         self.power_off();
         self.power_on(now);
     }
 
-    /// Gives the power back to an encoder that has lost it.
+    /// Restores the power of an encoder that has lost it.
     pub(super) fn connect(&mut self, now: Moment) {
         if matches!(self.power, Power::Off) {
             self.power_on(now);
@@ -261,7 +260,7 @@ impl Encoder {
         }
     }
 
-    /// A character begins at its receiver; everything due before has been [done](Self::act).
+    /// Notes the start of a character at its receiver; everything due before has been [done](Self::act).
     pub(super) fn hear(&mut self, heard: ReceivedCharacter) {
         let Some(settings) = self.settings_at(heard.start) else { return };
         let Some(timing) = Timing::of_settings(settings) else { return };
@@ -282,7 +281,7 @@ impl Encoder {
         }
     }
 
-    /// Does what is due at `at`, the time returned by [`acts_at`](Self::acts_at).
+    /// Carries out what is due at `at`, the time returned by [`acts_at`](Self::acts_at).
     pub(super) fn act(&mut self, at: Moment) -> Option<Transmission> {
         match std::mem::replace(&mut self.activity, Activity::Listening(None)) {
             Activity::Listening(Some(reception)) => {
@@ -295,7 +294,7 @@ impl Encoder {
     }
 
     fn end_of_frame(&mut self, at: Moment, reception: &Reception) {
-        // A frame that ends while the settings are switched is lost.
+        // A frame that ends while the settings change is lost.
         let Some(settings) = self.settings_at(at) else { return };
         let broadcast = match reception.bytes.first() {
             Some(&BROADCAST) => true,
@@ -333,7 +332,7 @@ impl Encoder {
         Request::parse(frame).map_err(|error| error.status())
     }
 
-    /// The end of processing: the effect, and the first bit of the reply.
+    /// Ends the processing: the effect, and the first bit of the reply.
     fn answer(
         &mut self,
         at: Moment,
@@ -357,17 +356,17 @@ impl Encoder {
             Err(code) => (Command::ReadStatus, &[code.byte()][..]),
         };
         let bytes = Frame { address, command: command.byte() | error_bit, payload }.emit();
-        // The settings were in force when the request was heard, so that they are no reserved ones.
+        // The settings were in use when the request was received, so they are not reserved ones.
         let talk = Timing::of_settings(settings).map_or(Duration::ZERO, |timing| timing.characters(bytes.len()));
         self.activity = Activity::Talking { until: at + talk };
         if let Ok((Request::ConfigureLineTemporarily { settings }, _)) = outcome {
-            // In force from the end of the reply on: until then nothing is heard anyway.
+            // Used from the end of the reply on: until then nothing is received.
             self.temporary = Some(settings);
         }
         Some(Transmission { start: at, settings, bytes })
     }
 
-    /// The store in which power is lost: half of it is written.
+    /// Returns whether power is lost during this store: half of it is written.
     fn dies_in(&mut self, request: &Request) -> bool {
         let Request::StoreData { field, address, code, data } = request else { return false };
         if self.electronics.memory.check_store(*field, *address, data.len(), *code).is_err() {
@@ -379,7 +378,7 @@ impl Encoder {
     }
 }
 
-/// Parity first, then the checksum, then the length: the order of the reference.
+/// Checks the parity, then the checksum, then the length: the order of the reference.
 fn valid_frame(reception: &Reception) -> Result<Frame<'_>, StatusCode> {
     if !reception.intact {
         return Err(StatusCode::PARITY);

@@ -1,9 +1,9 @@
 //! The EEPROM of an encoder: data fields one after the other, and four access codes (manual, "Datenspeicherung und
 //! Verwaltung"). It refuses with the status codes of the reference, in the order field (12h), range (11h), access code
-//! (0Fh), write enable (0Eh), size (10h). It knows nothing of frames, time or wear.
+//! (0Fh), write enable (0Eh), size (10h). Frames, time and wear are not handled here.
 //!
-//! Left open by the manual (`U`) and chosen here: bytes never written are FFh; a deleted field's bytes stay where they
-//! are and show again in a field created in their place; a change of a field asks for its present code.
+//! Left open by the manual (`U`) and chosen here: bytes never written are FFh; a deleted field's bytes stay where they are
+//! and appear again in a field created in their place; a change of a field requires its present code.
 
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ impl Memory {
     /// E, not WE, code 0, no code required, 64 bytes.
     const LABEL_STATUS: DataFieldStatus = DataFieldStatus::from_byte(0x83);
 
-    /// `blocks` of 16 bytes without any field, every access code at its factory value.
+    /// Creates a memory of `blocks` of 16 bytes without any field, every access code at its factory value.
     pub fn new(blocks: u8) -> Self {
         Memory {
             bytes: vec![0xFF; usize::from(blocks) * FieldSize::BLOCK],
@@ -34,7 +34,7 @@ impl Memory {
         }
     }
 
-    /// The same memory with a read-only field FFh of 64 bytes.
+    /// Creates the same memory with a read-only field FFh of 64 bytes.
     #[must_use]
     pub(super) fn with_extended_label(mut self, content: &[u8]) -> Self {
         let mut label = content.to_vec();
@@ -43,14 +43,14 @@ impl Memory {
         self
     }
 
-    /// The same memory with other access codes.
+    /// Creates the same memory with other access codes.
     #[must_use]
     pub(super) fn with_codes(mut self, codes: [AccessCode; 4]) -> Self {
         self.codes = codes;
         self
     }
 
-    /// 4Eh.
+    /// Handles 4Eh.
     pub fn free(&self) -> FreeMemory {
         let blocks = (self.bytes.len() - self.used()) / FieldSize::BLOCK;
         // Both fit: a memory has at most 255 blocks, and a field at least one.
@@ -58,7 +58,7 @@ impl Memory {
         FreeMemory { blocks: byte(blocks), fields: byte(self.fields.len()) }
     }
 
-    /// 4Ch.
+    /// Handles 4Ch.
     ///
     /// # Errors
     /// 12h for a field that does not exist.
@@ -69,7 +69,7 @@ impl Memory {
         self.fields.get(usize::from(field)).copied().ok_or(StatusCode::NO_SUCH_FIELD)
     }
 
-    /// All bytes of a field, whatever its code; `None` where it does not exist.
+    /// Returns all bytes of a field, whatever its code; `None` if it does not exist.
     pub fn field_bytes(&self, field: u8) -> Option<&[u8]> {
         if field == EXTENDED_LABEL_FIELD {
             return self.extended_label.as_deref();
@@ -77,16 +77,16 @@ impl Memory {
         self.bytes.get(self.place(field)?)
     }
 
-    /// The present value of an access code.
+    /// Returns the present value of an access code.
     pub fn code(&self, number: CodeNumber) -> AccessCode {
-        // A number is 0…3; the factory value stands in for the impossible.
+        // A number is 0…3; the factory value is used for the impossible case.
         self.codes.get(usize::from(number.get())).copied().unwrap_or(AccessCode::FACTORY)
     }
 
-    /// 4Ah.
+    /// Handles 4Ah.
     ///
     /// # Errors
-    /// 12h, 11h, and 0Fh where the field asks for its code.
+    /// 12h, 11h, and 0Fh if the field requires its code.
     pub fn read(&self, field: u8, address: u8, count: u8, code: AccessCode) -> Result<&[u8], StatusCode> {
         let status = self.status(field)?;
         let bytes = self.field_bytes(field).ok_or(StatusCode::NO_SUCH_FIELD)?;
@@ -99,7 +99,7 @@ impl Memory {
     /// Checks whether 4Bh with `count` bytes would be carried out.
     ///
     /// # Errors
-    /// 12h, 11h, 0Fh where the field asks for its code, 0Eh where it is write protected (FFh always is).
+    /// 12h, 11h, 0Fh if the field requires its code, 0Eh if it is write protected (FFh always is).
     pub fn check_store(&self, field: u8, address: u8, count: usize, code: AccessCode) -> Result<(), StatusCode> {
         let status = self.status(field)?;
         if usize::from(address) + count > status.size().bytes() {
@@ -109,7 +109,7 @@ impl Memory {
         if status.is_writable() { Ok(()) } else { Err(StatusCode::WRITE_PROTECTED) }
     }
 
-    /// 4Bh.
+    /// Handles 4Bh.
     ///
     /// # Errors
     /// Those of [`check_store`](Self::check_store); then nothing is written.
@@ -121,11 +121,11 @@ impl Memory {
         Ok(())
     }
 
-    /// 4Dh: creates the next field, changes or deletes an existing one.
+    /// Handles 4Dh: creates the next field, changes or deletes an existing one.
     ///
     /// # Errors
-    /// 12h for a number beyond the next one, 0Fh for a wrong code, 0Eh for FFh, 10h when there is no room, when another
-    /// than the last field is to change its size or to be deleted.
+    /// 12h for a number beyond the next one, 0Fh for a wrong code, 0Eh for FFh, 10h if there is no space, or if a field
+    /// other than the last is to change its size or be deleted.
     pub fn define(&mut self, field: u8, status: DataFieldStatus, code: AccessCode) -> Result<(), StatusCode> {
         let next = usize::from(field) == self.fields.len() && field != EXTENDED_LABEL_FIELD;
         match (next, status.exists()) {
@@ -135,10 +135,10 @@ impl Memory {
         }
     }
 
-    /// 4Fh.
+    /// Handles 4Fh.
     ///
     /// # Errors
-    /// 0Fh when `old` is not the present value.
+    /// 0Fh if `old` is not the present value.
     pub fn change_code(&mut self, number: CodeNumber, old: AccessCode, new: AccessCode) -> Result<(), StatusCode> {
         self.check_code(number, old)?;
         if let Some(code) = self.codes.get_mut(usize::from(number.get())) {
@@ -147,7 +147,7 @@ impl Memory {
         Ok(())
     }
 
-    /// The check of every command that asks for one particular code.
+    /// Checks the code for every command that asks for one particular code.
     pub(super) fn check_code(&self, number: CodeNumber, code: AccessCode) -> Result<(), StatusCode> {
         if self.code(number) == code { Ok(()) } else { Err(StatusCode::WRONG_CODE) }
     }
@@ -182,7 +182,8 @@ impl Memory {
         Ok(())
     }
 
-    /// The field's present status, if `code` is its code (asked for even where CE is 0) and it is not the encoder's own.
+    /// Returns the field's present status, if `code` is its code (required even if CE is 0) and it is not the encoder's
+    /// own.
     fn check_owner(&self, field: u8, code: AccessCode) -> Result<DataFieldStatus, StatusCode> {
         let present = self.status(field)?;
         self.check_code(present.code(), code)?;
@@ -220,7 +221,7 @@ mod tests {
         DataFieldStatus::from_byte(byte)
     }
 
-    /// Field 0: 32 bytes, field 1: 16 bytes, of 8 blocks.
+    /// Returns a memory with field 0: 32 bytes, field 1: 16 bytes, of 8 blocks.
     fn two_fields() -> Memory {
         let mut memory = Memory::new(8);
         memory.define(0, status(0xC9), CODE).unwrap();
@@ -283,7 +284,7 @@ mod tests {
         let code2 = CodeNumber::new(2).unwrap();
         memory.change_code(code2, CODE, AccessCode::new(0x66)).unwrap();
         assert_eq!(memory.change_code(code2, CODE, CODE), Err(StatusCode::WRONG_CODE));
-        // Field 1 moves from code 2 to code 0: the code 2 is asked for.
+        // Field 1 moves from code 2 to code 0: code 2 is required.
         assert_eq!(memory.define(1, status(0xC8), CODE), Err(StatusCode::WRONG_CODE));
         assert_eq!(memory.define(1, status(0xC8), AccessCode::new(0x66)), Ok(()));
         assert_eq!(memory.read(1, 0, 1, CODE), Ok(&[0xFF][..]));

@@ -1,5 +1,5 @@
 //! The virtual HIPERFACE encoder: one or several of them on a line, with the timing, the power-up states, the memory and
-//! the error replies of the manual. Rules that the manual leaves open (`U`) follow one documented choice each.
+//! the error replies of the manual. Where the manual leaves a rule open (`U`), one documented choice is followed.
 //!
 //! | file | what it is |
 //! |---|---|

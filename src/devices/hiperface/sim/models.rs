@@ -20,7 +20,7 @@ pub struct Model {
     pub firmware_version: &'static str,
     /// `DD.MM.YY`.
     pub firmware_date: &'static str,
-    /// EEPROM size in units of 16 bytes, as 52h tells it; part of it is the encoder's own.
+    /// EEPROM size in units of 16 bytes, as reported by 52h; part of it is the encoder's own.
     pub eeprom_units: u8,
     /// Blocks of 16 bytes for data fields.
     pub user_blocks: u8,
@@ -30,13 +30,13 @@ pub struct Model {
     pub position: u32,
     /// Degrees Celsius above which code 1Eh is reported.
     pub temperature_limit: i16,
-    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32); empty: there is no field.
+    /// Content of data field 0 (a multiple of 16 bytes, status C9h for 32); empty: no field.
     pub name_plate: &'static [u8],
-    /// Content of field FFh; it is filled up with 00h to 64 bytes. Empty: there is none.
+    /// Content of field FFh, padded with 00h to 64 bytes. Empty: none.
     pub extended_label: &'static [u8],
 }
 
-/// Every model; the first is the default.
+/// All models; the first is the default.
 #[rustfmt::skip]
 pub const MODELS: [Model; 3] = [
     Model { name: "skm36", encoder_type: 0x37, geometry: rotary(128, 4096), serial_number: "GB0450179", position: 0x000E_0531, ..COMMON },
@@ -65,8 +65,8 @@ const fn rotary(periods: u32, turns: u32) -> Geometry {
     Geometry::Rotary { periods, turns }
 }
 
-/// A servo motor's name plate as a drive maker might lay it out: designation, then big-endian words: speed in 1/min,
-/// rated and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, serial number (32 bit).
+/// Name plate of a servo motor in the format of a drive maker: designation, then big-endian words: speed in 1/min, rated
+/// and peak current in 10 mA, pole pairs, voltage, commutation offset in 1/65536 turn, serial number (32 bit).
 const MOTOR: &[u8] = b"EMD71K-4 3000rpm\x0B\xB8\x01\x22\x03\x66\x00\x03\x00\xE6\x2A\x5F\x00\x01\xE2\x40";
 
 /// The same layout for the motor into which the kit encoder was built.
@@ -76,7 +76,7 @@ const KIT_MOTOR: &[u8] = b"SMK42-08 4500rpm\x11\x94\x00\xB4\x02\x1C\x00\x04\x00\
 const SEL37_LABEL: &[u8] = b"\x53\x00\x00\x00\x00\x10\x00\x00\x10\x00SEL37-HFB0-K02    \x00\x03\x00\x48\x00\x73";
 
 impl Model {
-    /// The model of that name.
+    /// Returns the model of that name.
     pub fn find(name: &str) -> Option<&'static Model> {
         MODELS.iter().find(|model| model.name == name)
     }

@@ -1,7 +1,7 @@
-//! The shaft (or scale) and what the encoder sees of it: the position as an exact function of time, and the sine and
-//! cosine signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical place plus an
-//! offset; the analogue signals know only the mechanical place, so that setting a position may break their phase, as
-//! it does with a real encoder.
+//! The shaft (or scale) as measured by the encoder: the position as an exact function of time, and the sine and cosine
+//! signals (manual, "Position lesen", "Position setzen"). The position word is the mechanical position plus an offset; the
+//! analogue signals depend on the mechanical position only, so setting a position may break their phase, as with a real
+//! encoder.
 
 use std::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ pub(super) struct Shaft {
 }
 
 impl Shaft {
-    /// Above this speed there is no position (data sheets: 6000/min for the absolute value).
+    /// Above this speed no position is available (data sheets: 6000/min for the absolute value).
     pub(super) const MAX_RPM: f64 = 6000.0;
     /// The position word has 32 bits.
     const WORD: u64 = 1 << 32;
@@ -43,12 +43,12 @@ impl Shaft {
         self.rpm.abs() > Self::MAX_RPM
     }
 
-    /// The position word can have this value.
+    /// Returns whether the position word can have this value.
     pub(super) fn reaches(&self, position: u32) -> bool {
         u64::from(position) < self.range()
     }
 
-    /// The position word at `at`.
+    /// Returns the position word at `at`.
     pub(super) fn position(&self, at: Moment) -> u32 {
         let word = (self.whole_steps(at) + self.offset) % self.range();
         // The range is at most 2³².
@@ -61,12 +61,12 @@ impl Shaft {
         self.offset = (u64::from(position) % range + range - self.whole_steps(at)) % range;
     }
 
-    /// The sine signal in counts of 10 bits for 5 V: 2.5 V in the mean, 1 Vpp, 0 rising at the start of a period.
+    /// Returns the sine signal in counts of 10 bits for 5 V: mean 2.5 V, 1 Vpp, 0 rising at the start of a period.
     pub(super) fn sine(&self, at: Moment) -> i16 {
         Self::counts(self.phase(at).sin())
     }
 
-    /// The cosine signal, scaled as the sine signal.
+    /// Returns the cosine signal, scaled as the sine signal.
     pub(super) fn cosine(&self, at: Moment) -> i16 {
         Self::counts(self.phase(at).cos())
     }
@@ -85,9 +85,9 @@ impl Shaft {
         self.place(at) as u64 // not negative, below the range
     }
 
-    /// Mechanical place in steps, from 0 up to the range.
+    /// Returns the mechanical place in steps, from 0 up to the range.
     fn place(&self, at: Moment) -> f64 {
-        // A linear scale has no turns; there `rpm` counts periods a minute.
+        // A linear scale has no turns; there `rpm` counts periods per minute.
         let steps_per_turn = self.geometry.steps_per_turn().unwrap_or(STEPS_PER_PERIOD.into()) as f64;
         let moved = at.since(self.since).as_secs_f64() * self.rpm / 60.0 * steps_per_turn;
         let range = self.range() as f64;
@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_turning_shaft_is_where_it_must_be() {
-        let mut shaft = Shaft::new(SKM36, 0, 60.0); // 4096 steps a second
+        let mut shaft = Shaft::new(SKM36, 0, 60.0); // 4096 steps per second
         assert_eq!(shaft.position(at(0)), 0);
         assert_eq!(shaft.position(at(250)), 1024);
         assert_eq!(shaft.position(at(4_096_000)), 0, "after 4096 turns");

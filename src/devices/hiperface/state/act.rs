@@ -1,4 +1,4 @@
-//! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
+//! The user's actions on an encoder: edits take effect at once, everything else is a job of the session or a task.
 
 use std::time::Duration;
 
@@ -58,7 +58,7 @@ impl Encoder {
         }
     }
 
-    /// Watches a value beside the position, or no more.
+    /// Starts or stops watching a value in addition to the position.
     fn watch(&mut self, what: Watch, on: bool) {
         let mut watched = self.record.watched();
         watched.retain(|own| *own != what);
@@ -80,7 +80,7 @@ impl Encoder {
         self.identity.as_ref().map(|identity| identity.label.settings)
     }
 
-    /// Starts a job after which the encoder talks with other settings.
+    /// Starts a job after which the encoder uses other settings.
     fn submit_to_settings(&mut self, job: HiperfaceJob, then: Option<LineSettings>, services: &mut Services) {
         if self.try_submit(job, services) {
             self.settings_then = then;
@@ -90,7 +90,7 @@ impl Encoder {
     pub(super) fn put(&mut self, field: u8, address: usize, bytes: &[u8], services: &mut Services) {
         let allowed = match (&self.session.phase, self.field(field)) {
             _ if self.session.is_writing() => Err(Text::new("session.busy")),
-            // A profile is a text: what it says about protection does not protect it.
+            // A profile is a text: the protection that it records does not protect it.
             (Phase::Offline, _) | (_, None) => Ok(()),
             (_, Some(image)) => self.why_not_edited(image).map_or(Ok(()), Err),
         };

@@ -21,7 +21,7 @@ pub enum HiperfaceAction {
     /// Read the shaft at rest: position, sine and cosine.
     ReadRest,
     ReadCounter,
-    /// The device check; with a restart first.
+    /// Run the device check; with a restart first if set.
     Check {
         /// Send 53h first.
         restart: bool,
@@ -45,9 +45,9 @@ pub enum HiperfaceAction {
     },
     /// Take the edits of a range back.
     Revert(FieldRange),
-    /// Show what a change would do.
+    /// Show the effect of a change.
     Plan(Change),
-    /// Make the plan again with other options, where the change is a restore.
+    /// Make the plan again with other options, if the change is a restore.
     PlanAgain(RestoreOptions),
     /// Write although the encoder counts as worn.
     ForceWear(bool),

@@ -1,7 +1,7 @@
-//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder
-//! and motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine reference).
-//! It energises nothing and writes nothing: what comes of it are edits of the memory or a position to be set, and both go
-//! through the review of a write.
+//! The commutation assistant: from the position at which a motor rests in a static vector to the offset between encoder and
+//! motor, by both methods of the manual (SICK 8010701, commutation; section 5 of the project's sine/cosine reference). It
+//! energises nothing and writes nothing: its results are edits of the memory or a position to be set, which both go through
+//! the review of a write.
 
 mod act;
 mod form;
@@ -30,11 +30,11 @@ pub enum CommutationAction {
     Read(Slot),
     /// Take the position that is typed.
     Use(Slot),
-    /// Forget what was read and taken.
+    /// Discard all readings.
     Clear,
     /// Method 1: put the offset into the memory, as an edit.
     Store,
-    /// Method 2: show what setting the position would do.
+    /// Method 2: show the effect of setting the position.
     Set,
 }
 
@@ -45,18 +45,18 @@ pub struct Commutation {
     /// Why the last action was not carried out.
     pub problem: Option<Text>,
     readings: [Option<RestReading>; 3],
-    /// The last position read: the shaft is still there, as far as is known.
+    /// The last position read: the shaft is still there, as far as known.
     last: Option<Slot>,
-    /// The reading that is under way.
+    /// The running reading.
     asked: Option<PendingReading>,
 }
 
-/// A reading that is under way: what it is for, and how it was asked for, whatever is chosen or typed meanwhile.
+/// Running reading: its purpose and the settings at its start, whatever is selected or entered meanwhile.
 #[derive(Debug)]
 struct PendingReading {
     slot: Slot,
     source: Source,
-    /// As typed.
+    /// As entered.
     phase: String,
 }
 
@@ -67,7 +67,7 @@ pub struct RestReading {
     pub fine_periods: f64,
     /// How it was obtained.
     pub kind: Kind,
-    /// The position word, where the encoder was read.
+    /// The position word, if the encoder was read.
     pub raw: Option<u32>,
 }
 
@@ -79,16 +79,16 @@ pub enum Kind {
         /// Absolute minus fine position in periods.
         residual_periods: f64,
         verdict: Verdict,
-        /// The smallest step that can be told apart, in periods; `None` where the phase was typed.
+        /// The smallest distinguishable step, in periods; `None` if the phase was entered.
         resolution_periods: Option<f64>,
     },
-    /// The absolute position alone: the middle of its step.
+    /// The absolute position only: the middle of its step.
     Absolute,
     Typed,
 }
 
 impl Commutation {
-    /// The position for a slot.
+    /// Returns the position for a slot.
     pub fn reading(&self, slot: Slot) -> Option<&RestReading> {
         let [one, other, second] = &self.readings;
         match slot {
@@ -104,7 +104,7 @@ impl Commutation {
         self.asked.as_ref().map(|asked| asked.slot)
     }
 
-    /// The encoder is asked for a position at rest.
+    /// Requests a position at rest for a slot.
     fn ask(&mut self, slot: Slot) {
         self.asked = Some(PendingReading { slot, source: self.form.source, phase: self.form.phase.clone() });
     }
@@ -121,7 +121,7 @@ impl Commutation {
         self.problem = None;
     }
 
-    /// Forgets the readings: they belong to another zero, or are no longer needed.
+    /// Forgets the readings: they refer to another zero, or are no longer needed.
     pub(super) fn forget_readings(&mut self) {
         (self.readings, self.last, self.problem) = ([None; 3], None, None);
     }
@@ -135,7 +135,7 @@ impl Commutation {
         }
     }
 
-    /// A job has failed; true where it is the reading, and the reason stands where it was asked for.
+    /// Handles a failed job; returns true if it is the reading, whose error is shown where it was requested.
     pub(super) fn failed(&mut self, why: &Text) -> bool {
         let own = self.asked.take().is_some();
         if own {
@@ -183,7 +183,7 @@ impl PendingReading {
     }
 }
 
-/// Combines absolute position and phase; a residual beyond 14/32 is no agreement.
+/// Combines absolute position and phase; they disagree if the residual is beyond 14/32.
 fn fine(raw: u32, phase: Phase, geometry: Option<Geometry>, resolution: Option<f64>) -> Result<RestReading, Text> {
     let steps = u64::from(STEPS_PER_PERIOD);
     // An unknown range does not wrap.

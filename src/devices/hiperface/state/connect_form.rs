@@ -33,8 +33,8 @@ pub enum LinkKind {
     Replay,
 }
 
-/// The entries of the connection form. Entries of another kind of link are kept and left out of the link. An empty entry
-/// stands for what is usual.
+/// Entries of the connection form. Entries of another kind of link are kept and left out of the link. An empty entry means
+/// the default.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LinkForm {
     pub kind: LinkKind,
@@ -52,7 +52,7 @@ pub struct LinkForm {
     pub address: String,
     /// Whether the adapter echoes; unknown: detect it.
     pub echo: Echo,
-    /// The encoder's time-out is 44 bits, else 11.
+    /// If set, the encoder's time-out is 44 bits, else 11.
     pub long_timeout: bool,
     /// Milliseconds that a reply may come later than the protocol's worst case.
     pub margin: String,
@@ -62,7 +62,7 @@ pub struct LinkForm {
     pub turns: String,
     /// Model of the virtual encoder.
     pub model: String,
-    /// Its speed in revolutions a minute.
+    /// Its speed in revolutions per minute.
     pub rpm: String,
     /// Injected faults.
     pub fault: String,
@@ -111,7 +111,7 @@ impl FormModel for LinkForm {
             Scheme::Sim => form.kind = LinkKind::Virtual,
             Scheme::Serial => (form.kind, form.port) = (LinkKind::Serial, target),
             Scheme::Replay => (form.kind, form.file) = (LinkKind::Replay, target),
-            // Leads to no HIPERFACE encoder.
+            // These do not lead to a HIPERFACE encoder.
             Scheme::Bridge | Scheme::Modbus | Scheme::Enip => {}
             Scheme::Tcp => {
                 form.kind = LinkKind::Tcp;
@@ -139,12 +139,12 @@ impl FormModel for LinkForm {
 }
 
 impl LinkForm {
-    /// The virtual encoders to choose from, the usual one first.
+    /// Returns the virtual encoders to choose from, the usual one first.
     pub fn models() -> impl Iterator<Item = &'static str> {
         MODELS.iter().map(|model| model.name)
     }
 
-    /// Fills in the entry of a parameter; false where there is none that can show it.
+    /// Fills in the entry of a parameter; returns false if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let entry = match name {
             "margin" => &mut self.margin,

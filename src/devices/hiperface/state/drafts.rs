@@ -1,4 +1,4 @@
-//! Edits of an encoder's memory, kept over a crash: field, address, byte.
+//! Edits of an encoder's memory, kept after a crash: field, address, byte.
 
 use super::encoder::Encoder;
 use crate::app::PendingEdits;

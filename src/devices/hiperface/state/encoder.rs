@@ -1,4 +1,4 @@
-//! An encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its line.
+//! An open encoder, or a profile of one: its known data, the user's edits, and the running jobs.
 
 use std::collections::BTreeMap;
 
@@ -21,20 +21,20 @@ use crate::devices::hiperface::state::explain as words;
 pub struct Encoder {
     pub session: Session<Hiperface>,
     pub identity: Option<Identity>,
-    /// Its memory and the edits beside it.
+    /// Its memory and the edits.
     pub staged: Staged,
-    /// The error queue as it was last read, with what the encoder announced since; `None`: never read.
+    /// The error queue as last read, with the codes announced since; `None`: never read.
     pub codes: Option<Vec<StatusCode>>,
-    /// Data fields that could not be read, for another reason than their access code: why.
+    /// Data fields that could not be read for a reason other than their access code, with that reason.
     pub unreadable: BTreeMap<u8, Text>,
     pub line_quality: LineQuality,
     /// The last device check.
     pub check: Option<Vec<check::HiperfaceStepResult>>,
     /// The counter as last read.
     pub counter: Option<u32>,
-    /// The last position that was set here: from where, to where.
+    /// The last position set by this program: old and new.
     pub position_set: Option<(u32, u32)>,
-    /// Analogue values as last read, with their limits; or why the encoder does not give them.
+    /// Analogue values as last read, with their limits; or why the encoder does not provide them.
     pub analogue: BTreeMap<u8, Result<(i16, Option<i16>), Text>>,
     /// The recording from polling.
     pub record: Record,
@@ -46,11 +46,11 @@ pub struct Encoder {
     pub(super) access_codes: Vec<(CodeNumber, AccessCode)>,
     /// The item that the pending job reads.
     pub(super) asked: Option<Item>,
-    /// Access codes that are given to the session again, once it is known who is connected.
+    /// Access codes to be given to the session again once the encoder is identified.
     pub(super) codes_due: Vec<(CodeNumber, AccessCode)>,
-    /// Interface settings with which the encoder talks when the job that runs is done.
+    /// Interface settings of the encoder after the running job.
     pub(super) settings_then: Option<LineSettings>,
-    /// The access code that the user gave last: whether it fits shows when the fields are read.
+    /// Number of the access code given last by the user: reading the fields shows whether it is right.
     pub(super) tried_code: Option<CodeNumber>,
 }
 
@@ -86,7 +86,7 @@ impl Encoder {
         self.identity = Some(identity);
     }
 
-    /// Logs the encoder that has answered.
+    /// Logs the encoder that has replied.
     fn log_answer(&self, services: &mut Services) {
         let Some(identity) = &self.identity else { return };
         let (label, firmware) = (&identity.label, identity.serial.firmware_version.trim());
@@ -105,17 +105,17 @@ impl Encoder {
         self.staged.is_dirty()
     }
 
-    /// One of its data fields, as the encoder has it.
+    /// Returns one of its data fields, as in the encoder.
     pub fn field(&self, number: u8) -> Option<&FieldImage> {
         self.staged.device().iter().find(|field| field.number == number)
     }
 
-    /// The profile as the user wants it, where this is one.
+    /// Returns the edited profile, if this is one.
     pub(crate) fn wanted_profile(&self) -> Option<HiperfaceProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         let mut profile = document.body.get::<HiperfaceProfile>()?.clone();
         profile.fields = self.staged.wanted();
-        // The edit may be a commutation offset as well.
+        // The edit may also be a commutation offset.
         profile.mark_mounting();
         Some(profile)
     }
@@ -124,7 +124,7 @@ impl Encoder {
     pub(super) fn take_survey(&mut self, survey: Survey, services: &mut Services) {
         let Survey { identity, codes, fields, unreadable, line, counter, position } = survey;
         let fresh = std::mem::take(&mut self.session.just_connected);
-        // Without a serial number, it may be any of its type; the same memory makes it as good as the same.
+        // Without a serial number, it may be any of its type; an equal memory makes it count as the same.
         let unproven = fresh && identity.serial.serial_number.is_empty() && fields != self.staged.device();
         if self.is_another(&identity) || (self.identity.is_some() && unproven) {
             self.replaced_by(&identity.serial.serial_number, services);
@@ -168,7 +168,7 @@ impl Encoder {
         self.unreadable.get(&field.number).cloned().or_else(|| rules::edit(field).err())
     }
 
-    /// Records what was sampled, or read on its own.
+    /// Records samples and single readings.
     pub(super) fn add_samples(&mut self, samples: Vec<Sample>, dropped: u64) {
         let geometry = self.identity.as_ref().and_then(|identity| identity.geometry);
         self.record.add(samples, dropped, geometry);

@@ -70,14 +70,14 @@ impl Kind for Hiperface {
 }
 
 impl Encoder {
-    /// Reads the encoder. After connecting, who is there comes before the access codes: they are for one encoder and no
-    /// other.
+    /// Reads the encoder. After connecting, it is identified before access codes are given: they are for one encoder only.
     pub(super) fn read_encoder(&mut self, services: &mut Services) {
         let identify = self.session.just_connected && !self.access_codes.is_empty();
         self.submit(if identify { HiperfaceJob::Identify } else { HiperfaceJob::Survey }, services);
     }
 
-    /// Gives the session the next access code of the encoder that is connected again; after the last it is read.
+    /// Gives the session the next access code of the encoder that is connected again; after the last one the encoder is
+    /// read.
     fn give_codes(&mut self, services: &mut Services) {
         match self.codes_due.pop() {
             Some((number, code)) => self.submit(HiperfaceJob::UseCode { number, code }, services),
@@ -91,8 +91,8 @@ impl Encoder {
         self.codes.get_or_insert_default().extend(codes);
     }
 
-    /// After a write, the session talks to another address or with other codes: so will the next one. What a position was
-    /// before it was set is nowhere but here: the encoder does not tell its offset.
+    /// Takes the new address or codes after a write, for the next session as well. The position before it was set is stored
+    /// only here: the encoder does not report its offset.
     pub(super) fn follow(&mut self, ops: &[Op], services: &mut Services) {
         for op in ops {
             match op {
@@ -104,7 +104,7 @@ impl Encoder {
                 }
                 Op::SetPosition { from, to, .. } => {
                     self.position_set = Some((*from, *to));
-                    // They were read from another zero.
+                    // They were read with another zero.
                     self.commutation.forget_readings();
                     let steps = i64::from(*to) - i64::from(*from);
                     let text = Text::new("session.position_set").with("from", from).with("to", to);
@@ -119,7 +119,7 @@ impl Encoder {
         }
     }
 
-    /// The encoder talks by now as the job was to bring about, so the next session begins like that.
+    /// Takes the settings that the job has brought about, so that the next session begins with them.
     fn follow_settings(&mut self) {
         let Some(settings) = self.settings_then.take() else { return };
         let (Source::Link(url), Some(format)) = (&mut self.session.source, settings.format()) else { return };
@@ -230,13 +230,13 @@ impl SessionEvents for Encoder {
             HiperfaceOutput::Saved(saved) => self.saved(*saved, services),
             HiperfaceOutput::Prepared(prepared) => self.planned(prepared, services),
             HiperfaceOutput::Committed(committed) => self.committed(committed, services),
-            // A search has a session of its own.
+            // A search has its own session.
             HiperfaceOutput::Found(_) => {}
         }
     }
 
-    /// The link is open and the encoder does not answer; or nothing has been read at all since it was opened, because what
-    /// comes makes no sense.
+    /// Returns whether the link is open and the encoder does not reply; or nothing was read since it was opened, because
+    /// the bytes received are invalid.
     fn is_silence(&self, error: &JobError) -> bool {
         let cause = match error {
             JobError::Device(cause) => cause,
@@ -259,7 +259,7 @@ impl SessionEvents for Encoder {
             self.give_up_rest();
         }
         self.cut_write(how, texts);
-        // It is told as well.
+        // It is reported as well.
         false
     }
 
@@ -276,14 +276,14 @@ impl SessionEvents for Encoder {
         begun
     }
 
-    /// Handles a failed job. A missing feature is an answer; an invalid reply is none.
+    /// Handles a failed job. A missing feature is a result; an invalid reply is none.
     fn failed(&mut self, id: JobId, error: &JobError, services: &mut Services) {
         let texts = Hiperface::error_texts(error);
         let why = first(&texts);
         services.job_ends(self.session.id, id, JobEnd::Failed(why.clone()));
         let stands_there = self.rest_failed(&why);
         if let (Some(Item::Analogue(channel)), JobError::Device(Error::Rejected { .. })) = (self.asked.take(), error) {
-            // The encoder has no such channel: that is an answer, and stands where it was asked for.
+            // The encoder has no such channel: this is a result, and shown where it was requested.
             self.analogue.insert(channel, Err(why));
             self.session.answers();
             return;

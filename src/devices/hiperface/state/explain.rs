@@ -1,4 +1,4 @@
-//! A HIPERFACE encoder in words: the errors of jobs with it, and what it says about itself.
+//! Texts of a HIPERFACE encoder: the errors of its jobs, and its reports.
 
 mod change;
 mod check;
@@ -41,7 +41,7 @@ use crate::devices::hiperface::procedures::write::{Interrupted, Written};
 use crate::devices::hiperface::profile::{PlanError, Redo, UnknownField};
 use crate::devices::hiperface::protocol::{EncoderTypes, StatusCode};
 
-/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -53,7 +53,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// A write that was cut off: how far it came, what became of it, and where the state before is.
+/// Returns the text of an interrupted write: how far it got, its result, and where the backup is.
 pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![match &interrupted.cause {
@@ -78,7 +78,7 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
     texts
 }
 
-/// The wire itself failed, so that nothing more can be asked over it: why.
+/// Returns why the connection failed, if nothing more can be requested over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error.device()? {
         Error::Link(error) => Some(link(error)),
@@ -86,13 +86,13 @@ pub fn loss(error: &JobError) -> Option<Text> {
     }
 }
 
-/// A write that is done. What cannot be read back was acknowledged by the encoder, and that is all there is.
+/// Returns the text of a completed write. Values that cannot be read back were acknowledged by the encoder.
 pub fn written(written: &Written) -> Text {
     let id = if written.verified == 0 { "session.acknowledged" } else { "session.written" };
     TEXTS.text(id).with("cycles", written.write_cycles)
 }
 
-/// The same for the end of a review.
+/// Returns the same for the end of a review.
 pub fn verified(written: &Written) -> Text {
     match written.verified {
         0 => Text::new("session.acknowledged").with("cycles", written.write_cycles),
@@ -100,7 +100,7 @@ pub fn verified(written: &Written) -> Text {
     }
 }
 
-/// An exchange with a HIPERFACE encoder that failed.
+/// Returns the text for an exchange with a HIPERFACE encoder that failed.
 pub fn encoder(error: &Error) -> Text {
     match error {
         Error::Link(error) => link(error),
@@ -161,7 +161,7 @@ pub fn encoder(error: &Error) -> Text {
     }
 }
 
-/// Returns the text of a value that has to be set up again.
+/// Returns the text of a value that must be set up again.
 pub fn redo(redo: &Redo) -> Text {
     match redo {
         Redo::Commutation => TEXTS.text("redo.commutation"),
@@ -169,13 +169,13 @@ pub fn redo(redo: &Redo) -> Text {
     }
 }
 
-/// A data field with bytes of unknown meaning that would go onto another encoder.
+/// Returns the text for a data field with bytes of unknown meaning that would go onto another encoder.
 pub fn unknown_field(field: &UnknownField) -> Text {
     let id = if field.bytes == 1 { "review.unknown_field_one" } else { "review.unknown_field" };
     TEXTS.text(id).with("field", field.field).with("bytes", field.bytes)
 }
 
-/// Fields that a write created and that are not deleted where it is undone; `None` where there are none.
+/// Returns the text of fields created by a write that are not deleted when it is undone; `None` if there are none.
 pub fn created_left(fields: &[u8]) -> Option<Text> {
     let numbers: Vec<String> = fields.iter().map(ToString::to_string).collect();
     (!fields.is_empty()).then(|| TEXTS.text("review.created_left").with("fields", numbers.join(", ")))
@@ -186,13 +186,13 @@ pub fn codes_unheard(count: u32) -> Text {
     TEXTS.text("status.unheard").with("count", count)
 }
 
-/// A profile that goes onto another type of encoder.
+/// Returns the text for a profile for another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     let OtherType { profile, device } = types;
     TEXTS.text("review.other_type").with("profile", type_name(profile)).with("device", type_name(device))
 }
 
-/// A type by its name, where the table that ships has one, and its code.
+/// Returns the name of a type, if the built-in table has one, and its code.
 fn type_name(code: u8) -> String {
     match EncoderTypes::built_in().find(code) {
         Some(own) => format!("{} ({code:02X}h)", own.name),
@@ -200,7 +200,7 @@ fn type_name(code: u8) -> String {
     }
 }
 
-/// A plan that cannot be made.
+/// Returns the text for a plan that cannot be made.
 pub fn plan(error: &PlanError) -> Text {
     match error {
         PlanError::OtherDevice { profile, device } => {
@@ -228,7 +228,7 @@ pub fn plan(error: &PlanError) -> Text {
     }
 }
 
-/// Bytes that a field does not have.
+/// Returns the text for bytes that a field does not have.
 pub fn out_of_field(field: u8, last: usize, start: usize, count: usize) -> Text {
     let text = TEXTS.text(if count == 1 { "encoder.out_of_field_one" } else { "encoder.out_of_field" });
     text.with("field", field).with("last", last).with("start", start).with("count", count)

@@ -1,5 +1,4 @@
-//! Parses entries: codes, addresses, positions, channels. An entry that cannot be used is answered with the possible
-//! values.
+//! Parses entries: codes, addresses, positions, channels. For an invalid entry the valid ones are returned.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::{
@@ -8,10 +7,10 @@ use crate::devices::hiperface::protocol::{
 use crate::devices::hiperface::state::TEXTS;
 use crate::units::CharacterFormat;
 
-/// An access code: one byte in hexadecimal.
+/// Parses an access code: one byte in hexadecimal.
 ///
 /// # Errors
-/// In words; the entry itself is not repeated.
+/// Why it is invalid; the entry itself is not repeated.
 pub fn access_code(text: &str) -> Result<AccessCode, Text> {
     byte(text).map(AccessCode::new).ok_or_else(|| TEXTS.text("entry.code"))
 }
@@ -19,16 +18,16 @@ pub fn access_code(text: &str) -> Result<AccessCode, Text> {
 /// Parses a new access code, entered twice because it cannot be read back.
 ///
 /// # Errors
-/// In words; the entries are not repeated.
+/// Why they are invalid; the entries are not repeated.
 pub fn new_access_code(text: &str, again: &str) -> Result<AccessCode, Text> {
     let code = access_code(text)?;
     if access_code(again)?.byte() == code.byte() { Ok(code) } else { Err(TEXTS.text("entry.codes_differ")) }
 }
 
-/// An address, 40h…5Fh in hexadecimal.
+/// Returns an address, 40h…5Fh in hexadecimal.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub fn address(text: &str) -> Result<DeviceAddress, Text> {
     byte(text)
         .and_then(DeviceAddress::new)
@@ -41,19 +40,19 @@ pub(super) fn with_addresses(text: Text) -> Text {
     text.with("first", first).with("last", last)
 }
 
-/// An analogue channel in hexadecimal.
+/// Returns an analogue channel in hexadecimal.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub fn channel(text: &str) -> Result<u8, Text> {
     byte(text).ok_or_else(|| TEXTS.text("entry.channel").with("entry", text))
 }
 
-/// A position in steps, decimal or with `0x` in front; or degrees within the first turn with `°` or `deg`
-/// behind. No sign, no exponent, no words.
+/// Parses a position in steps, decimal or with `0x`; or degrees within the first turn followed by `°` or `deg`. No sign, no
+/// exponent, no words.
 ///
 /// # Errors
-/// In words, with the range where it is known.
+/// Why the entry is invalid, with the range if it is known.
 pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let text = text.trim();
     let last = geometry.and_then(Geometry::range).map_or(u64::from(u32::MAX), |range| range.saturating_sub(1));
@@ -62,7 +61,7 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     let steps = match (degrees, text.strip_prefix("0x")) {
         (Some(degrees), _) => {
             let degrees = degrees.trim().replace(',', ".");
-            // The parser would take a sign, an exponent, and numbers that are none.
+            // The parser would accept a sign, an exponent, and texts such as `inf`.
             if !degrees.bytes().all(|c| c.is_ascii_digit() || c == b'.') {
                 return Err(refused());
             }
@@ -83,7 +82,7 @@ pub fn position(text: &str, geometry: Option<Geometry>) -> Result<u32, Text> {
     u32::try_from(steps).ok().filter(|_| steps <= last).ok_or_else(refused)
 }
 
-/// Interface settings with another format, time-out and wiring; what the studio does not know of the byte is kept.
+/// Returns the interface settings with another format, time-out and wiring; unknown bits of the byte are kept.
 ///
 /// # Errors
 /// The encoder has no such speed or parity.
@@ -97,7 +96,7 @@ pub fn settings(
     Ok(from.with_format(format).ok_or_else(refused)?.with_long_timeout(long_timeout).with_bus(bus))
 }
 
-/// The status of a new, writable field.
+/// Returns the status of a new, writable field.
 pub fn new_field(size: FieldSize, code: CodeNumber, code_required: bool) -> DataFieldStatus {
     DataFieldStatus::new(size, code, code_required)
 }
@@ -105,7 +104,7 @@ pub fn new_field(size: FieldSize, code: CodeNumber, code_required: bool) -> Data
 fn byte(text: &str) -> Option<u8> {
     let text = text.trim();
     let digits = text.strip_prefix("0x").or_else(|| text.strip_suffix(['h', 'H'])).unwrap_or(text);
-    // The parser would take a sign.
+    // The parser would accept a sign.
     u8::from_str_radix(digits, 16).ok().filter(|_| digits.bytes().all(|c| c.is_ascii_hexdigit()))
 }
 
@@ -117,7 +116,7 @@ mod tests {
 
     #[test]
     fn positions_are_steps_or_degrees_within_the_range() {
-        // 128 periods × 32 steps = 4096 steps a turn; 90° are 1024 of them; 4096 turns are 16 777 216 steps.
+        // 128 periods × 32 steps = 4096 steps per turn; 90° are 1024 of them; 4096 turns are 16 777 216 steps.
         for (text, steps) in [
             ("0", 0),
             (" 1024 ", 1024),

@@ -6,10 +6,10 @@ use crate::devices::hiperface::protocol::{Answer, Frame, FrameFact, Reply, Reque
 use crate::devices::hiperface::state::explain as words;
 use crate::link::{Direction, TraceEntry};
 
-/// Reads frames in the order in which they went over the line.
+/// Decoder of frames, in the order in which they were transmitted.
 #[derive(Debug, Default)]
 pub(super) struct Meaning {
-    /// The last request, and whom it was sent to.
+    /// The last request, and its address.
     request: Option<(u8, Request)>,
 }
 
@@ -45,7 +45,7 @@ impl Meaning {
             Ok(facts) => facts,
             Err(error) => return Explained::broken(words::damage(&Damage::Reply(error.into()))),
         };
-        // The heading repeats the request's; of a reply only what it gives is new.
+        // The heading contains the request's facts; of a reply only new facts are added.
         let known = |facts: &FrameFact| asked.is_some() && matches!(facts, FrameFact::Heading { .. });
         let meaning = facts.iter().filter(|facts| !known(facts)).map(words::frame).collect();
         let fault = answer.filter(reports).map(|_| TraceFault::Reported);
@@ -53,7 +53,7 @@ impl Meaning {
     }
 }
 
-/// A reply tells of an error or a warning.
+/// Returns whether a reply reports an error or a warning.
 fn reports(answer: &Answer) -> bool {
     match answer {
         Answer::Rejected { .. } => true,
@@ -62,7 +62,7 @@ fn reports(answer: &Answer) -> bool {
     }
 }
 
-/// A request whose secrets were masked, its checksum among them, as one with other secrets.
+/// Replaces the masked secrets of a request, including its checksum, with other values.
 fn with_checksum(mut frame: Vec<u8>) -> Vec<u8> {
     if frame.pop().is_some() {
         frame.push(frame.iter().fold(0, |sum, byte| sum ^ byte));
@@ -81,8 +81,8 @@ mod tests {
         TraceEntry { at: Moment::START, direction, bytes: MaskedBytes::clear(bytes) }
     }
 
-    /// Issue 22.11: a broken reply says what is wrong with it, and is marked. The frames are those of the manual's
-    /// commands, broken by hand.
+    /// Issue 22.11: a damaged reply has a meaning that names the error, and a mark. The frames are those of the manual's
+    /// commands, damaged by hand.
     #[test]
     fn a_broken_reply_has_a_meaning_and_a_mark() {
         let position = [0x40, 0x42, 0x02];

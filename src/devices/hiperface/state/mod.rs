@@ -1,4 +1,4 @@
-//! HIPERFACE: an encoder on the desk, its memory beside what the user has made of it, and the review of a write.
+//! HIPERFACE: an open encoder, its memory and the user's edits, and the review of a write.
 
 mod act;
 mod action;

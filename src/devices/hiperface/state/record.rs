@@ -12,7 +12,7 @@ use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
 use crate::devices::hiperface::procedures::{PositionReading, Sample, Watch, WatchedReading};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 
-/// The recorder of an encoder, and what it said last.
+/// Recorder of an encoder, and the latest values.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<Watch>,
@@ -21,7 +21,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// A session has begun; what was recorded before stays.
+    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         (self.last, self.refused) = (None, false);
         self.track.begin(began);
@@ -51,7 +51,7 @@ impl Record {
         }
     }
 
-    /// Records these values too, and no others beside the position.
+    /// Records these values, and no others, in addition to the position.
     pub(super) fn watch(&mut self, watched: &[Watch]) {
         self.track.watch(watched);
     }
@@ -61,17 +61,17 @@ impl Record {
         self.track.watched()
     }
 
-    /// The last position, as long as the encoder has one to give.
+    /// Returns the last position, as long as the encoder has one to give.
     pub fn last(&self) -> Option<&PositionReading> {
         self.last.as_ref().filter(|_| !self.refused)
     }
 
-    /// The encoder has no position to give at the moment.
+    /// Returns whether the encoder has no position to give at the moment.
     pub fn refused(&self) -> bool {
         self.refused
     }
 
-    /// Positions that are recorded.
+    /// Returns the number of recorded positions.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }
@@ -93,7 +93,7 @@ fn meaning(geometry: Option<Geometry>) -> Meaning {
             let range = rotary.range().and_then(|range| i64::try_from(range).ok());
             Meaning::of_turns(range, rotary.steps_per_turn().unwrap_or(1) as f64)
         }
-        // The whole word, which goes round at its end.
+        // The whole word, which wraps at its end.
         None => Meaning::of_steps(Some(1 << 32)),
     }
 }

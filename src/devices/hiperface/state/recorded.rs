@@ -1,4 +1,4 @@
-//! A draft as it stands in people's files: it is read, and written word for word the same.
+//! The draft as stored in users' files: it is read, and written unchanged.
 
 use crate::app::recorded::assert_recorded;
 use crate::devices::hiperface::jobs::Hiperface;

@@ -16,7 +16,7 @@ pub(super) struct RestAsked {
 }
 
 impl Encoder {
-    /// Periods and turns, where the type tells them.
+    /// Returns periods and turns, if the type defines them.
     pub fn geometry(&self) -> Option<Geometry> {
         self.identity.as_ref().and_then(|identity| identity.geometry)
     }
@@ -25,7 +25,7 @@ impl Encoder {
         self.rest.is_under_way = self.try_submit(HiperfaceJob::Rest, services);
     }
 
-    /// The shaft was read at rest.
+    /// Takes a reading of the shaft at rest.
     pub(super) fn take_rest(&mut self, rest: Rest) {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Ok(rest));
@@ -35,7 +35,7 @@ impl Encoder {
         self.commutation.take(rest, geometry);
     }
 
-    /// A job has failed; true where it is such a reading, and the reason stands where it was asked for.
+    /// Handles a failed job; returns true if it is such a reading, whose error is shown where it was requested.
     pub(super) fn rest_failed(&mut self, why: &Text) -> bool {
         if std::mem::take(&mut self.rest.is_under_way) {
             self.rest.result = Some(Err(why.clone()));

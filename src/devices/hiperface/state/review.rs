@@ -1,4 +1,4 @@
-//! The review of a write into a HIPERFACE encoder: what its plan needs, warns of and costs.
+//! The review of a write to a HIPERFACE encoder: the permissions, warnings and costs of its plan.
 
 use crate::app::Text;
 use crate::app::review::{self, OpWords, Permit, Question, Reviewed};
@@ -9,12 +9,12 @@ use crate::devices::hiperface::protocol::CodeNumber;
 use crate::devices::hiperface::state::TEXTS;
 use crate::devices::hiperface::state::explain as words;
 
-/// A write on its way.
+/// Review of a write.
 pub type Review = review::Review<Hiperface>;
 pub type ReviewState = review::ReviewState<Hiperface>;
 
 impl Review {
-    /// The options of a restore, where this is one.
+    /// Returns the options of a restore, if this is one.
     pub fn options(&self) -> Option<RestoreOptions> {
         match &self.change {
             Change::Restore { options, .. } => Some(options.clone()),

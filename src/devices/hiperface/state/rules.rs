@@ -26,7 +26,7 @@ pub fn resize(memory: FreeMemory, field: &FieldImage, size: FieldSize, staged: &
     allowed(plan_redefine(memory, field, field.status.with_size(size)))
 }
 
-/// The field may change its size at all: it is the last.
+/// Checks that the field may change its size: it is the last.
 pub fn resizable(memory: FreeMemory, field: &FieldImage) -> Allowed {
     status(field)?;
     allowed(plan_delete(memory, field))
@@ -38,7 +38,7 @@ pub fn delete(memory: FreeMemory, field: &FieldImage, staged: &Staged) -> Allowe
     edits_stay(staged, field.number, 0)
 }
 
-/// The field's protection and access code may be changed: the encoder asks for its access code.
+/// Checks that the field's protection and access code may be changed: the encoder requires its access code.
 pub fn status(field: &FieldImage) -> Allowed {
     match field.bytes {
         Some(_) => Ok(()),
@@ -98,7 +98,7 @@ pub fn edit(field: &FieldImage) -> Allowed {
     Ok(())
 }
 
-/// The largest size that the last field can get.
+/// Returns the largest size that the last field can get.
 pub fn largest(memory: FreeMemory, field: &FieldImage) -> FieldSize {
     let fits = |size: &FieldSize| plan_redefine(memory, field, field.status.with_size(*size)).is_ok();
     FieldSize::all().filter(fits).last().unwrap_or(field.status.size())
@@ -112,7 +112,7 @@ fn allowed(plan: Result<HiperfacePlan, PlanError>) -> Allowed {
 mod tests {
     use super::*;
 
-    /// As a restore that creates fields again does it.
+    /// As a restore does that creates fields again.
     #[test]
     fn a_plan_that_deletes_a_field_leaves_its_edits_no_place() {
         let status = DataFieldStatus::from_byte(0xC8);

@@ -29,9 +29,9 @@ pub struct Search {
     pub(crate) url: LinkUrl,
     pub(crate) options: FindOptions,
     pub(crate) line: Option<LiveSession<Hiperface>>,
-    /// Ends when its link is open or cannot be opened.
+    /// Disconnects when its link is open or cannot be opened.
     pub(crate) over: crossbeam_channel::Receiver<()>,
-    /// All that answered so far.
+    /// Encoders found so far.
     pub found: Vec<FoundEncoder>,
     /// The end of the search; `None` while it runs.
     pub end: Option<Text>,
@@ -47,7 +47,7 @@ impl Search {
         self.end.is_none()
     }
 
-    /// The link of an encoder that was found.
+    /// Returns the link of an encoder that was found.
     pub(crate) fn link_to(&self, found: &FoundEncoder) -> LinkUrl {
         let mut url = self.url.clone();
         url.query.set("baud", &found.format.baud.to_string());
@@ -113,13 +113,13 @@ impl Search {
     pub(crate) fn stop(&mut self) {
         match &mut self.line {
             Some(line) => line.stop(),
-            // The link is still being opened, which may take for ever.
+            // The link is still being opened, which may never end.
             None => self.end = Some(TEXTS.text("find.cut_short").with("count", 0)),
         }
     }
 }
 
-/// Looks for encoders on the line of the connection form.
+/// Searches for encoders on the line of the connection form.
 #[derive(Default)]
 pub struct SearchFinder {
     pub search: Option<Search>,
@@ -128,7 +128,7 @@ pub struct SearchFinder {
 }
 
 pub enum SearchAction {
-    /// Look for encoders.
+    /// Search for encoders.
     Search(FindOptions),
     /// Connect to an encoder that was found.
     Choose(usize),
@@ -137,7 +137,7 @@ pub enum SearchAction {
 /// A link was opened for a search.
 pub struct OpenedForSearch {
     number: u32,
-    /// The session on its thread.
+    /// The opened session.
     result: Result<Box<Opened<Hiperface>>, Box<OpenFailed>>,
 }
 
@@ -185,7 +185,7 @@ impl Finder for SearchFinder {
         let search = finder.and_then(|finder| finder.search.as_mut());
         match (search.filter(|search| search.number == number && search.is_running()), result) {
             (Some(search), result) => search.opened(result, services),
-            // One that was ended while it opened has no use for it.
+            // A search that was ended while its link was opening does not use it.
             (None, Ok(opened)) => opened.turn_away(SessionId(number), services),
             (None, Err(_)) => {}
         }

@@ -1,9 +1,9 @@
-//! The bytes of the data fields as the encoder has them, and beside them as the user wants them. Nothing here is written
-//! to an encoder; a plan is made of the difference.
+//! The bytes of the data fields in the encoder, and the edited ones. Nothing is written to an encoder here; a plan is made
+//! from the difference.
 //!
-//! Edits survive a fresh reading of the encoder: a byte that the user changed stays as he wants it, whatever the encoder
-//! has now; every other byte follows the encoder. Those of a field that cannot be read, because its access code is not
-//! known any more, wait until it can.
+//! Edits survive a new reading of the encoder: an edited byte stays as edited, whatever the encoder has now; every other
+//! byte follows the encoder. Edits of a field that cannot be read, because its access code is no longer known, wait until
+//! it can.
 
 use crate::app::{EditBase, Edits};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange};
@@ -15,7 +15,7 @@ impl EditBase for Vec<FieldImage> {
     type Place = (u8, usize);
     type Value = u8;
 
-    /// A byte here is another than the encoder's, as far as that is known.
+    /// Returns whether a byte differs from the encoder's, as far as that is known.
     fn is_edit(&self, (field, address): (u8, usize), byte: u8) -> bool {
         let image = self.iter().find(|image| image.number == field);
         match image.map(|image| (&image.bytes, image.status)) {
@@ -26,25 +26,25 @@ impl EditBase for Vec<FieldImage> {
     }
 }
 
-/// Why an edit cannot be made.
+/// Why an edit is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum StagedError {
     /// There is no such field.
     #[error("data field {field} does not exist")]
     NoField {
-        /// Its number.
+        /// Number of the field.
         field: u8,
     },
     /// Its access code is not known, so its bytes are not.
     #[error("data field {field} is locked")]
     Locked {
-        /// Its number.
+        /// Number of the field.
         field: u8,
     },
-    /// It ends before.
+    /// The field ends before.
     #[error("data field {field} ends at {last}")]
     Outside {
-        /// Its number.
+        /// Number of the field.
         field: u8,
         /// Its last address.
         last: usize,
@@ -52,17 +52,17 @@ pub enum StagedError {
 }
 
 impl Staged {
-    /// Takes over a reading of the encoder; edits stay, unless their byte is gone or already has the wanted value.
+    /// Takes over a reading of the encoder; edits stay, unless their byte no longer exists or already has the edited value.
     pub fn refresh(&mut self, device: Vec<FieldImage>) {
         self.read_again(|own| *own = device);
     }
 
-    /// The fields as the encoder has them.
+    /// Returns the fields as the encoder has them.
     pub fn device(&self) -> &[FieldImage] {
         self.base()
     }
 
-    /// The fields as the user wants them.
+    /// Returns the fields as edited.
     pub fn wanted(&self) -> Vec<FieldImage> {
         let mut fields = self.base().clone();
         for ((number, address), byte) in self.iter() {
@@ -74,17 +74,17 @@ impl Staged {
         fields
     }
 
-    /// One byte as the encoder has it.
+    /// Returns one byte as the encoder has it.
     pub fn on_device(&self, field: u8, address: usize) -> Option<u8> {
         self.field(field)?.bytes.as_ref()?.get(address).copied()
     }
 
-    /// One byte as the user wants it.
+    /// Returns one byte as edited.
     pub fn byte(&self, field: u8, address: usize) -> Option<u8> {
         self.get((field, address)).or_else(|| self.on_device(field, address))
     }
 
-    /// The user wants another byte here than the encoder has.
+    /// Returns whether the edited byte differs from the encoder's.
     pub fn is_edited(&self, field: u8, address: usize) -> bool {
         self.get((field, address)).is_some()
     }
@@ -105,7 +105,7 @@ impl Staged {
         runs
     }
 
-    /// The edited runs with their bytes: what is to be written.
+    /// Returns the edited runs with their bytes.
     pub fn changed_runs(&self) -> Vec<(FieldRange, Vec<u8>)> {
         let bytes = |range: &FieldRange| {
             let addresses = (range.start..).take(range.count.unwrap_or(0));
@@ -117,7 +117,7 @@ impl Staged {
     /// Puts bytes into a field, as one step that can be undone.
     ///
     /// # Errors
-    /// When the field does not have them all; then nothing is changed.
+    /// If the field does not have all of them; then nothing is changed.
     pub fn put(&mut self, field: u8, address: usize, bytes: &[u8]) -> Result<(), StagedError> {
         let image = self.field(field).ok_or(StagedError::NoField { field })?;
         let size = image.bytes.as_ref().ok_or(StagedError::Locked { field })?.len();
@@ -133,7 +133,7 @@ impl Staged {
         self.take_back(|(field, address)| range.contains(field, address));
     }
 
-    /// The edits, for a draft on disk.
+    /// Returns the edits, for a draft on disk.
     pub fn edits(&self) -> impl Iterator<Item = (u8, usize, u8)> {
         self.iter().map(|((field, address), byte)| (field, address, byte))
     }
@@ -212,7 +212,7 @@ mod tests {
         let mut staged = staged();
         staged.put(0, 0, &[1, 2]).unwrap();
         let mut now = [0; 16];
-        now[1] = 2; // written meanwhile, by us or by somebody else
+        now[1] = 2; // written meanwhile, by this program or another one
         now[9] = 9;
         staged.refresh(fields(&now));
         assert!(staged.is_edited(0, 0) && !staged.is_edited(0, 1));

@@ -1,4 +1,4 @@
-//! Writing to an encoder: the edits or a profile as a request, its jobs, and what follows in the session.
+//! Writing to an encoder: the edits or a profile as a request, its jobs, and the consequences in the session.
 
 use super::commutation::Commutation;
 use super::encoder::Encoder;
@@ -19,7 +19,7 @@ impl Encoder {
         self.plan(Change::Restore { profile: Box::new(profile), options }, services);
     }
 
-    /// Makes the plan of the review again; an encoder that did not answer is asked again.
+    /// Makes the plan of the review again; an encoder that did not reply is queried again.
     pub(super) fn plan_again(&mut self, change: Change, services: &mut Services) {
         if self.session.is_busy() {
             return;
@@ -69,7 +69,7 @@ impl WithMemory for Encoder {
         self.follow(&ops, services);
     }
 
-    /// The list of jobs alone says that it begins.
+    /// Logs nothing: the list of jobs shows the start.
     fn log_begin(&self, _: &Text, _: &Prepared, _: &mut Services) {}
 
     fn plan_with(&mut self, permit: Permit, services: &mut Services) {
@@ -122,7 +122,7 @@ impl Saved for Encoder {
     }
 }
 
-/// A restore with other options; any other change as it is.
+/// Returns a restore with other options; any other change unchanged.
 pub(super) fn with_options(change: &Change, options: RestoreOptions) -> Change {
     match change {
         Change::Restore { profile, .. } => Change::Restore { profile: profile.clone(), options },

@@ -1,4 +1,4 @@
-//! The commutation assistant: what has to be so before, what is read, what comes of it, and both ways to keep it.
+//! The commutation assistant: the preparation, the readings, the results, and both ways to store them.
 
 mod result;
 
@@ -28,7 +28,7 @@ const COLUMNS: f32 = 700.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     let mut form = encoder.commutation.form.clone();
-    // Beside the long column where there are two, else at the end.
+    // Beside the long column if there are two, else at the end.
     let wide = ui.available_width() >= COLUMNS;
     split(
         ui,
@@ -206,7 +206,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
     }
     ui.horizontal_wrapped(|ui| {
         let allowed = may_read(commutation, encoder.session.is_ready());
-        // Of one width, so that what is typed stands in one column.
+        // All of the same width, so that the entries form one column.
         let size = egui::vec2(READ.min(ui.available_width()), ui.spacing().interact_size.y);
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
             ui.set_min_width(size.x);
@@ -214,7 +214,7 @@ fn slot(ui: &mut Ui, theme: &Theme, encoder: &Encoder, slot: Slot, typed: &mut S
                 actions.push(ask(encoder, Assistant::Read(slot)));
             }
         });
-        // Entries of different places have to be distinguished.
+        // Entries of different places must be distinguishable.
         let label = format!("{} · {}", say(theme, slot.word()), say(theme, "commutation.fine"));
         let response = text_entry(ui, typed, POSITION, &label, &say(theme, "commutation.or_type"));
         let enter = response.lost_focus() && ui.input(|input| input.key_pressed(egui::Key::Enter));

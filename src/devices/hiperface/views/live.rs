@@ -1,4 +1,4 @@
-//! The position of a HIPERFACE encoder, large, and what is read beside it.
+//! The large display of a HIPERFACE position, and the values that are read with it.
 
 use egui::{RichText, Ui};
 
@@ -35,7 +35,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let Some(reading) = reading else { return };
     let place = position.and_then(|position| Some((position.turns()?, position.steps()?)));
     if ui.available_height() < LOW {
-        // In a low window the plot needs the room.
+        // In a low window the plot needs the space.
         let mut words = format!("{:08X}h", reading.raw);
         if let Some((turns, steps)) = place {
             words = format!("{} {turns} · {} {steps} · {words}", theme.say("live.turns"), theme.say("live.step"));

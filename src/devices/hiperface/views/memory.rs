@@ -1,5 +1,5 @@
-//! The encoder's memory: the map of its data fields, what can be done with each, the bytes of the one that is selected,
-//! what they mean, and the way to write the edits.
+//! The encoder's memory: the map of its data fields, the actions of each, the bytes of the selected one, their meaning, and
+//! the bar for writing the edits.
 
 use egui::{RichText, Ui};
 
@@ -101,7 +101,7 @@ fn map(
         })
         .collect();
     let free_blocks = memory.map_or(0, |memory| usize::from(memory.blocks));
-    // The free space counts, not how many of its blocks are drawn. A field can grow to eight.
+    // The free space counts, not the number of its blocks drawn. A field can grow to eight.
     let taken: usize = fields.iter().map(|field| field.blocks).sum();
     let a_line = (ui.available_width() / 48.0) as usize;
     let shown_free = free_blocks.min(a_line.saturating_sub(taken).max(8));
@@ -187,7 +187,7 @@ fn field_ui(
         });
     } else {
         egui::ScrollArea::vertical().id_salt("field").auto_shrink(false).show(ui, |ui| {
-            // Room for the ring around what has the keyboard.
+            // Space for the focus ring.
             ui.add_space(theme.space.inside);
             edits = hex_editor(ui, theme, &label, &model, &mut view.hex);
             if let [mark, ..] = marks.as_slice() {
@@ -198,7 +198,7 @@ fn field_ui(
             typed_view(ui, theme, view.hex.to_read(bytes));
         });
     }
-    // The buttons at the foot undo as well as the keys do.
+    // The buttons of the edit bar undo like the keys do.
     if actions.iter().any(|own| matches!(own, Action::Command(_, DeviceCommand::Undo | DeviceCommand::Redo))) {
         view.hex.follow(bytes);
     }

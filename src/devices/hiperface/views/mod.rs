@@ -1,4 +1,4 @@
-//! The HIPERFACE tab: its pages, each about one thing that a person wants of an encoder.
+//! The HIPERFACE tab: its pages, one per task.
 
 mod commutation;
 mod connect_form;
@@ -29,7 +29,7 @@ pub(crate) enum Page {
     Setup,
     /// The offset between encoder and motor.
     Commutation,
-    /// Profiles, backups and what was written.
+    /// Profiles, backups and the logbook.
     Backups,
 }
 
@@ -44,7 +44,7 @@ impl TabPage for Page {
     ];
 }
 
-/// The state of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct HiperfaceUiState {
     memory: memory::MemoryUiState,
@@ -93,7 +93,7 @@ impl TypedDeviceView for HiperfaceView {
         actions: &mut Vec<Action>,
     ) {
         if page == Page::Memory {
-            // The editor scrolls by itself; its buttons stay where they are.
+            // The editor scrolls by itself; its buttons stay in place.
             egui::Frame::NONE
                 .inner_margin(page::around(ui, theme))
                 .show(ui, |ui| memory::page_ui(ui, theme, (studio, device), encoder, &mut view.memory, actions));
@@ -124,7 +124,7 @@ impl TypedDeviceView for HiperfaceView {
     }
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

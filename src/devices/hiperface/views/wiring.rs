@@ -1,5 +1,5 @@
-//! The wiring card: the eight wires, what is on them, and how the line is terminated. Pins and wire colours differ from
-//! type to type and stand in the data sheet.
+//! The wiring card: the eight wires, their signals, and the termination of the line. Pins and wire colours differ between
+//! types and are in the data sheet.
 
 use egui::Ui;
 
@@ -12,7 +12,7 @@ use crate::ui::wiring::wires_ui;
 /// Width of the column of names.
 const WIRE: f32 = 56.0;
 
-/// A wire's name in the manual, and what is on it.
+/// Names of the wires in the manual, and their signals.
 const WIRES: [(&str, &str); 8] = [
     ("US", "wiring.supply"),
     ("GND", "wiring.ground"),

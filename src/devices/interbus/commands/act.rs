@@ -1,4 +1,4 @@
-//! `do`: the preset, the default, the device check, and the way back to where an encoder was.
+//! `do`: the preset, the default, the device check, and the return of an encoder to its earlier mode.
 
 use serde_json::json;
 
@@ -44,7 +44,7 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     }
 }
 
-/// The preset that the encoder has.
+/// Returns the preset that the encoder has.
 fn preset(runner: &mut Runner) -> Result<u32> {
     Ok(
         result_of!(runner.run(InterbusJob::Read(Item::Preset))?, InterbusOutput::Item(ItemValue::Number(preset)) => preset),

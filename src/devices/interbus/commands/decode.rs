@@ -1,4 +1,4 @@
-//! `decode interbus`: words of the process data, with all that they may mean or what the options say they are.
+//! `decode interbus`: words of the process data, with all possible meanings or the one selected by the options.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -42,7 +42,7 @@ enum Captured {
 
 fn captured(text: &str) -> Result<Captured> {
     let digits = text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")).unwrap_or(text);
-    // A sign is no digit, though numbers may have one.
+    // A sign is not a digit, though the number parser accepts one.
     let number = digits.chars().all(|c| c.is_ascii_hexdigit()).then_some(digits);
     let word = match (number, digits.len()) {
         (Some(digits), 4) => u16::from_str_radix(digits, 16).ok().map(Captured::K1),
@@ -56,7 +56,7 @@ fn captured(text: &str) -> Result<Captured> {
     })
 }
 
-/// A read-out by its name, with hyphens, or its number.
+/// Parses a read-out: its name with hyphens, or its number.
 fn read_out(text: &str) -> Result<ReadOut> {
     let named = READ_OUTS.iter().find(|row| row.name.replace(' ', "-") == text).map(|row| row.read_out);
     let numbered = || parse_number(text).and_then(|number| u16::try_from(number).ok()).map(ReadOut::new);
@@ -86,7 +86,7 @@ fn long(word: u32, direction: Option<Direction>, known: &WordContext) -> std::re
     match direction {
         Some(Direction::In) => Ok(meaning::of_in(word, known)),
         Some(Direction::Out) => meaning::of_out(word, known),
-        // Every word can have come from the encoder; one that means nothing to it in any mode is then only that.
+        // Any word can come from the encoder; one without a meaning in any OUT mode can only be an IN word.
         None => Ok(meaning::of_out(word, known)
             .unwrap_or_else(|_| meaning::refused(word, known))
             .into_iter()

@@ -1,4 +1,4 @@
-//! Commands that only look: `identify`, `status`, `read`.
+//! Commands that only read: `identify`, `status`, `read`.
 
 use serde_json::{Value as Json, json};
 
@@ -53,7 +53,7 @@ fn turns(turns: u32) -> String {
     if turns == 1 { "1 revolution".to_owned() } else { format!("{turns} revolutions") }
 }
 
-/// A mode for scripts: K2, K3, velocity, or `cam 3`.
+/// Returns a mode for scripts: K2, K3, velocity, or `cam 3`.
 pub(super) fn mode(mode: StartupMode) -> String {
     match mode {
         StartupMode::K2 => "K2".to_owned(),
@@ -91,7 +91,7 @@ pub(super) fn status(common: &Common, output: &Output) -> Result {
     Ok(Done::Well)
 }
 
-/// Bits of a position's word that should be 0.
+/// Returns the bits of a position's word that should be 0.
 fn stray(status: &Status) -> Option<(u32, String)> {
     let bits = u32::from(status.reading.stray()) << Value::BITS;
     (bits != 0).then(|| (bits, format!("the bits 0x{bits:08X} of IN should be 0")))

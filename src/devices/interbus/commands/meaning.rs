@@ -1,4 +1,4 @@
-//! The meaning of a word of an INTERBUS encoder in words.
+//! The meaning of a word of an INTERBUS encoder as text.
 
 use serde_json::{Value as Json, json};
 
@@ -6,22 +6,22 @@ use crate::devices::interbus::protocol::{
     CamOutput, Command, Mode, Parameter, ReadOut, ReadOutValue, Reply, Single, StartupMode, Value, WindowShift,
 };
 
-/// Known facts about a word besides its digits.
+/// Facts known about a word besides its digits.
 pub(super) struct WordContext {
     pub(super) mode: Option<Mode>,
     pub(super) read_out: Option<ReadOut>,
     pub(super) shift: Option<WindowShift>,
 }
 
-/// One of the things that a word may say.
+/// A possible meaning of a word.
 pub(super) struct WordMeaning {
     direction: &'static str,
-    /// In which it says that; none where it does in any.
+    /// Modes in which it has this meaning; empty if in all.
     modes: Vec<Mode>,
     words: String,
     /// The number in it.
     value: Option<u32>,
-    /// It may be sent in these modes, or may come in them.
+    /// It may be sent, or may be received, in these modes.
     legal: bool,
 }
 
@@ -75,7 +75,7 @@ pub(super) fn of_out(word: u32, known: &WordContext) -> Result<Vec<WordMeaning>,
     }
 }
 
-/// An OUT word that an encoder in the known mode must not get, where it means something in another.
+/// Returns the refusal of an OUT word that must not be sent in the known mode, if it has a meaning in another one.
 pub(super) fn refused(word: u32, known: &WordContext) -> Vec<WordMeaning> {
     let refused = known.mode.and_then(|mode| Command::in_mode(word, mode).err());
     refused
@@ -152,7 +152,7 @@ fn stray(bits: u32, place: &str) -> String {
     if bits == 0 { String::new() } else { format!("; warning: 0x{bits:X} {place} should be 0") }
 }
 
-/// A command, and the number in it.
+/// Returns a command, and the number in it.
 fn command_words(command: Command) -> (String, Option<u32>) {
     let with = |words: String, value: u32| (words, Some(value));
     match command {

@@ -116,7 +116,7 @@ impl DeviceCommands for InterbusCommands {
     }
 }
 
-/// The item that a user names. One of a program or a cam that there is not is understood, and out of range.
+/// Parses the item that the user names. A program or a cam that does not exist is reported as out of range.
 fn item(text: &str) -> Result<Item> {
     text.parse().map_err(|error: ItemError| match error {
         ItemError::Unknown(_) => Failure::Usage(error.to_string()),
@@ -124,20 +124,20 @@ fn item(text: &str) -> Result<Item> {
     })
 }
 
-/// How a command disturbs the process data that a machine uses.
+/// How a command disturbs the process data used by a machine.
 #[derive(Clone, Copy)]
 enum Disturbs {
     /// Values are read out.
     Reading,
-    /// So are cam programs, each of which is selected for that.
+    /// In addition, cam programs are selected one after the other.
     Programs,
     /// A state left by another program is ended, and stored.
     LeadingBack,
 }
 
 impl Disturbs {
-    /// Announces the disturbance before it happens. Switching live outputs needs an answer on a terminal, unless a
-    /// write was consented to or the encoder is virtual; without a terminal it goes on.
+    /// Announces the disturbance before it happens. Switching live outputs needs a confirmation on a terminal, unless a
+    /// write was consented to or the encoder is virtual; without a terminal it continues.
     fn begin(self, common: &Common, output: &Output, consent: Option<&Consenting>) -> Result<()> {
         self.announce(output);
         let is_virtual = common.link.as_ref().is_some_and(|link| link.scheme == Scheme::Sim);

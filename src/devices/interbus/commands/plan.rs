@@ -1,4 +1,4 @@
-//! A plan for an INTERBUS encoder: shown, agreed to, carried out.
+//! The plan for an INTERBUS encoder: shown, confirmed, carried out.
 
 use serde_json::Value as Json;
 
@@ -16,7 +16,7 @@ use crate::devices::interbus::state::explain as words;
 use crate::profile::Operation as _;
 use crate::result_of;
 
-/// Makes a plan for a change; nothing is written.
+/// Makes a plan for a change. Writes nothing.
 pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> Result<Prepared> {
     let reads_all = match &change {
         Change::Restore { profile, .. } => programs_needed(profile).len() == ProgramNumber::COUNT,
@@ -32,13 +32,13 @@ pub(super) fn prepare(runner: &mut Runner, output: &Output, change: Change) -> R
     Ok(prepared)
 }
 
-/// The measuring range ends earlier.
+/// Returns whether the measuring range ends earlier.
 fn is_shorter(op: &Op) -> bool {
     let Op::Parameterise(changes) = op else { return false };
     changes.iter().any(|change| change.parameter == Parameter::Steps && change.to < change.from)
 }
 
-/// Asks where it has to, and carries the plan out. A plan with nothing in it sends nothing.
+/// Asks for consent if required, and carries the plan out. An empty plan sends nothing.
 pub(super) fn commit(
     runner: &mut Runner,
     output: &Output,
@@ -58,7 +58,7 @@ pub(super) fn commit(
     let text = format!("{}{stop}", shown(&prepared).text);
     let mut texts = vec![text.as_str()];
     if let (Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown), Some(wear_text)) = (wear, &wear_text) {
-        // More than the maker names: once more.
+        // Above the maker's limit: asked once more.
         texts.push(wear_text);
     }
     let agreed = agreed(output, consent, prepared, &texts)?;
@@ -66,13 +66,13 @@ pub(super) fn commit(
     Ok(WriteSummary::of(output, committed))
 }
 
-/// The plan for a person and for a script: each item old → new, and what it costs.
+/// Returns the plan as text and JSON: each item old → new, and the cost.
 pub(super) fn shown(prepared: &Prepared) -> PlanReport {
     let plan = &prepared.plan;
     PlanReport::of(plan, plan.ops.iter().flat_map(steps).collect(), prepared.cycles_seen, Some(WEAR_LIMIT))
 }
 
-/// The operations as JSON; what is stored together costs nothing by itself.
+/// Returns the operations as JSON; items that are stored together have no cost of their own.
 pub(super) fn operations(plan: &InterbusPlan) -> Vec<Json> {
     plan.ops.iter().flat_map(steps).map(|step| step.json()).collect()
 }

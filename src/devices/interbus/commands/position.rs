@@ -1,4 +1,4 @@
-//! `position`: IN words, with what the encoder's gear makes of them.
+//! `position`: prints IN words, converted by the encoder's gear.
 
 use serde_json::json;
 
@@ -20,7 +20,7 @@ pub(super) fn position(common: &Common, output: &Output, position: &Position) ->
     Disturbs::Reading.announce(output);
     let identity = identity(&mut runner)?;
     if let StartupMode::Cams(_) = identity.mode {
-        // The window determines the visible bits of the position; no other program is selected for that.
+        // The window determines the visible bits of the position; no program is selected to read it.
         programs(&mut runner, Vec::new())?;
     }
     if position.csv {
@@ -58,7 +58,7 @@ fn show(output: &Output, reading: &WordReading) -> Result<()> {
     output.show(&json, &format!("{t:10.3} s  0x{:08X}  {}\n", reading.word, words(reading, cams.as_deref())))
 }
 
-/// The cams that are on.
+/// Returns the cams that are on.
 fn on(outputs: u8) -> Vec<u8> {
     CamNumber::all().map(CamNumber::get).filter(|cam| outputs >> cam & 1 != 0).collect()
 }

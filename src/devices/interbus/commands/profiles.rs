@@ -1,4 +1,4 @@
-//! The commands about profiles of an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
+//! The commands for profiles of an INTERBUS encoder: `save`, `restore`, and reading it for a comparison.
 
 use serde_json::json;
 
@@ -24,8 +24,8 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// The encoder as it is, for a comparison: all of it, or as much as a profile says something about. Each program that is
-/// read switches the encoder's outputs.
+/// Reads the encoder for a comparison: all of it, or as much as the profile contains. Reading a program switches the
+/// encoder's outputs.
 pub(super) fn present(common: &Common, output: &Output, profile: Option<&Body>) -> Result<Body> {
     let profile = match profile.and_then(Body::get::<InterbusProfile>) {
         None => saved(common, output)?,

@@ -21,7 +21,7 @@ impl Runs for Interbus {
 
     fn begin(_session: &mut Session<Self>, _given: &Given) {}
 
-    /// Steps of the handshake are for the window; a recording has their bytes.
+    /// Steps of the handshake are shown in the window only; a recording has their bytes.
     fn print_message(_remark: &DeviceMessage) {}
 
     fn step(doing: &JobStep) -> String {
@@ -36,14 +36,14 @@ pub(super) fn identity(runner: &mut Runner) -> Result<Box<Identity>> {
     Ok(identity)
 }
 
-/// All that can be read without selecting a cam program.
+/// Reads everything that can be read without selecting a cam program.
 pub(super) fn survey(runner: &mut Runner) -> Result<Box<Survey>> {
     let survey = result_of!(runner.run(InterbusJob::Survey)?, InterbusOutput::Surveyed(survey) => survey);
     survey.identity.gear().map_err(|why| failed(&words::implausible(why)))?;
     Ok(survey)
 }
 
-/// These programs, and the shift of the window.
+/// Returns these programs, and the shift of the window.
 pub(super) fn programs(
     runner: &mut Runner,
     wanted: Vec<ProgramNumber>,

@@ -5,7 +5,8 @@ use crate::cli::{Failure, Result};
 use crate::devices::interbus::profile::{Direction, Item, ItemValue};
 use crate::devices::interbus::protocol::{Cam, Parameter, Value};
 
-/// Reads a value. What an item can never hold is refused with its limits; what this encoder cannot, its plan refuses.
+/// Parses a value. A value impossible for the item is refused here with its limits; one impossible for this encoder is
+/// refused by its plan.
 pub(super) fn value(item: Item, text: &str) -> Result<ItemValue> {
     Ok(match item {
         Item::Steps | Item::Revolutions | Item::Preset | Item::ZeroShift => {

@@ -55,7 +55,7 @@ impl Planned for Prepared {
         op.note()
     }
 
-    /// The parameters stand in every profile.
+    /// Every profile contains the parameters.
     fn before_image(&self) -> String {
         let (base, identity) = (&self.plan.base, &self.identity);
         let mut image = Image::of(self.parameters);

@@ -11,7 +11,7 @@ use crate::devices::interbus::profile::{
 use crate::devices::interbus::protocol::{KIND, Program, ProgramNumber, ReadOut, StartupMode, Value, WindowShift};
 use crate::store::DeviceKey;
 
-/// Stores from which a person should know that they are numbered (reference 3: some 200, at most 500).
+/// Number of stores from which the user is warned of wear (reference 3: some 200, at most 500).
 pub const WEAR_WARNING: u64 = 150;
 /// Number of stores beyond which the user has to confirm once more.
 pub const WEAR_ASK: u64 = 200;
@@ -20,18 +20,18 @@ pub const WEAR_LAST: u64 = 500;
 /// Stores at which the EEPROM counts as worn.
 pub const WEAR_LIMIT: u64 = 450;
 
-/// The stores after a plan from which on it is refused, unless it is forced: at the limit the EEPROM is worn, not only beyond
-/// it, and what stores nothing wears nothing.
+/// Returns the number of stores after a plan from which it is refused, unless forced: at the limit the EEPROM is already
+/// worn, and a plan that stores nothing causes no wear.
 pub const fn wear_limit(cost: u64) -> u64 {
     if cost == 0 { u64::MAX } else { WEAR_LIMIT - 1 }
 }
 
-/// A job of a session with an INTERBUS encoder. All but the first and [`Position`](Self::Position) replace the position
-/// for a moment and make cam outputs invalid; reading a cam program selects it. Afterwards the encoder does what it did
-/// before, unless it is sent into another mode.
+/// Job of a session with an INTERBUS encoder. All but the first and [`Position`](Self::Position) replace the position for a
+/// moment and make cam outputs invalid; reading a cam program selects it. Afterwards the encoder is in its earlier mode,
+/// unless it is sent into another one.
 #[derive(Debug)]
 pub enum InterbusJob {
-    /// The IN word, and nothing is sent to the encoder: for a window, after connecting.
+    /// Reads the IN word, without sending anything to the encoder: for a window, after connecting.
     Hello,
     /// Everything that can be read without selecting a cam program.
     Survey,
@@ -43,51 +43,50 @@ pub enum InterbusJob {
     Status,
     /// Checks gateway and encoder, with a verdict a line.
     Check,
-    /// The IN word, once; nothing is sent to the encoder.
+    /// Reads the IN word once; nothing is sent to the encoder.
     Position,
     Read(Item),
     /// Anything that can be read out, a register of the chip as well.
     ReadOut(ReadOut),
-    /// Into another mode: position, speed, or a cam program; it stays there.
+    /// Selects another mode: position, speed, or a cam program; the encoder stays in it.
     Select(StartupMode),
     /// Everything that can be restored.
     Save {
-        /// With the cam programs.
+        /// Including the cam programs.
         programs: bool,
     },
     /// Makes a plan; writes nothing.
     Prepare(Change),
     /// Carries a plan out.
     Commit(Box<Commit>),
-    /// Ends a parameterisation, an error or a read-out that was left. Values set and not stored are stored by that, and
-    /// counted.
+    /// Ends an earlier parameterisation, error or read-out. Values set and not stored are stored by that, and counted.
     LeadBack,
 }
 
 /// A change that a user wants.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// Make the encoder as the profile says.
+    /// Restores a profile.
     Restore { profile: Box<InterbusProfile>, options: RestoreOptions },
-    /// Make it like this; what the image says nothing about stays as it is, and is not read.
+    /// Writes these values; items that are not in the image stay as they are, and are not read.
     Write(Box<Image>),
-    /// Give one item this value; the rest stays as it is.
+    /// Gives one item this value; the others stay as they are.
     Item(Item, ItemValue),
-    /// Store this preset, and make it the shaft's position; at standstill.
+    /// Stores this preset, and sets the shaft's position to it; at standstill.
     Preset {
         /// The position.
         value: u32,
     },
-    /// Back to what was delivered: experimental (reference 6.10).
+    /// Restores the factory settings: experimental (reference 6.10).
     Default,
 }
 
-/// Kinds of change that differ in what completes one that was cut off.
+/// Kind of change, by how an interrupted one is completed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChangeKind {
-    /// A profile is restored: doing it again completes it.
+    /// Restore of a profile: repeating it completes it.
     Restore,
-    /// Edits are written: those that are not yet stay edited.
+    /// Edits: those not yet written remain edits.
     Edits,
     /// A preset is stored and fired.
     Preset,
@@ -106,16 +105,16 @@ impl Change {
     }
 }
 
-/// A plan, ready to be looked at.
+/// Plan, ready for review.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     pub kind: ChangeKind,
     pub plan: InterbusPlan,
-    /// The encoder it is for.
+    /// The encoder that it is for.
     pub identity: Identity,
     /// Parameters of the position, as read for the plan.
     pub parameters: Parameters,
-    /// Stores that this computer has seen the encoder take; `None` where the logbook does not tell.
+    /// Number of stores of the encoder recorded on this computer; `None` if the logbook has no record.
     pub cycles_seen: Option<u64>,
     /// Items that are as they should be already.
     pub unchanged: u64,
@@ -125,7 +124,7 @@ pub struct Prepared {
     pub mounting_left: Vec<Item>,
     /// The profile is of another type of encoder.
     pub other_type: Option<OtherType>,
-    /// Values of another device's mounting that are written: they have to be set up again.
+    /// Values of another device's mounting that are written: they must be set up again.
     pub mounting_written: Vec<Item>,
 }
 
@@ -163,7 +162,7 @@ impl Prepared {
     }
 }
 
-/// A plan that a person consented to.
+/// Plan with the user's consent.
 pub type Commit = crate::worker::commit::ApprovedPlan<Prepared>;
 
 /// The result of a commit.
@@ -176,14 +175,14 @@ pub enum DeviceMessage {
     Handshake(Handshake),
 }
 
-/// The step that a job is at. Its text is the command line's.
+/// Step of a running job. Its text is that of the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum JobStep {
     /// Something is read out.
     ReadOut(ReadOut),
     /// A cam program is read.
     Program(ProgramNumber),
-    /// An operation of a plan is carried out: what it changes.
+    /// Operation of a plan, with the item it changes.
     Operation(String),
 }
 
@@ -212,7 +211,7 @@ pub enum InterbusOutput {
     Position(WordReading),
     Item(ItemValue),
     ReadOut(ReadOut, Value),
-    /// With the mode that it says to be in.
+    /// With the mode that the encoder reports.
     Selected(StartupMode),
     Saved(Box<InterbusProfile>),
     Prepared(Box<Prepared>),
@@ -234,7 +233,7 @@ pub fn device_key(identity: &Identity, is_virtual: bool) -> DeviceKey {
     key_of(&identity.serial_number, is_virtual)
 }
 
-/// The same by the serial number alone.
+/// Returns the same by the serial number alone.
 pub(super) fn key_of(serial_number: &str, is_virtual: bool) -> DeviceKey {
     DeviceKey::of(KIND, "K3", serial_number, is_virtual)
 }

@@ -11,14 +11,14 @@ use crate::store::{DeviceKey, Drafts, EntryId, Logbook, LogbookError, Outcome, S
 
 use super::job::key_of;
 
-/// As the logbook tells it.
+/// Text of the logbook entry.
 const WHAT: &str = "cam programs read, each of which may be stored when it is left";
 
 /// The notes of one job.
 pub(super) struct Notes {
     store: Store,
     is_virtual: bool,
-    /// Reading that has begun, by serial number.
+    /// Readings in progress, by serial number.
     begun: BTreeMap<String, (Logbook, EntryId)>,
 }
 
@@ -47,7 +47,7 @@ impl Notes {
     }
 }
 
-/// Reports what could not be noted, without stopping anything.
+/// Logs a failure to record, which stops nothing.
 fn warn<T, E: std::fmt::Display>(ended: Result<T, E>) -> Option<T> {
     ended.inspect_err(|why| tracing::warn!("{why}")).ok()
 }
@@ -89,7 +89,7 @@ impl Journal for Notes {
     }
 }
 
-/// The mode in which it was found, then those it was sent into, as read-out 9 numbers them.
+/// Returns the mode in which it was found, then those it was sent into, as read-out 9 numbers them.
 fn emit(excursion: &Excursion) -> String {
     let modes: Vec<u32> =
         std::iter::once(excursion.found).chain(excursion.sent.iter().copied()).map(StartupMode::emit).collect();

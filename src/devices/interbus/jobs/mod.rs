@@ -1,4 +1,4 @@
-//! An INTERBUS encoder behind its gateway, at the end of a session, and its jobs.
+//! An INTERBUS encoder behind its gateway as seen by a session, and its jobs.
 
 mod commit;
 mod job;
@@ -47,7 +47,7 @@ impl fmt::Debug for Interbus {
 type ProgressSink<'t> = &'t mut dyn FnMut(JobReport<DeviceMessage, JobStep>);
 
 impl Interbus {
-    /// The host's side of the process data; each step of the handshake is told.
+    /// Returns the host's side of the process data; each step of the handshake is reported.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext, on_step: impl FnMut(Handshake) + 'a) -> Master<'a> {
         let notes = Notes::of(context.store.clone(), context.is_virtual);
         Master::new(context.ctx(&mut *self.wire), &mut self.station).telling(on_step).noting(notes)
@@ -55,7 +55,8 @@ impl Interbus {
 }
 
 impl Session<Interbus> {
-    /// A session on an open wire. With a motor the encoder lives in this process, and its wear counts apart.
+    /// Creates a session on an open connection. With a motor the encoder is a virtual one in this process, and its stores
+    /// are counted separately.
     pub fn to_gateway(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -84,7 +85,7 @@ impl Device for Interbus {
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
     type Sample = WordReading;
-    /// Nothing can be watched: every other value replaces the position.
+    /// No value can be watched: every other value replaces the position.
     type Watch = Infallible;
     type JobStep = JobStep;
 
@@ -156,12 +157,12 @@ impl Device for Interbus {
     }
 }
 
-/// Receives progress: the present step, of how many, and its name.
+/// Progress callback: the present step, the number of steps, and its name.
 type Steps<'s> = &'s mut dyn FnMut(u64, u64, JobStep);
 
 impl Interbus {
-    /// Runs jobs that only read, or lead back. All of them replace the position for a moment, except reading the IN
-    /// word.
+    /// Runs jobs that only read, or return the encoder to its mode. All of them replace the position for a moment, except
+    /// reading the IN word.
     fn ask(
         &mut self,
         context: &mut SessionContext,

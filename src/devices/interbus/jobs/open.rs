@@ -1,4 +1,4 @@
-//! From a link URL to a session with an INTERBUS encoder.
+//! Opening a session with an INTERBUS encoder from a link URL.
 
 use std::sync::Arc;
 
@@ -15,13 +15,12 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to an INTERBUS encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
+/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an INTERBUS encoder: `modbus:` leads to its gateway, `sim:` to a virtual one, `replay:` to a recording
-/// of one.
+/// Opens a link to an INTERBUS encoder: `modbus:` to its gateway, `sim:` to a virtual one, `replay:` to a recording of one.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -34,7 +33,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
         return Ok(Session::to_gateway(wire, clock, station, store, None));
     }
     let mut motor = None;
-    // Nothing between us and a gateway has a speed of characters.
+    // The connection to a gateway has no character format.
     let wire = open_bytes(url, FORMAT, &clock, || {
         let gateway = Gateway::new(&config);
         motor = Some(gateway.shaft());
@@ -43,7 +42,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Interbus>, OpenError>
     Ok(Session::to_gateway(wire, clock, station, store, motor))
 }
 
-/// The gateway as the link says, and the virtual one, which counts for a link to it alone.
+/// Reads the settings of the gateway, and of the virtual one. The latter apply to a link to it only.
 fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Modbus | Scheme::Replay) {
         return Err(leads_elsewhere(url.scheme, "sim:, modbus:, replay:"));
@@ -54,7 +53,7 @@ fn read(url: &LinkUrl) -> Result<(Station, Config), OpenError> {
     Ok((station, config))
 }
 
-/// Requests are numbered in the order of the day: a recording answers whatever their number is.
+/// Removes the numbers of requests, which differ each time, so that a recording answers any.
 fn without_number(entry: TraceEntry) -> TraceEntry {
     let (Direction::Sent, Some(bytes)) = (entry.direction, entry.bytes.to_bytes()) else { return entry };
     TraceEntry { bytes: MaskedBytes::masked(&bytes, &[0, 1]), ..entry }

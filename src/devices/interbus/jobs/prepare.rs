@@ -1,4 +1,4 @@
-//! From a change that a user wants to a plan. Reads; writes nothing, and leaves the encoder in the mode in which it was.
+//! Makes a plan from a change. Reads; writes nothing, and leaves the encoder in its mode.
 
 use super::{Change, DeviceMessage, Interbus, JobError, JobStep, Prepared, ProgressSink, device_key};
 use crate::devices::interbus::procedures::{identify, read_state};
@@ -77,7 +77,7 @@ pub(super) fn prepare(
     })
 }
 
-/// The programs that an image speaks of; the shift of the window is read with any.
+/// Returns the programs of an image; the shift of the window is read with any of them.
 fn programs_touched(wanted: &Image) -> Vec<ProgramNumber> {
     let known: Vec<ProgramNumber> = wanted.known().map(|(number, _)| number).collect();
     match wanted.shift {

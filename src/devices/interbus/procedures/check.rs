@@ -1,5 +1,5 @@
-//! The device check: what the gateway, the IN word and the encoder say, with a verdict a line. It sets nothing: an echo
-//! would cost a store, so that the handshake is tried with read-outs alone.
+//! The device check: gateway, IN word and encoder, with one verdict per item. It sets nothing: an echo would cost a store,
+//! so the handshake is tested with read-outs only.
 
 use std::time::Duration;
 
@@ -25,7 +25,7 @@ pub enum CheckStep {
     InputWord,
     /// Identity, and whether steps and turns are plausible.
     Identity,
-    /// Read-outs: OUT gets to the encoder, and IN comes back.
+    /// Read-outs: OUT reaches the encoder, and IN comes back.
     Handshake,
     Temperature,
     /// Stores in the EEPROM.
@@ -35,7 +35,7 @@ pub enum CheckStep {
 /// One fact that the check found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CheckFinding {
-    /// The IN word was read so often, within so long a reply each.
+    /// Number of readings of the IN word, and the longest reply time.
     Replies {
         /// Number of requests.
         requested: u32,
@@ -46,7 +46,7 @@ pub enum CheckFinding {
     OrderFits,
     /// Words make sense with their halves exchanged only.
     OrderSwapped {
-        /// As it was read.
+        /// As read.
         input: u32,
         /// With its halves exchanged.
         swapped: u32,
@@ -68,13 +68,13 @@ pub enum CheckFinding {
     },
     /// Implausible data.
     Implausible(Implausible),
-    /// The preset lies beyond the measuring range.
+    /// The preset is beyond the measuring range.
     PresetBeyond {
         preset: u32,
         /// The last position.
         last: u32,
     },
-    /// It counts its steps less one.
+    /// It reports its steps minus one.
     StepsMinusOne,
     Mode(StartupMode),
     /// Values read out.
@@ -88,24 +88,24 @@ pub enum CheckFinding {
     Failed(Error),
     /// Tenths of a degree Celsius.
     Temperature(i32),
-    /// Stores that were seen, and what the EEPROM stands.
+    /// Recorded stores, and the limit of the EEPROM.
     Wear {
-        /// As many at least.
+        /// Minimum number of stores.
         seen: u64,
-        /// As many it stands.
+        /// Limit of stores.
         limit: u64,
     },
 }
 
-/// How often the IN word is read to measure the gateway.
+/// Number of readings of the IN word for measuring the gateway.
 const LOOKS: u32 = 20;
-/// Tenths of a degree that electronics in a housing stand (`U`: the manual gives no limits).
+/// Tenths of a degree Celsius allowed for electronics in a housing (`U`: the manual gives no limits).
 const TEMPERATURES: std::ops::RangeInclusive<i32> = -400..=850;
 
-/// Carries out the check. It ends early only when the gateway fails. `wear` is asked when it is known who is there.
+/// Runs the check. It ends early only if the gateway fails. `wear` is called once the encoder is identified.
 ///
 /// # Errors
-/// The way to the encoder.
+/// Errors of the exchange.
 pub fn check(
     master: &mut Master<'_>,
     wear: impl FnOnce(&Identity) -> Wear,
@@ -113,7 +113,7 @@ pub fn check(
 ) -> Result<Vec<InterbusStepResult>, Error> {
     let (mut lines, is_free) = look(master)?;
     if !is_free {
-        // Any further request disturbs another master, or goes into the wrong half of a word.
+        // Any further request would disturb another master, or go into the wrong half of a word.
         return Ok(lines);
     }
     let begun = master.now();
@@ -137,7 +137,7 @@ pub fn check(
     Ok(lines)
 }
 
-/// The IN word alone, again and again; whether more can be asked.
+/// Reads only the IN word, repeatedly; returns whether more can be requested.
 fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Error> {
     let (mut slowest, mut word) = (Duration::ZERO, 0);
     for _ in 0..LOOKS {
@@ -171,7 +171,7 @@ fn look(master: &mut Master<'_>) -> Result<(Vec<InterbusStepResult>, bool), Erro
     Ok((lines, fits && free))
 }
 
-/// A line with the worst verdict of its findings.
+/// Returns a result with the worst verdict of its findings.
 fn identity(survey: &Survey) -> InterbusStepResult {
     let identity = &survey.identity;
     let mut findings = vec![

@@ -1,4 +1,4 @@
-//! Process data: the OUT word that an encoder gets, and the IN word that it gives.
+//! Process data: the OUT word sent to an encoder, and the IN word received from it.
 
 use std::time::Duration;
 
@@ -7,19 +7,19 @@ use crate::units::Moment;
 
 /// The process data of one encoder, and their time.
 pub trait ProcessData {
-    /// One cycle: OUT is this word, and IN what is read after that.
+    /// Carries out one cycle: sends this OUT word, and returns the IN word read after it.
     ///
     /// # Errors
-    /// The way to the encoder, or the user's wish.
+    /// Errors of the exchange, or cancellation.
     fn cycle(&mut self, out: u32) -> Result<u32, Error>;
 
-    /// The IN word; OUT is left alone.
+    /// Reads the IN word; OUT is not changed.
     ///
     /// # Errors
     /// As [`cycle`](Self::cycle).
     fn input(&mut self) -> Result<u32, Error>;
 
-    /// The OUT word as it stands on the way to the encoder; `None` where that cannot be told.
+    /// Reads the present OUT word; `None` if that is not possible.
     ///
     /// # Errors
     /// As [`cycle`](Self::cycle).
@@ -27,12 +27,12 @@ pub trait ProcessData {
 
     fn now(&self) -> Moment;
 
-    /// Waits; ends early when the user wishes.
+    /// Waits; ends early when cancelled.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
     fn wait(&mut self, duration: Duration) -> Result<(), Error>;
 
-    /// Sets whether a request to end is ignored; returns the previous setting.
+    /// Sets whether cancellation is ignored; returns the previous setting.
     fn shield(&mut self, shielded: bool) -> bool;
 }

@@ -13,24 +13,24 @@ use crate::profile::DeviceError;
 pub enum RequestedItem {
     /// The IN word: two input registers, function 4.
     Input {
-        /// The first of them.
+        /// First of them.
         register: u16,
     },
-    /// The OUT word as the gateway holds it: two holding registers, function 3.
+    /// The OUT word stored in the gateway: two holding registers, function 3.
     Output {
-        /// The first of them.
+        /// First of them.
         register: u16,
     },
-    /// To take an OUT word: two holding registers, function 16.
+    /// Write an OUT word: two holding registers, function 16.
     Write {
-        /// The first of them.
+        /// First of them.
         register: u16,
         word: u32,
     },
 }
 
 impl RequestedItem {
-    /// The function of Modbus.
+    /// Returns the function of Modbus.
     pub const fn function(self) -> u8 {
         match self {
             RequestedItem::Input { .. } => 4,
@@ -39,7 +39,7 @@ impl RequestedItem {
         }
     }
 
-    /// The first register.
+    /// Returns the first register.
     pub const fn register(self) -> u16 {
         match self {
             RequestedItem::Input { register }
@@ -66,12 +66,12 @@ impl fmt::Display for RequestedItem {
 pub struct Exception(u8);
 
 impl Exception {
-    /// Any code.
+    /// Creates it from any code.
     pub const fn new(code: u8) -> Self {
         Exception(code)
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn code(self) -> u8 {
         self.0
     }
@@ -109,7 +109,7 @@ impl Exception {
         }
     }
 
-    /// Asking again may help.
+    /// Returns whether asking again may help.
     pub(super) const fn passes(self) -> bool {
         !matches!(self.0, 1..=3)
     }
@@ -140,7 +140,7 @@ pub enum Damage {
         /// Function of the reply.
         got: u8,
     },
-    /// Not as many registers as were asked for, or others.
+    /// Other registers than requested, or another number of them.
     #[error("not the registers that were requested")]
     Registers,
 }
@@ -178,7 +178,7 @@ pub enum Implausible {
     /// Neither clockwise nor counterclockwise.
     #[error("{0} is not a direction")]
     Direction(u32),
-    /// A preset, an edge or a shift beyond what there can be.
+    /// A preset, an edge or a shift out of range.
     #[error("{value} for OUT {read:08X} is too large")]
     Value {
         /// The OUT word that asked.
@@ -209,36 +209,36 @@ pub enum Error {
         /// Damage of the last reply.
         cause: Damage,
     },
-    /// Bytes keep arriving where there should be silence.
+    /// Bytes keep arriving during the required silence.
     #[error("the gateway sends data that was not requested")]
     NeverSilent,
-    /// It refuses.
+    /// The gateway refuses.
     #[error("the gateway refuses {requested}: exception {:02X}, {}; {}", exception.code(), exception.name(), exception.cause())]
     Exception {
         requested: RequestedItem,
-        /// Its code.
+        /// Code of the exception.
         exception: Exception,
     },
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
-    /// The encoder would take the word for something else in its mode: it was not sent.
+    /// In its mode, the encoder would interpret the word as another command: it was not sent.
     #[error(transparent)]
     Illegal(#[from] Refused),
-    /// The encoder answers with an error word.
+    /// The encoder has no such read-out.
     #[error("the encoder refuses {:08X} ({}): {:08X}, {}; {}", sent.emit(), sent.name(), word(*error), error.meaning(), error.remedy())]
     Refused { sent: Command, error: ErrorWord },
     /// It has nothing to read out there.
     #[error("the encoder has no value for {:08X} ({})", command.emit(), command.name())]
     UnknownReadOut { command: Command },
-    /// Nothing came of a word within the time of the handshake.
+    /// No reaction to a word within the time of the handshake.
     #[error("no {awaited} after OUT {sent:08X} within {milliseconds} ms; IN is {input:08X}{}", other_echo(*input))]
     TimeOut {
         /// The awaited event.
         awaited: Awaited,
         /// The OUT word.
         sent: u32,
-        /// The IN word that came last.
+        /// The last IN word.
         input: u32,
         /// Time waited, in milliseconds.
         milliseconds: u64,
@@ -251,7 +251,7 @@ pub enum Error {
         /// The OUT word that the gateway holds.
         output: u32,
     },
-    /// The encoder is being parameterised, and not by us: a write was cut off, or another master is at work.
+    /// The encoder is being parameterised, and not by this program: a write was interrupted, or another master is active.
     #[error("the encoder is being parameterised: IN is {input:08X}")]
     NotRunning {
         /// The IN word.
@@ -273,16 +273,16 @@ pub enum Error {
     NoMode {
         /// The mode that it was sent to.
         wanted: StartupMode,
-        /// The one that it says to be in.
+        /// The mode that it reports.
         is: StartupMode,
     },
     /// A mode that cannot be selected.
     #[error("mode {} cannot be selected", mode.emit())]
     NotSelectable { mode: StartupMode },
-    /// It is in a mode that the manual does not have: what any word but a read-out does there is not known.
+    /// It is in a mode that the manual does not define: the effect of any word but a read-out is not known.
     #[error("the encoder is in the unknown mode {}: values were read and nothing else was sent", mode.emit())]
     UnknownMode { mode: StartupMode },
-    /// The shaft turns where it must stand still.
+    /// The shaft turns but must stand still.
     #[error("the shaft is moving: from position {from} to {to}")]
     Moving {
         /// The first position.
@@ -308,14 +308,14 @@ pub enum Error {
     /// Something ended early, and the encoder could not be led back.
     #[error("{cause}; the encoder could not be returned to operation: {standing}")]
     NotLedBack {
-        /// Why it ended; if nothing failed before, why it could not be led back.
+        /// The error of the work; if it did not fail, why the encoder could not be returned to its mode.
         cause: Box<Error>,
-        /// In which state it may be.
+        /// Its possible state.
         standing: LeftState,
     },
 }
 
-/// The error as it came.
+/// Returns the error as received.
 fn word(error: ErrorWord) -> u32 {
     Reply::Error(error).emit()
 }
@@ -348,7 +348,7 @@ impl DeviceError for Error {
 }
 
 impl Error {
-    /// The gateway can no longer be reached: trying anything else makes no sense.
+    /// Returns whether the gateway can no longer be reached, so that further attempts are useless.
     pub fn is_lost(&self) -> bool {
         match self {
             Error::Link(_) | Error::NoReply { .. } | Error::NeverSilent => true,
@@ -357,7 +357,7 @@ impl Error {
         }
     }
 
-    /// The user wished it.
+    /// Returns whether the user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         match self {
             Error::Cancelled => true,

@@ -1,7 +1,7 @@
 //! Process data behind a Modbus/TCP gateway: the IN word is two input registers, the OUT word two holding registers.
 //!
-//! Each request has a number of its own, so that a reply which comes late is never taken for the next one. Writing an OUT
-//! word twice is the same as once, so that everything here may be asked again.
+//! Each request has its own number, so that a late reply is never taken for the next one. Writing an OUT word twice has the
+//! same effect as once, so every request may be repeated.
 
 use std::time::Duration;
 
@@ -19,24 +19,24 @@ use crate::link::Ctx;
 use crate::link::line::{LineState, SerialLine};
 use crate::units::Moment;
 
-/// Tries before a gateway counts as gone, where it does not answer; each may take its whole time.
+/// Number of attempts without a reply before a gateway counts as lost; each may take its full time.
 const SILENCES: u32 = 3;
-/// Tries where it answers, and not as it should.
+/// Number of attempts with invalid replies.
 const TRIES: u32 = 5;
 /// Before a gateway that is busy is asked again.
 const BUSY_PAUSE: Duration = Duration::from_millis(200);
-/// Behind bytes that are no frame: silence for so long, and what comes next is one again.
+/// Pause after bytes that are not a frame; the next bytes start a new frame.
 const QUIET: Duration = Duration::from_millis(50);
-/// A wish to end is heard at least so often.
+/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(50);
-/// Bytes of a frame until its function: number, protocol, length, unit.
+/// Bytes of a frame before its function: number, protocol, length, unit.
 const HEADER: usize = 7;
 /// The shortest frame: a refusal.
 const SHORTEST: usize = HEADER + 2;
 /// Set in the function of a refusal.
 const REFUSED: u8 = 0x80;
 
-/// A gateway and the encoder at its registers, for one job.
+/// Gateway with the encoder at its registers, for one job.
 pub struct Gateway<'a> {
     line: SerialLine<'a>,
     link: LinkParameters,
@@ -65,7 +65,7 @@ enum ExchangeError {
 type Whole = Result<Vec<u8>, (Damage, Vec<u8>)>;
 
 impl<'a> Gateway<'a> {
-    /// The gateway of a station, and what is known of the encoder behind it.
+    /// Creates the gateway of a station; also returns the known state of the encoder behind it.
     pub(super) fn new(ctx: Ctx<'a>, station: &'a mut Station) -> (Self, &'a mut KnownState) {
         let Station { link, recorded, line, next, waiting, silent, known } = station;
         let (link, recorded) = (*link, *recorded);
@@ -76,7 +76,7 @@ impl<'a> Gateway<'a> {
         (gateway, known)
     }
 
-    /// Asks, and again where that may help.
+    /// Sends a request, and repeats it if that may help.
     fn ask(&mut self, requested: RequestedItem) -> Result<Vec<u16>, Error> {
         let mut tries = 0;
         loop {
@@ -119,7 +119,7 @@ impl<'a> Gateway<'a> {
     fn ask_once(&mut self, requested: RequestedItem) -> Result<Result<Vec<u16>, ExchangeError>, Error> {
         self.line.start()?;
         let number = *self.state.next;
-        // Not 0: what answers without looking at the number has it.
+        // Not 0: a device that ignores the number uses that.
         *self.state.next = number.checked_add(1).unwrap_or(1);
         let Some((request, bytes)) = self.request(requested, number) else {
             return Ok(Err(ExchangeError::Damage(Damage::Registers)));
@@ -165,7 +165,7 @@ impl<'a> Gateway<'a> {
         request(requested, self.link.unit, number, self.link.order)
     }
 
-    /// The next whole frame of what has come; an error where it is none, and all that has come is let go.
+    /// Takes the next complete frame from the received bytes; an error if they are not a frame, which discards all of them.
     fn next_frame(&mut self) -> Option<Whole> {
         let waiting = &mut *self.state.waiting;
         if waiting.len() < HEADER {
@@ -191,7 +191,7 @@ impl<'a> Gateway<'a> {
     }
 }
 
-/// The frame of a request.
+/// Returns the frame of a request.
 fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) -> Option<(ModbusRequest, Vec<u8>)> {
     let mut request = ModbusRequest::new_tcp_udp(unit, number);
     let mut bytes = Vec::new();
@@ -208,14 +208,14 @@ fn request(requested: RequestedItem, unit: u8, number: u16, order: WordOrder) ->
 /// The fault of a received frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// It is no reply to what was asked.
+    /// It is not a reply to the request.
     Broken(Damage),
     /// The gateway refuses.
     Refused(Exception),
 }
 
-/// Returns the fault of a frame in the trace that was received after this request; `None` if it answers it, also under
-/// the number of an earlier one.
+/// Returns the fault of a frame in the trace that was received after this request; `None` if it is a reply to it, or to an
+/// earlier one by its number.
 pub fn fault(sent: &[u8], received: &[u8], order: WordOrder) -> Option<Fault> {
     let broken = |damage| Some(Fault::Broken(damage));
     let length = guess_response_frame_len(received, ModbusProto::TcpUdp).map(usize::from);
@@ -254,7 +254,7 @@ fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) 
     if unit != request.unit_id {
         return Err(ExchangeError::Damage(Damage::Unit { requested: request.unit_id, got: unit }));
     }
-    // The crate takes the codes 0Ah and 0Bh for others, and any other function for a refusal.
+    // The crate maps the codes 0Ah and 0Bh to others, and takes any other function for a refusal.
     if function == requested.function() | REFUSED {
         return Err(ExchangeError::Exception(Exception::new(frame.get(HEADER + 1).copied().unwrap_or(0))));
     }
@@ -278,7 +278,7 @@ fn judge(request: &ModbusRequest, requested: RequestedItem, mut frame: Vec<u8>) 
 impl ProcessData for Gateway<'_> {
     fn cycle(&mut self, out: u32) -> Result<u32, Error> {
         if self.written != Some(out) {
-            // It may have been written when its reply is lost.
+            // If its reply is lost, it may have been written.
             self.written = None;
             self.ask(RequestedItem::Write { register: self.link.output, word: out })?;
             self.written = Some(out);
@@ -321,7 +321,7 @@ pub enum Carried {
     In(u32),
 }
 
-/// The word that a frame of the trace carries, sent or received; `None` where it has none.
+/// Returns the word in a frame of the trace, sent or received; `None` if it has none.
 pub fn carried(sent: bool, frame: &[u8], order: WordOrder) -> Option<Carried> {
     match (sent, frame.get(HEADER..)?) {
         (true, [16, _, _, 0, 2, 4, a, b, c, d]) => Some(Carried::Out(word(order, [*a, *b, *c, *d]))),

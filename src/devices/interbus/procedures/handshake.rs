@@ -1,14 +1,14 @@
-//! One step of the handshake as it is told, and in which state an encoder may be left.
+//! A step of the handshake as reported, and the possible state of an encoder after a failure.
 
 use std::fmt;
 
 use crate::devices::interbus::protocol::{Command, ErrorWord, Reply, StartupMode, Value};
 use crate::units::Moment;
 
-/// A step of the handshake: the OUT word that stands, the IN word that came, and what that says.
+/// Step of the handshake: the present OUT word, the IN word received, and its meaning.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Handshake {
-    /// When IN was read.
+    /// Time of reading IN.
     pub at: Moment,
     pub out: u32,
     /// Meaning of OUT in the encoder's mode.
@@ -23,19 +23,20 @@ pub struct Handshake {
 pub enum WordReply {
     /// It runs: a position, a speed or cam outputs.
     Runs,
-    /// It is at work.
+    /// It is busy.
     Busy,
     /// The exact echo.
     Echoed,
-    /// The echo of another word: an old one, as long as it does not stay.
+    /// The echo of another word: an old one, unless it stays.
     OldEcho,
     Value(Value),
     Error(ErrorWord),
-    /// A word that the manual does not have.
+    /// A word that the manual does not define.
     Unknown,
 }
 
-/// The exact echo; that of a parameter may have the manufacturer's bit (reference 2). In one of cams that bit tells the edge.
+/// Returns whether it is the exact echo; that of a parameter may have the manufacturer's bit (reference 2). In that of a
+/// cam, this bit selects the edge.
 pub(super) fn is_echo(command: Command, input: u32) -> bool {
     const MANUFACTURER: u32 = 1 << 29;
     let echo = Reply::echo_of(command).emit();
@@ -59,12 +60,12 @@ impl WordReply {
     }
 }
 
-/// In which state an encoder may be that could not be led back.
+/// Possible state of an encoder that could not be returned to its mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LeftState {
-    /// The OUT word that was sent last; it stays until another one is written.
+    /// The OUT word sent last, which stays until another one is written.
     pub out: u32,
-    /// Parameters or cams were being set: the encoder sends no position until it gets `80000000`.
+    /// Parameters or cams were being set: the encoder sends no position until it receives `80000000`.
     pub parameterising: bool,
     /// The mode in which the encoder was found; `None` if it was never read.
     pub found: Option<StartupMode>,

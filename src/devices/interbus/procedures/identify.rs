@@ -8,7 +8,7 @@ use crate::devices::interbus::protocol::{
     StartupMode, Value, WindowShift,
 };
 
-/// An encoder as it says who it is.
+/// Identity of an encoder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Identity {
     /// Its serial number, decimal.
@@ -26,8 +26,8 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Steps and turns as the gear that they are together. In steps−1 mode steps are given less one, as older encoders
-    /// have it (`U`: the manual says no more of it).
+    /// Returns the gear given by steps and turns. In steps−1 mode steps are reported minus one, as by older encoders (`U`:
+    /// the manual says no more about it).
     ///
     /// # Errors
     /// [`Implausible::Gear`].
@@ -41,7 +41,7 @@ impl Identity {
 pub struct Survey {
     pub identity: Identity,
     pub parameters: Parameters,
-    /// The preset's flag, as it is read out.
+    /// Flag of the preset, as read out.
     pub preset_flag: u32,
     /// Operating time in minutes.
     pub operating_minutes: u32,
@@ -51,7 +51,7 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// All that was read out, as it came.
+    /// Returns all values read out, as received.
     pub fn read_outs(&self) -> impl Iterator<Item = (ReadOut, Value)> {
         self.values.iter().copied()
     }
@@ -73,11 +73,11 @@ pub struct Status {
     pub temperature_tenths: i32,
 }
 
-/// Asks who is there.
+/// Reads the identity.
 ///
 /// # Errors
-/// [`Error::Implausible`] where it gives a direction that is none; the handshake and the way. A gear that is none is
-/// told by [`Identity::gear`].
+/// [`Error::Implausible`] if the direction is invalid; errors of the handshake and the exchange. An invalid gear is
+/// reported by [`Identity::gear`].
 pub fn identify(master: &mut Master<'_>) -> Result<Identity, Error> {
     master.guarded(|master| read_identity(master, &mut Vec::new()))
 }
@@ -90,12 +90,12 @@ pub fn survey(master: &mut Master<'_>, progress: &mut dyn FnMut(u64, u64, ReadOu
     master.guarded(|master| read_survey(master, progress))
 }
 
-/// Reads how it is.
+/// Reads the status.
 ///
 /// # Errors
 /// As [`identify`].
 pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
-    // Before anything else is asked: the word as a machine sees it.
+    // The word as a machine sees it, before any other request.
     let mut reading = master.reading()?;
     let error = match reading.reply() {
         Reply::Error(error) => Some(error),
@@ -110,7 +110,7 @@ pub fn read_status(master: &mut Master<'_>) -> Result<Status, Error> {
     })
 }
 
-/// Reads one thing out: of those of the table, or a register of the chip.
+/// Reads one value of the table of read-outs, or a register of the chip.
 ///
 /// # Errors
 /// [`Error::UnknownReadOut`]; as [`identify`].
@@ -118,11 +118,11 @@ pub fn read_one(master: &mut Master<'_>, read_out: ReadOut) -> Result<Value, Err
     master.guarded(|master| master.read_out(read_out))
 }
 
-/// Reads cam programs and the shift of the window. Each is selected for that, so that the encoder's outputs are others
-/// for so long.
+/// Reads cam programs and the shift of the window. Each program is selected for that, which switches the encoder's outputs
+/// meanwhile.
 ///
 /// # Errors
-/// [`Error::NoMode`]; the handshake and the way.
+/// [`Error::NoMode`]; errors of the handshake and the exchange.
 pub fn read_programs(
     master: &mut Master<'_>,
     wanted: &[ProgramNumber],
@@ -134,7 +134,7 @@ pub fn read_programs(
 /// Sends the encoder into a mode, in which it stays.
 ///
 /// # Errors
-/// [`Error::NoMode`], [`Error::NotSelectable`]; the handshake and the way.
+/// [`Error::NoMode`], [`Error::NotSelectable`]; errors of the handshake and the exchange.
 pub fn select(master: &mut Master<'_>, mode: StartupMode) -> Result<StartupMode, Error> {
     master.guarded(|master| {
         master.go(mode)?;
@@ -222,7 +222,7 @@ fn gear(steps: u32, revolutions: u32, flags: Flags) -> Result<Gear, Implausible>
     Ok(Gear::new(steps.saturating_add(u32::from(flags.steps_minus_one())), revolutions)?)
 }
 
-/// Reads what an identity leaves open of how the encoder makes its position; both are of one job.
+/// Reads the parameters of the position that the identity does not contain; both are of one job.
 pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity) -> Result<Parameters, Error> {
     let Identity { steps, revolutions, direction, .. } = *identity;
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
@@ -230,7 +230,7 @@ pub(super) fn read_other_parameters(master: &mut Master<'_>, identity: &Identity
     Ok(Parameters { steps, revolutions, direction, preset, zero_shift })
 }
 
-/// Reads how the encoder makes its position.
+/// Reads the parameters of the position.
 pub(super) fn read_parameters(master: &mut Master<'_>) -> Result<Parameters, Error> {
     let mut read = |number: u16| Ok::<u32, Error>(master.read_out(ReadOut::new(number))?.get());
     let [steps, revolutions, direction] = [read(1)?, read(2)?, read(3)?];
@@ -274,7 +274,7 @@ pub(super) fn programs(
         read.push((*number, read_program(master)?));
     }
     if selects_first {
-        // Every program gives it.
+        // Any program provides it.
         if let Some(first) = ProgramNumber::new(1) {
             master.go(StartupMode::Cams(first))?;
         }
@@ -334,7 +334,8 @@ fn tenths(value: Value) -> i32 {
     }
 }
 
-/// The parameter's numbers, or the complement as a flag (`U`: the manual calls the read-out so).
+/// Returns the direction for the parameter's numbers, or for the complement as a flag (`U`: the manual calls the read-out
+/// so).
 pub(super) fn direction_of(code: u32) -> Result<Direction, Implausible> {
     let flag = match code {
         0 => Some(Direction::Clockwise),

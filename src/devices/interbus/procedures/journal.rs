@@ -1,5 +1,5 @@
-//! Facts of a job that outlast it: the mode into which an encoder was sent, until it is led back, and stores that this
-//! may have cost.
+//! Facts of a job that outlast it: the mode into which an encoder was sent, until it is returned, and stores that this may
+//! have cost.
 
 use crate::devices::interbus::protocol::StartupMode;
 
@@ -17,13 +17,13 @@ pub trait Journal {
     /// Returns whether an encoder was not returned to operation.
     fn has_excursions(&self) -> bool;
 
-    /// Returns the recorded excursion of an encoder that was not led back; `None` if there is none.
+    /// Returns the recorded excursion of an encoder that was not returned to its mode; `None` if there is none.
     fn excursion(&self, serial_number: &str) -> Option<Excursion>;
 
     /// Notes that the encoder is about to be sent into the last of these modes.
     fn leaves(&mut self, serial_number: &str, excursion: &Excursion);
 
-    /// Notes that the encoder is back in its previous mode.
+    /// Records that the encoder is back in its previous mode.
     fn is_back(&mut self, serial_number: &str);
 
     /// Records that this many cam programs are about to be selected, each of which may be stored when it is left.

@@ -1,5 +1,5 @@
-//! The host's side of the handshake (reference 4): words are sent, and each is waited for until it has had its effect.
-//! What may be sent is what the encoder takes for what it is in its mode; anything else is refused here.
+//! The host's side of the handshake (reference 4): words are sent, each until it has had its effect. Only words that have
+//! the intended meaning in the encoder's mode are sent; all others are refused here.
 
 mod acknowledge;
 mod modes;
@@ -28,28 +28,28 @@ pub struct Master<'a> {
     data: Box<dyn ProcessData + 'a>,
     known: &'a mut KnownState,
     patience: Duration,
-    /// It is a recording that answers.
+    /// A recording replies.
     recorded: bool,
     tell: Option<StepListener<'a>>,
     /// The mode, as read in this job.
     is: Option<StartupMode>,
-    /// It was sent into another mode and has not said yet that it is there.
+    /// It was sent into another mode and has not confirmed it yet.
     unsure: bool,
     /// It was sent into other modes in this job.
     switched: bool,
     /// The mode before this job.
     found: Option<StartupMode>,
-    /// The error that it had already: it sends no position anyway.
+    /// The error that it already had: it sends no position in any case.
     found_error: Option<u32>,
     /// Parameters or cams are being set.
     parameterising: bool,
     /// The last command of this job.
     out: Option<Command>,
-    /// Whether it was received is not known.
+    /// It is not known whether it was received.
     lost: bool,
     /// The last IN word.
     input: u32,
-    /// When it was seen last to do what it did before this job, with nothing asked of it.
+    /// When it was last seen in its state before this job, with no request to it.
     rested: Option<Moment>,
     reported: Option<(u32, WordReply)>,
     /// The notes that outlast this job.
@@ -57,14 +57,14 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// A master over a station's gateway, for one job.
+    /// Creates a master over a station's gateway, for one job.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         let (patience, recorded) = (station.link.handshake, station.recorded);
         let (gateway, known) = Gateway::new(ctx, station);
         Master { recorded, ..Master::with(Box::new(gateway), known, patience) }
     }
 
-    /// A master over other process data, for one job.
+    /// Creates a master over other process data, for one job.
     pub fn over(data: impl ProcessData + 'a, station: &'a mut Station) -> Self {
         let patience = station.link.handshake;
         Master::with(Box::new(data), &mut station.known, patience)
@@ -113,12 +113,12 @@ impl<'a> Master<'a> {
         if self.unsure { None } else { self.is }
     }
 
-    /// The gear that is in force from now on, as far as this session knows.
+    /// Sets the gear in force from now on, as far as this session knows.
     pub(super) fn learn_gear(&mut self, gear: Option<Gear>) {
         self.known.gear = gear;
     }
 
-    /// The gear that was read last.
+    /// Returns the gear that was read last.
     pub(super) fn gear(&self) -> Option<Gear> {
         self.known.gear
     }
@@ -130,7 +130,7 @@ impl<'a> Master<'a> {
     /// Reads the IN word; nothing is sent to the encoder.
     ///
     /// # Errors
-    /// The way to it.
+    /// Errors of the exchange.
     pub fn reading(&mut self) -> Result<WordReading, Error> {
         let word = self.data.input()?;
         let KnownState { mode, gear, shift, .. } = *self.known;
@@ -143,7 +143,7 @@ impl<'a> Master<'a> {
         LeftState { out, parameterising: self.parameterising, found: self.found, is: self.is }
     }
 
-    /// Runs `work`, which returns the encoder to a safe state; a request to end is ignored meanwhile.
+    /// Runs `work`, which returns the encoder to a safe state; cancellation is ignored meanwhile.
     pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.data.shield(true);
         let result = work(self);
@@ -151,13 +151,13 @@ impl<'a> Master<'a> {
         result
     }
 
-    /// Waits; ends early when the user wishes.
+    /// Waits; ends early when cancelled.
     pub(super) fn wait(&mut self, duration: Duration) -> Result<(), Error> {
         self.data.wait(duration)
     }
 
-    /// Asks for a value, and waits until it stands. The value of another question is gone by then: they look the same.
-    /// An echo may come late, of whatever word: it is no answer, and no sign of another master either.
+    /// Requests a value, and waits until it is stable. The value of the previous request must be gone by then, since values
+    /// look the same. The late echo of any word may arrive: it is neither a value nor a sign of another master.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::UnknownReadOut`].
@@ -187,17 +187,17 @@ impl<'a> Master<'a> {
         Ok(value)
     }
 
-    /// `80000000`, until the encoder runs.
+    /// Sends `80000000`, until the encoder runs.
     ///
     /// # Errors
-    /// [`Error::Refused`] where an error stays; [`Error::TimeOut`]; the way.
+    /// [`Error::Refused`] if an error stays; [`Error::TimeOut`]; errors of the exchange.
     pub(super) fn run(&mut self) -> Result<(), Error> {
         self.running(Command::Run, self.patience)?;
         self.parameterising = false;
         Ok(())
     }
 
-    /// `00000000`, until the encoder runs.
+    /// Sends `00000000`, until the encoder runs.
     ///
     /// # Errors
     /// As [`run`](Self::run).
@@ -214,11 +214,11 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// Sends `40000000` until the position is the preset, and takes it back. Once for each preset that was set. The word
-    /// stands for a while in any case: the position from before may be there already.
+    /// Sends `40000000` until the position is the preset, then removes it. Once for each preset that was set. The word is
+    /// sent for a minimum time in any case: the old position may already have this value.
     ///
     /// # Errors
-    /// [`Error::TimeOut`] where the position does not become that; otherwise as [`set`](Self::set).
+    /// [`Error::TimeOut`] if the position does not get this value; otherwise as [`set`](Self::set).
     pub(super) fn fire(&mut self, is_there: impl Fn(u32) -> bool) -> Result<(), Error> {
         self.normal()?;
         self.ensure_legal(Command::Preset)?;
@@ -231,8 +231,8 @@ impl<'a> Master<'a> {
         self.shielded(Self::normal).and(fired)
     }
 
-    /// Sends `out` cycle by cycle, until `judge` has something to say of the IN word and how long it has been that. How
-    /// long the encoder is at work meanwhile is remembered.
+    /// Sends `out` cycle by cycle, until `judge` returns a result for the IN word and the time it has been unchanged. The
+    /// time for which the encoder is busy is recorded.
     fn until<T>(
         &mut self,
         command: Command,
@@ -271,14 +271,14 @@ impl<'a> Master<'a> {
                 self.out = before;
                 return Err(error);
             }
-            // It may be there also where writing it fails: a gateway that did not get an answer says so.
+            // It may have been sent even if writing it failed: the gateway reports a missing reply this way.
             ended => {
                 self.lost = ended.is_err();
                 ended?
             }
         };
         let (out, input, reply) = (command.emit(), self.input, WordReply::of(command, self.input));
-        // The position of a shaft that turns is not told again and again.
+        // The changing position of a shaft in motion is not reported repeatedly.
         if self.reported != Some((out, reply))
             && let Some(tell) = &mut self.tell
         {
@@ -291,7 +291,7 @@ impl<'a> Master<'a> {
     /// Returns the IN word with swapped halves, if nothing else explains it: OUT requests nothing.
     ///
     /// # Errors
-    /// The way to the encoder.
+    /// Errors of the exchange.
     pub(super) fn suspected_order(&mut self, input: u32) -> Result<Option<u32>, Error> {
         if !matches!(Reply::parse(input), Reply::Run { .. }) && self.data.output()? != Some(0) {
             return Ok(None);
@@ -299,7 +299,7 @@ impl<'a> Master<'a> {
         Ok(swapped_unexplained(input))
     }
 
-    /// Returns why no answer came, as far as that can be seen.
+    /// Returns why there was no reply, as far as known.
     fn too_late(&mut self, command: Command, awaited: Awaited, input: u32, patience: Duration) -> Error {
         let sent = command.emit();
         match self.shielded(|master| master.data.output()) {
@@ -321,14 +321,14 @@ impl<'a> Master<'a> {
         Ok(command.ensure_legal(self.taken_in())?)
     }
 
-    /// The mode in which the encoder takes a word; what is read out is left before any other is sent.
+    /// Returns the mode in which the encoder interprets a word; a read-out is ended before any other word is sent.
     fn taken_in(&self) -> Mode {
         match self.is {
             Some(StartupMode::Cams(_)) => Mode::Cam,
-            // The manual does not say what other words do then.
+            // The manual does not define the effect of other words then.
             Some(StartupMode::Unknown(_)) => Mode::ReadOut,
             _ if self.parameterising => Mode::Parameterisation,
-            // Nothing but reading out may be done before it has said what it does.
+            // Only read-outs are allowed before it has reported its mode.
             None => Mode::ReadOut,
             Some(StartupMode::Velocity) => Mode::Velocity,
             Some(_) => Mode::Position,
@@ -336,7 +336,7 @@ impl<'a> Master<'a> {
     }
 }
 
-/// The gateway refuses the word as such: it was not written. With any other exception it may have been.
+/// Returns whether the gateway refuses the word itself: it was not written. After any other exception it may have been.
 fn is_unwritten(error: &Error) -> bool {
     matches!(error, Error::Exception { requested: RequestedItem::Write { .. }, exception } if !exception.passes())
 }

@@ -1,5 +1,5 @@
-//! The procedures of an INTERBUS encoder (POSITAL OCD-IB, K3): its process data come over a Modbus/TCP gateway, and
-//! everything but the position over the handshake in them. Reading or setting anything replaces the position and makes
+//! The procedures of an INTERBUS encoder (POSITAL OCD-IB, K3): its process data are transmitted over a Modbus/TCP gateway,
+//! and everything but the position over the handshake in them. Reading or setting any value replaces the position and makes
 //! cam outputs invalid meanwhile; another program switches them. The reference is the project's "interbus".
 //!
 //! ```text

@@ -1,18 +1,18 @@
-//! The IN word as a person or a plot takes it.
+//! The IN word for display and plotting.
 
 use crate::devices::interbus::protocol::{CamOutput, Gear, Reply, StartupMode, Value, WindowShift};
 use crate::units::Moment;
 
-/// An IN word as it was read, with what the session knows of the encoder.
+/// IN word, with the session's known facts about the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WordReading {
-    /// When it came.
+    /// Time of reading.
     pub at: Moment,
-    /// As it came.
+    /// As received.
     pub word: u32,
     /// The mode; `None` if not read yet: a running word is then taken for a position.
     pub mode: Option<StartupMode>,
-    /// Its steps and turns, where they were read.
+    /// Its steps and turns, if they were read.
     pub gear: Option<Gear>,
     /// Shift of the position in cam mode, if read.
     pub shift: Option<WindowShift>,
@@ -35,12 +35,12 @@ impl WordReading {
         Reply::parse(self.word)
     }
 
-    /// The encoder runs: the word is a position, a speed or cam outputs, and counts.
+    /// Returns whether the encoder runs: the word is a valid position, speed or cam output.
     pub fn is_valid(&self) -> bool {
         matches!(self.reply(), Reply::Run { .. })
     }
 
-    /// The position in steps; `None` where the word is something else. In cam mode only where the window has all of it.
+    /// Returns the position in steps; `None` if the word contains none. In cam mode only if the window shows all of it.
     pub fn position(&self) -> Option<u32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), _) => None,
@@ -55,7 +55,7 @@ impl WordReading {
         }
     }
 
-    /// The speed in revolutions a minute, in velocity mode; with its sign in 25 bits (`U`, reference 6.13).
+    /// Returns the speed in revolutions per minute, in velocity mode; with its sign in 25 bits (`U`, reference 6.13).
     pub fn rpm(&self) -> Option<i32> {
         match (self.mode, self.reply()) {
             (Some(StartupMode::Velocity), Reply::Run { value, .. }) => {
@@ -66,7 +66,7 @@ impl WordReading {
         }
     }
 
-    /// The cam outputs, in cam mode.
+    /// Returns the cam outputs, in cam mode.
     pub fn cams(&self) -> Option<CamOutput> {
         match self.mode {
             Some(StartupMode::Cams(_)) => CamOutput::parse(self.word).ok(),
@@ -74,7 +74,7 @@ impl WordReading {
         }
     }
 
-    /// Bits that should be 0 in a word that runs.
+    /// Returns the bits that should be 0 in a word that runs.
     pub fn stray(&self) -> u8 {
         match self.reply() {
             Reply::Run { stray, .. } => stray,
@@ -82,7 +82,8 @@ impl WordReading {
         }
     }
 
-    /// The position within the programmed turns; `None` without a position or a gear, and beyond the measuring range.
+    /// Returns the position within the programmed turns; `None` without a position or a gear, and beyond the measuring
+    /// range.
     pub fn place(&self) -> Option<TurnPosition> {
         let (position, gear) = (u64::from(self.position()?), self.gear?);
         let (all, turns) = (u64::from(gear.steps()), u64::from(gear.turns()));
@@ -97,7 +98,7 @@ impl WordReading {
     }
 }
 
-/// The word with its halves exchanged, where that makes a position of what is none: its bits 30..25 should be 0.
+/// Returns the word with its halves exchanged, if that makes it a position and it was none: its bits 30..25 should be 0.
 pub(super) fn swapped(word: u32) -> Option<u32> {
     let other = word.rotate_left(16);
     let strays = |word| matches!(Reply::parse(word), Reply::Run { stray, .. } if stray != 0);
@@ -105,8 +106,8 @@ pub(super) fn swapped(word: u32) -> Option<u32> {
     (strays(word) && runs(other)).then_some(other)
 }
 
-/// The same of a word that is no position at all, and of which nothing explains why it should be there: with its halves
-/// exchanged it is one. An error without anything beside it is just that.
+/// Returns the same for a word that is not a position and has no other explanation, if it is one with its halves exchanged.
+/// An error word without other bits is just an error.
 pub(super) fn swapped_unexplained(word: u32) -> Option<u32> {
     match Reply::parse(word) {
         Reply::Run { .. } => swapped(word),
@@ -135,7 +136,7 @@ mod tests {
         // Position 1000 = 3E8h under the window at shift 0, cams 0 and 2 on.
         let word = reading(0x0003_E805, cams, (3600, 1), 0);
         assert_eq!((word.position(), word.cams().map(|own| own.outputs)), (Some(1000), Some(5)));
-        // More bits than the window has, or shifted away.
+        // More bits than the window has, or shifted out of it.
         assert_eq!(reading(0x0003_E805, cams, (1 << 18, 4096), 0).position(), None);
         assert_eq!(reading(0x0003_E805, cams, (3600, 1), 2).position(), None);
         for word in [0xC200_00FF, 0xA000_0FA0, 0x8000_0000] {
@@ -144,7 +145,7 @@ mod tests {
         }
     }
 
-    /// 1000 steps over 3 turns: turn 1 begins at 333.3, so that 334 is its first step.
+    /// 1000 steps over 3 turns: turn 1 begins at 333.3, so 334 is its first step.
     #[test]
     fn a_position_lies_in_its_turn() {
         let place = |word| reading(word, StartupMode::K3, (1000, 3), 0).place();
@@ -159,9 +160,9 @@ mod tests {
     fn exchanged_halves_are_noticed() {
         assert_eq!(swapped(0x3456_0012), Some(0x0012_3456));
         assert_eq!(swapped(0x0012_3456), None);
-        // Stray bits either way tell nothing.
+        // Stray bits in both orders prove nothing.
         assert_eq!(swapped(0x3456_3456), None);
-        // 2DC6C0h; and parameters lost, which is no position.
+        // 2DC6C0h; and parameters lost, which is not a position.
         assert_eq!((swapped(0xC6C0_002D), swapped_unexplained(0xC6C0_002D)), (None, Some(0x002D_C6C0)));
         assert_eq!(swapped_unexplained(0x8600_0000), None);
     }

@@ -15,7 +15,7 @@ impl Identity {
 }
 
 impl Survey {
-    /// Returns the recorded part of a profile, besides what can be restored.
+    /// Returns the recorded part of a profile, without what can be restored.
     pub fn recorded(&self) -> Recorded {
         Recorded {
             software_version: Some(self.identity.software_version),
@@ -28,10 +28,10 @@ impl Survey {
     }
 }
 
-/// Reads everything that can be restored; the cam programs on wish, since each switches the encoder's outputs.
+/// Reads everything that can be restored; the cam programs only if requested, since each switches the encoder's outputs.
 ///
 /// # Errors
-/// The handshake and the way.
+/// Errors of the handshake and the exchange.
 pub fn save(
     master: &mut Master<'_>,
     with_programs: bool,
@@ -59,7 +59,7 @@ pub enum SaveStep {
 /// Reads what a plan needs of an encoder that was identified in this job: its parameters, and these programs.
 ///
 /// # Errors
-/// [`Error::Implausible`] where steps and turns are no gear; the handshake and the way.
+/// [`Error::Implausible`] if steps and turns are not a gear; errors of the handshake and the exchange.
 pub fn read_state(
     master: &mut Master<'_>,
     identity: &Identity,
@@ -74,10 +74,10 @@ pub fn read_state(
     })
 }
 
-/// Reads an item. What lies in a cam program selects it for that.
+/// Reads an item. If it is in a cam program, that is selected.
 ///
 /// # Errors
-/// The handshake and the way.
+/// Errors of the handshake and the exchange.
 pub fn read_item(master: &mut Master<'_>, item: Item) -> Result<ItemValue, Error> {
     master.guarded(|master| {
         if let Some(program) = item.program() {

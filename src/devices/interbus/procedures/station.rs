@@ -10,7 +10,7 @@ use crate::parameter::{Milliseconds, Parameters};
 use crate::parameters;
 
 parameters! {
-    /// The gateway and the encoder's place behind it, as a link says.
+    /// Parameters of the gateway and the registers behind it in a link.
     #[derive(Copy)]
     pub struct LinkParameters: UrlError {
         /// The unit that the gateway is asked for.
@@ -19,7 +19,7 @@ parameters! {
         pub input: u16 = 0, "input" => INPUT, "connect.input";
         /// The first of the two holding registers with the OUT word.
         pub output: u16 = 0, "output" => OUTPUT, "connect.output";
-        /// Which half of a word comes first.
+        /// Order of the halves of a word.
         pub order: WordOrder = WordOrder::HighFirst, "order" => WordOrder::WORDS;
         /// Time limit for an echo, a value or a position (reference 4, `U`).
         pub handshake: Duration = Duration::from_secs(2), "handshake" => Milliseconds(50..=8000), "connect.handshake";
@@ -34,7 +34,7 @@ parameters! {
 #[derive(Clone, Debug)]
 pub struct Station {
     pub link: LinkParameters,
-    /// It is a recording that answers: its replies have the numbers of the requests of that time.
+    /// A recording replies: its replies have the recorded request numbers.
     pub recorded: bool,
     pub(super) line: LineState,
     /// The number of the next request.
@@ -49,11 +49,11 @@ pub struct Station {
 /// The known state of the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct KnownState {
-    /// Its mode, as it said last.
+    /// Its mode, as last reported.
     pub(super) mode: Option<StartupMode>,
     pub(super) gear: Option<Gear>,
     pub(super) shift: Option<WindowShift>,
-    /// The OUT word that keeps this mode, where normal running does not.
+    /// The OUT word that keeps this mode, if normal running does not.
     pub(super) hold: Option<(StartupMode, Command)>,
     /// Normal running keeps this mode.
     pub(super) kept: Option<StartupMode>,
@@ -75,10 +75,10 @@ impl Station {
         }
     }
 
-    /// A gateway as the parameters of its link say.
+    /// Creates the gateway from the parameters of its link.
     ///
     /// # Errors
-    /// A value that cannot be used, with what could be. Parameters that do not concern the line are left alone.
+    /// A value that cannot be used, with the allowed ones. Parameters that do not concern the connection are ignored.
     pub fn from_query(query: &Query, margin: Duration) -> Result<Self, UrlError> {
         Ok(Station { link: LinkParameters::read(query.pairs())?, ..Station::new(margin) })
     }

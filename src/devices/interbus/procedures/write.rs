@@ -1,5 +1,5 @@
-//! Writes a plan into an encoder: reads its base again, carries out each operation and reads it back, and leads the
-//! encoder back to its earlier mode.
+//! Writes a plan to an encoder: reads its base again, carries out each operation and reads it back, and returns the encoder
+//! to its earlier mode.
 
 use std::time::Duration;
 
@@ -20,18 +20,18 @@ use crate::profile::{Confirmed, Write};
 /// A write that ended early.
 pub type Interrupted = crate::profile::Interrupted<Op, Error, Written, EndState>;
 
-/// In which state an encoder was left.
+/// State in which an encoder was left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EndState {
     /// In the mode in which it was found, running.
     AsFound,
-    /// It could not be led back: what is known of it.
+    /// It could not be returned to its mode: its known state.
     Unknown(LeftState),
 }
 
-/// How long a shaft is watched before a preset.
+/// Time of watching a shaft before a preset.
 const WATCHED: Duration = Duration::from_millis(300);
-/// Between two looks at it.
+/// Interval of reading the position meanwhile.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// An encoder into which a plan is written.
@@ -58,7 +58,7 @@ impl Write for EncoderWrite<'_, '_> {
         self.master.begin()
     }
 
-    /// A wish to end is heard between two words.
+    /// Cancellation is checked between two words.
     fn apply(&mut self, op: &Op, _: &Confirmed<'_, Base, Op>, done: &mut Written) -> Result<(), Error> {
         perform(&mut self.master, op, done)?;
         done.carried_out(op.weight());
@@ -134,7 +134,7 @@ fn perform(master: &mut Master<'_>, op: &Op, done: &mut Written) -> Result<(), E
     Ok(())
 }
 
-/// All in one parameterisation, which `80000000` stores.
+/// Sets all parameters in one parameterisation, which `80000000` stores.
 fn parameterise(master: &mut Master<'_>, changes: &[ParameterChange], done: &mut Written) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     done.write_cycles += 1;
@@ -181,7 +181,7 @@ fn check(item: impl FnOnce() -> String, wanted: u32, reads: u32) -> Result<(), E
     if reads == wanted { Ok(()) } else { Err(Error::NotTaken { item: item(), wanted, reads }) }
 }
 
-/// A program is selected and set; `80000000` stores it, and it is read back.
+/// Selects a program and sets it; `80000000` stores it, and it is read back.
 fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) -> Result<(), Error> {
     let number = change.program;
     master.go(StartupMode::Cams(number))?;
@@ -226,18 +226,18 @@ fn program(master: &mut Master<'_>, change: &ProgramChange, done: &mut Written) 
     Ok(())
 }
 
-/// The shaft's place becomes the preset, which was programmed before.
+/// Sets the shaft's position to the preset, which was programmed before.
 fn fire(master: &mut Master<'_>, value: u32) -> Result<(), Error> {
     ensure_standstill(master)?;
     let gear = master.gear();
-    // No nearer than a step: the place from before may be almost there.
+    // Within one step: the previous position may be close.
     master.fire(|position| apart(position, value, gear) <= 1)
 }
 
-/// Watches the position for a moment; the encoder gives it from then on.
+/// Watches the position for a moment; the encoder sends it from then on.
 ///
 /// # Errors
-/// [`Error::Moving`]; [`Error::NotRunning`] without a position; the handshake and the way.
+/// [`Error::Moving`]; [`Error::NotRunning`] without a position; errors of the handshake and the exchange.
 fn ensure_standstill(master: &mut Master<'_>) -> Result<(), Error> {
     master.go(StartupMode::K3)?;
     master.normal()?;
@@ -266,7 +266,7 @@ fn is_near(position: u32, other: u32, gear: Option<Gear>) -> bool {
     apart(position, other, gear) <= most
 }
 
-/// Steps from one position to another, the shorter way round.
+/// Returns the steps from one position to another, the shorter way round.
 fn apart(position: u32, other: u32, gear: Option<Gear>) -> u32 {
     let apart = position.abs_diff(other);
     gear.map_or(apart, |gear| apart.min(gear.steps().saturating_sub(apart)))

@@ -1,17 +1,17 @@
-//! Plans for changes, each with the encoder's own rules checked before anything is sent, and in as few stores as it takes:
-//! one for all parameters, and one for each program that changes.
+//! Plans for changes, each checked against the encoder's own rules before anything is sent, in the fewest stores: one for
+//! all parameters, and one for each program that changes.
 
 use super::{
     Base, CamChange, Edge, Image, InterbusPlan, Item, Op, ParameterChange, Parameters, PlanError, ProgramChange,
 };
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, Program, ProgramNumber, Value};
 
-/// Makes an encoder what is wanted of it: only what differs is written. What the wanted image says nothing about stays as it
-/// is; `device` has all that it does speak of.
+/// Plans the changes that give an encoder the wanted values: only differences are written. Values that the wanted image
+/// does not contain stay as they are; `device` must contain all values of the wanted image.
 ///
 /// The parameters come first, all in one parameterisation and in an order in which each is legal when it is sent; the cams
-/// then lie within the range. The shift of the window is set along with the first program that changes; where none does, it
-/// is set for itself with the first one that was read, which costs a store.
+/// are then within the range. The shift of the window is set with the first program that changes; if none does, it is set
+/// by itself with the first program that was read, which costs a store.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -55,8 +55,8 @@ pub fn plan_edits(device: &Image, wanted: &Image) -> Result<InterbusPlan, PlanEr
     Ok(plan)
 }
 
-/// Makes the shaft's place this value: it is programmed, also where it is already, since a preset can be fired once for each
-/// time (reference 4); then it is fired.
+/// Plans to set the position at the shaft's present place to this value: it is programmed, even if it already is, since a
+/// preset can be fired once for each programming (reference 4); then it is fired.
 ///
 /// # Errors
 /// The value is beyond the measuring range.
@@ -78,14 +78,14 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
         return Ok(Vec::new());
     }
     let gear = wanted.gear()?;
-    // The manual's order, from which only limits move something.
+    // The manual's order, from which only limits require deviations.
     let mut order = vec![Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::ZeroShift];
     let now_has_room = Gear::new(wanted.steps, device.revolutions).is_ok();
     if !now_has_room {
         order.swap(0, 1);
     }
     order.insert(3, Parameter::Preset);
-    // A place beyond the range that is to be has to go before the range does.
+    // A value beyond the new range must be changed before the range.
     let is_beyond = |parameter: &Parameter| {
         let places = matches!(parameter, Parameter::Preset | Parameter::ZeroShift);
         places && device.value(*parameter).is_some_and(|place| place >= wanted.steps)
@@ -94,7 +94,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     let mut changes = Vec::new();
     for parameter in order {
         let (Some(from), Some(to)) = (device.value(parameter), wanted.value(parameter)) else { continue };
-        // Also of one that stays: another gear may have other limits.
+        // Also one that stays: another gear may have other limits.
         parameter.check(to, gear)?;
         if from != to {
             changes.push(ParameterChange { parameter, from, to });
@@ -103,7 +103,7 @@ fn parameter_changes(device: &Parameters, wanted: &Parameters) -> Result<Vec<Par
     Ok(changes)
 }
 
-/// The edges that differ, by cam and the start first.
+/// Returns the edges that differ, by cam and the start first.
 fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) -> Result<Vec<CamChange>, PlanError> {
     let mut changes = Vec::new();
     for cam in CamNumber::all() {
@@ -121,7 +121,7 @@ fn cam_changes(number: ProgramNumber, from: &Program, to: &Program, steps: u32) 
     Ok(changes)
 }
 
-/// A cam that works must not be left beyond a range that becomes shorter.
+/// Checks that an active cam does not remain beyond a shortened range.
 fn check_cams_that_stay(device: &Image, wanted: &Image) -> Result<(), PlanError> {
     if wanted.parameters.steps >= device.parameters.steps {
         return Ok(());

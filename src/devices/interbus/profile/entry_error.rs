@@ -6,13 +6,13 @@ use crate::devices::interbus::protocol::{CamNumber, ProgramNumber};
 /// Why an entry of a profile is refused.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EntryError {
-    /// A program that stands in the list already.
+    /// A program that is already in the list.
     #[error("program {} appears twice", .0.get())]
     ProgramTwice(ProgramNumber),
-    /// A cam that stands in its program already.
+    /// A cam that is already in its program.
     #[error("cam {} appears twice", .0.get())]
     CamTwice(CamNumber),
-    /// No program, no cam, or what is marked is nothing.
+    /// An unknown program, cam or marked item.
     #[error(transparent)]
     Item(#[from] ItemError),
     /// The marked item is not a setting.

@@ -1,10 +1,10 @@
-//! Why something cannot be planned.
+//! Errors of planning.
 
 use super::{Edge, Item};
 use crate::devices::interbus::protocol::{Flags, GearError, OutOfRange};
 
-/// A profile and an encoder of two types, by their flags (manual, 10.2): one counts turns and the other does not, or one
-/// gives its steps less one, so that the same number is another gear.
+/// Difference of type between a profile and an encoder by their flags (manual, 10.2): only one counts turns, or only one
+/// reports its steps minus one, so that the same number is another gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the profile is of a {} encoder, the encoder is a {} one", profile.type_name(), device.type_name())]
 pub struct OtherType {
@@ -14,7 +14,7 @@ pub struct OtherType {
     pub device: Flags,
 }
 
-/// Why something cannot be planned. Nothing has been written.
+/// Why a change cannot be planned. Nothing has been written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlanError {
     /// The profile was read from another encoder.
@@ -31,10 +31,10 @@ pub enum PlanError {
     /// Steps and turns are no gear.
     #[error(transparent)]
     Gear(#[from] GearError),
-    /// A parameter is beyond its limits.
+    /// A parameter is out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// A value of the mounting, which is left as it is in the encoder, does not fit what else is to be written.
+    /// A value of the mounting, which is left as it is in the encoder, does not fit the other values to be written.
     #[error("{item}, which is left alone as a value of the mounting: {value} is not within {low} to {high}")]
     MountingLeft {
         /// The item.
@@ -46,19 +46,19 @@ pub enum PlanError {
         /// The greatest.
         high: u32,
     },
-    /// An edge of a cam lies beyond the measuring range.
+    /// An edge of a cam is beyond the measuring range.
     #[error("{item}, {edge}: {position} is not within 0 to {last}")]
     CamBeyondRange {
         /// The cam.
         item: Item,
         /// The edge.
         edge: Edge,
-        /// As it is to be.
+        /// As planned.
         position: u32,
         /// The last position of the measuring range.
         last: u32,
     },
-    /// Something is to be changed of which it is not known what it is now.
+    /// The present value of an item to be changed is not known.
     #[error("{item} was not read before it is to be changed")]
     NotRead {
         /// The item.

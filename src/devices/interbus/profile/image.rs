@@ -5,14 +5,14 @@ use std::str::FromStr;
 
 use crate::devices::interbus::protocol::{Gear, GearError, Parameter, Program, ProgramNumber, WindowShift};
 
-/// All that can be written and read back. What was not read, or what a profile does not say, is `None`.
+/// All values that can be written and read back. Values not read, or not in a profile, are `None`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Image {
     /// Parameters of the position.
     pub parameters: Parameters,
     /// Shift of the position under its window in cam mode: one for all programs.
     pub shift: Option<WindowShift>,
-    /// The cam programs, the first at 0. In one that was read every cam is there, whether it works or not.
+    /// The cam programs, the first at 0. One that was read has every cam, active or not.
     pub programs: [Option<Program>; ProgramNumber::COUNT],
 }
 
@@ -25,9 +25,9 @@ pub struct Parameters {
     pub revolutions: u32,
     /// Direction of counting.
     pub direction: Direction,
-    /// The position that the shaft's place is to have when the preset is fired; it belongs to the mounting.
+    /// Position for the shaft's place when the preset is fired; belongs to the mounting.
     pub preset: u32,
-    /// Zero point shifting; it belongs to the mounting.
+    /// Zero point shifting; belongs to the mounting.
     pub zero_shift: u32,
 }
 
@@ -41,7 +41,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// The parameter's number.
+    /// Returns the parameter's number.
     pub const fn code(self) -> u32 {
         match self {
             Direction::Clockwise => 3,
@@ -91,7 +91,7 @@ impl FromStr for Direction {
 }
 
 impl Parameters {
-    /// A parameter's number; `None` for what is no setting.
+    /// Returns a parameter's number; `None` if it is not a setting.
     pub const fn value(&self, parameter: Parameter) -> Option<u32> {
         match parameter {
             Parameter::Steps => Some(self.steps),
@@ -103,10 +103,10 @@ impl Parameters {
         }
     }
 
-    /// Steps and turns as the gear that they are together.
+    /// Returns steps and turns as the gear that they are together.
     ///
     /// # Errors
-    /// One of them is beyond its limit.
+    /// One of them is out of range.
     pub const fn gear(&self) -> Result<Gear, GearError> {
         Gear::new(self.steps, self.revolutions)
     }
@@ -118,17 +118,17 @@ impl Image {
         Image { parameters, shift: None, programs: [None; ProgramNumber::COUNT] }
     }
 
-    /// A program; `None` where nothing is known of it.
+    /// Returns a program; `None` if it is not known.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.programs.get(usize::from(number.get() - 1)).and_then(Option::as_ref)
     }
 
-    /// The place of a program.
+    /// Returns the place of a program.
     pub fn program_mut(&mut self, number: ProgramNumber) -> Option<&mut Option<Program>> {
         self.programs.get_mut(usize::from(number.get() - 1))
     }
 
-    /// The programs of which something is known.
+    /// Returns the known programs.
     pub fn known(&self) -> impl Iterator<Item = (ProgramNumber, &Program)> {
         ProgramNumber::all().filter_map(|number| Some((number, self.program(number)?)))
     }

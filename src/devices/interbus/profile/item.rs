@@ -1,4 +1,4 @@
-//! The names of things in an encoder, as `read` takes them: `steps`, `cam:2:5`, `cam-mask:2`; and what they hold.
+//! The names of items in an encoder, as `read` takes them: `steps`, `cam:2:5`, `cam-mask:2`; and their values.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,7 +6,7 @@ use std::str::FromStr;
 use super::{Direction, Image, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Parameter, Program, ProgramNumber, WindowShift};
 
-/// A thing in an encoder.
+/// Item of an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Item {
     /// Steps over all programmed turns.
@@ -68,12 +68,12 @@ pub enum ItemError {
     },
 }
 
-/// All items, for a person.
+/// All items, as text.
 const ITEMS: &str = "steps, revolutions, direction, preset, zero-shift, shift, cam:P:C (program 1 to 8, cam 0 to 7), \
                      cam-mask:P, temperature and operating-time";
 
 impl Item {
-    /// Those that have no number behind them, in the order in which they are compared.
+    /// Items without a number, in the order of comparison.
     const PLAIN: [Item; 8] = [
         Item::Steps,
         Item::Revolutions,
@@ -92,7 +92,7 @@ impl Item {
         plain.chain(ProgramNumber::all().flat_map(Item::of_program))
     }
 
-    /// A program's mask and its cams.
+    /// Returns the mask and the cams of a program.
     pub fn of_program(program: ProgramNumber) -> impl Iterator<Item = Item> {
         std::iter::once(Item::CamMask(program)).chain(CamNumber::all().map(move |cam| Item::Cam(program, cam)))
     }
@@ -102,7 +102,7 @@ impl Item {
         !matches!(self, Item::Temperature | Item::OperatingTime)
     }
 
-    /// The parameter that it is; `None` for what belongs to the cams, or is measured.
+    /// Returns its parameter; `None` for an item of the cams or a measured one.
     pub const fn parameter(self) -> Option<Parameter> {
         match self {
             Item::Steps => Some(Parameter::Steps),
@@ -114,7 +114,7 @@ impl Item {
         }
     }
 
-    /// The item of a parameter; `None` for what is no setting.
+    /// Returns the item of a parameter; `None` if it is not a setting.
     pub const fn of_parameter(parameter: Parameter) -> Option<Self> {
         match parameter {
             Parameter::Steps => Some(Item::Steps),
@@ -126,7 +126,7 @@ impl Item {
         }
     }
 
-    /// The program that it lies in.
+    /// Returns the program of the item.
     pub const fn program(self) -> Option<ProgramNumber> {
         match self {
             Item::CamMask(program) | Item::Cam(program, _) => Some(program),
@@ -222,8 +222,8 @@ impl Image {
         })
     }
 
-    /// Makes an item hold something. Of a program of which nothing was known, that much is known then; its mask is 0.
-    /// False where such an item holds no such value.
+    /// Sets the value of an item. A program that was not known becomes known to this extent; its mask is 0. Returns false
+    /// if the item cannot have such a value.
     pub fn put(&mut self, item: Item, value: ItemValue) -> bool {
         let parameters = &mut self.parameters;
         match (item, value) {

@@ -1,4 +1,5 @@
-//! INTERBUS: what a K3 encoder holds, what is saved of it, how two differ, and what a write would do.
+//! INTERBUS profiles: the content of a K3 encoder, what is saved of it, the differences between two, and the effect of a
+//! write.
 
 #![warn(missing_docs)]
 

@@ -1,5 +1,5 @@
-//! The changes of an operation in one line for the logbook: items, old and new. The words are the manual's, whatever
-//! the language of the window.
+//! The changes of an operation in one line for the logbook: items, old and new. The terms are the manual's, in any language
+//! of the window.
 
 use super::{CamChange, Direction, Op, ParameterChange};
 use crate::devices::interbus::protocol::Parameter;

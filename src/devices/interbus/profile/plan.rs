@@ -1,4 +1,4 @@
-//! The operations that change an encoder, what they cost, and what they rest upon.
+//! The operations that change an encoder, their cost, and their base.
 
 use std::fmt;
 
@@ -9,31 +9,31 @@ use crate::profile::{Operation, Plan};
 /// A planned write to an INTERBUS encoder.
 pub type InterbusPlan = Plan<Base, Op>;
 
-/// The values that a plan is based on: everything that its operations change, and the range of its cams. Programs that
-/// it does not touch are not included, since reading one switches the encoder's outputs.
+/// Values that a plan is based on: everything that its operations change, and the range of its cams. Programs that it does
+/// not change are not included, since reading one switches the encoder's outputs.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Base {
-    /// The parameters; `None` where there is nothing to do.
+    /// The parameters; `None` if the plan is empty.
     pub parameters: Option<Parameters>,
-    /// The shift of the window; `None` where the plan does not touch it.
+    /// The shift of the window; `None` if the plan does not change it.
     pub shift: Option<WindowShift>,
     /// The programs that the plan touches, as they are.
     pub programs: Vec<(ProgramNumber, Program)>,
 }
 
-/// One thing that is done, from entering a mode to leaving it. Each stores once in the EEPROM, but for the preset's firing.
+/// Operation, from entering a mode to leaving it. Each stores once in the EEPROM, except firing the preset.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
-    /// Parameters are set in one parameterisation, in this order; `80000000` stores them (reference 4).
+    /// Sets parameters in one parameterisation, in this order; `80000000` stores them (reference 4).
     Parameterise(Vec<ParameterChange>),
     /// A cam program is selected, changed, and left, which stores it (reference 5).
     Program(ProgramChange),
-    /// `40000000`: the shaft's place becomes this preset, which is programmed by then (reference 4).
+    /// `40000000`: sets the position at the shaft's place to this preset, which is programmed before (reference 4).
     FirePreset {
         /// The value.
         value: u32,
     },
-    /// `0E000000`: back to what was delivered. Experimental: only the manual's appendix has it (reference 6.10).
+    /// `0E000000`: restores the factory settings. Experimental: only the manual's appendix mentions it (reference 6.10).
     Default,
 }
 
@@ -42,9 +42,9 @@ pub enum Op {
 pub struct ParameterChange {
     /// The parameter.
     pub parameter: Parameter,
-    /// Its number now.
+    /// Present number.
     pub from: u32,
-    /// Its number from then on; the same where a preset is programmed again, so that it can be fired.
+    /// New number; the same if a preset is programmed again so that it can be fired.
     pub to: u32,
 }
 
@@ -57,7 +57,7 @@ pub struct ProgramChange {
     pub cams: Vec<CamChange>,
     /// The activation mask, now and from then on.
     pub mask: Option<(u8, u8)>,
-    /// The shift of the window, now and from then on: it is one for the encoder and is set along with a program.
+    /// The present and the new shift of the window: there is one for the encoder, which is set with a program.
     pub shift: Option<(WindowShift, WindowShift)>,
 }
 
@@ -74,7 +74,7 @@ pub struct CamChange {
     pub to: Value,
 }
 
-/// An edge of a cam. Both belong to it.
+/// Edge of a cam. Both belong to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Edge {
     /// Its first position.
@@ -105,7 +105,7 @@ impl Op {
         }
     }
 
-    /// Names of what it changes, as `read` takes them where they can be read.
+    /// Returns the names of the changed items, as `read` takes them if they can be read.
     pub fn item(&self) -> String {
         match self {
             Op::FirePreset { .. } => "position".to_owned(),
@@ -114,7 +114,7 @@ impl Op {
         }
     }
 
-    /// Things it changes, counted as a comparison counts them.
+    /// Returns the number of changes as a comparison counts them.
     pub fn weight(&self) -> u64 {
         match self {
             Op::FirePreset { .. } | Op::Default => 1,

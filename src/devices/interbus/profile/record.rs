@@ -7,14 +7,14 @@ use super::{Image, Item};
 use crate::devices::interbus::protocol::{CamNumber, Flags, ProgramNumber, StartupMode};
 use crate::profile::ron_text::Unknown;
 
-/// An INTERBUS encoder as it is saved.
+/// Profile of an INTERBUS encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InterbusProfile {
     /// The identity.
     pub identity: ProfileIdentity,
     /// The content of its EEPROM. A program, a cam or a shift that is `None` is not in the profile.
     pub image: Image,
-    /// Names of the programs and their cams; the encoder does not keep them.
+    /// Names of the programs and their cams; the encoder does not store them.
     pub names: Names,
     /// Values that belong to the mounting and are never written to another encoder unasked.
     pub mounting: Vec<MountingMark>,
@@ -27,9 +27,9 @@ pub struct InterbusProfile {
 /// The identity of an encoder.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProfileIdentity {
-    /// Read-out 0, decimal; empty where the profile is of no encoder.
+    /// Read-out 0, decimal; empty if the profile is of no particular encoder.
     pub serial_number: String,
-    /// Read-out Ah: how its steps count, and whether it counts turns; `None` where it is not known.
+    /// Read-out Ah: how its steps count, and whether it counts turns; `None` if it is not known.
     pub flags: Option<Flags>,
     /// Entries that this program does not know.
     pub unknown: Unknown,
@@ -44,7 +44,7 @@ pub struct Recorded {
     pub operating_minutes: Option<u32>,
     /// Read-out Ch.
     pub temperature_tenths: Option<i32>,
-    /// Read-out 9: the mode it was found in.
+    /// Read-out 9: the mode in which it was found.
     pub mode: Option<StartupMode>,
     /// Read-out 6.
     pub preset_flag: Option<u32>,
@@ -62,7 +62,7 @@ pub struct Names {
     cams: BTreeMap<(ProgramNumber, CamNumber), String>,
 }
 
-/// Entries that this program does not know, by the structure in which they stand.
+/// Unknown entries, by their structure, which are preserved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) parameters: Unknown,
@@ -85,7 +85,7 @@ impl InterbusProfile {
         profile
     }
 
-    /// Marks what is known to be a value of the mounting, and is not marked yet: preset and zero shift.
+    /// Marks the items that belong to the mounting and are not marked yet: preset and zero shift.
     pub fn mark_mounting(&mut self) {
         for (item, meaning) in [(Item::Preset, "preset value"), (Item::ZeroShift, "zero point shifting")] {
             if !self.is_mounting(item) {
@@ -94,29 +94,29 @@ impl InterbusProfile {
         }
     }
 
-    /// An item belongs to the mounting.
+    /// Returns whether an item belongs to the mounting.
     pub fn is_mounting(&self, item: Item) -> bool {
         self.mounting.iter().any(|mark| mark.item == item)
     }
 
-    /// The items that it says something about, in the order in which they are compared.
+    /// Returns the items in the profile, in the order in which they are compared.
     pub fn items(&self) -> impl Iterator<Item = Item> {
         Item::writable().filter(|item| self.image.item(*item).is_some())
     }
 }
 
 impl Names {
-    /// A program's name.
+    /// Returns a program's name.
     pub fn program(&self, program: ProgramNumber) -> &str {
         self.programs.get(&program).map_or("", String::as_str)
     }
 
-    /// A cam's name.
+    /// Returns a cam's name.
     pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> &str {
         self.cams.get(&(program, cam)).map_or("", String::as_str)
     }
 
-    /// Calls a program something; an empty name takes it away.
+    /// Names a program; an empty name removes its name.
     pub fn set_program(&mut self, program: ProgramNumber, name: String) {
         if name.is_empty() {
             self.programs.remove(&program)
@@ -125,7 +125,7 @@ impl Names {
         };
     }
 
-    /// Calls a cam something; an empty name takes it away.
+    /// Names a cam; an empty name removes its name.
     pub fn set_cam(&mut self, program: ProgramNumber, cam: CamNumber, name: String) {
         let place = (program, cam);
         if name.is_empty() {

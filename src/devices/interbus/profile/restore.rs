@@ -1,26 +1,25 @@
-//! Planning a restore: only differences, in the fewest stores, and nothing that belongs to another encoder's mounting.
-//! A preset is stored and never fired.
+//! Planning a restore: only differences, in the fewest stores, and nothing that belongs to another encoder's mounting. A
+//! preset is stored but never fired.
 
 pub use crate::profile::RestoreOptions;
 
 use super::{Image, InterbusPlan, InterbusProfile, Item, OtherType, PlanError, ProfileIdentity, plan_edits};
 use crate::devices::interbus::protocol::{Flags, OutOfRange, ProgramNumber};
 
-/// An encoder as it is, as far as a plan needs it.
+/// Present state of an encoder, as far as a plan needs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DeviceState {
     /// The identity.
     pub identity: ProfileIdentity,
-    /// The content of its EEPROM: the programs that were read are at least [`programs_needed`], with the shift if there
-    /// are any.
+    /// The content of its EEPROM: at least the programs of [`programs_needed`], with the shift if there are any.
     pub image: Image,
 }
 
 /// The outcome of planning a restore.
 pub type Restore = crate::profile::Restore<InterbusPlan, Item>;
 
-/// The programs that have to be read before a restore of this profile can be planned. The shift of the window is read with
-/// one of them: with the first program where the profile has nothing but the shift.
+/// Returns the programs that must be read before a restore of this profile can be planned. The shift of the window is read
+/// with one of them: with the first program if the profile has nothing but the shift.
 pub fn programs_needed(profile: &InterbusProfile) -> Vec<ProgramNumber> {
     let of_cams = profile.image.known().map(|(number, _)| number);
     let all: Vec<ProgramNumber> = of_cams.collect();
@@ -69,8 +68,7 @@ pub fn plan_restore(
     Ok(Restore { plan, unchanged, missing, mounting_left, mounting_written })
 }
 
-/// Refuses an encoder that the profile was not read from. A profile without a serial number is of no encoder, so that it is
-/// refused by none.
+/// Refuses an encoder that the profile was not read from. A profile without a serial number fits any encoder.
 ///
 /// # Errors
 /// [`PlanError::OtherType`], [`PlanError::OtherDevice`].

@@ -1,4 +1,5 @@
-//! Positions in the units of a machine: degrees of its turn, or millimetres of its travel, beside the steps of the encoder.
+//! Positions in the units of a machine: degrees of its turn, or millimetres of its travel, in addition to the steps of the
+//! encoder.
 
 /// The unit of a machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -18,7 +19,7 @@ pub struct Scale {
     unit: Unit,
     /// Steps in one unit.
     steps: f64,
-    /// The encoder's position where the machine is at 0.
+    /// The encoder's position at the machine's 0.
     zero: u32,
 }
 
@@ -56,14 +57,14 @@ const SAME: f64 = 1e-9;
 const MOST: f64 = 1e12;
 
 impl Default for Scale {
-    /// Steps, from 0 on.
+    /// Creates a scale in steps, from 0 on.
     fn default() -> Self {
         Scale { unit: Unit::Steps, steps: 1.0, zero: 0 }
     }
 }
 
 impl Unit {
-    /// All of them.
+    /// All units.
     pub const ALL: [Unit; 3] = [Unit::Steps, Unit::Degrees, Unit::Millimetres];
 
     /// Returns the symbol after a number; empty for steps.
@@ -77,18 +78,20 @@ impl Unit {
 }
 
 impl Scale {
-    /// Degrees, with so many steps in a turn of the machine, and its 0 at a position of the encoder.
+    /// Creates a scale in degrees, with this number of steps in a turn of the machine, and its 0 at a position of the
+    /// encoder.
     ///
     /// # Errors
-    /// [`ScaleError`] where these steps are no number above 0.
+    /// [`ScaleError`] if the steps are not above 0.
     pub fn degrees(steps_in_turn: f64, zero: u32) -> Result<Self, ScaleError> {
         Scale::new(Unit::Degrees, steps_in_turn, zero)
     }
 
-    /// Millimetres, with so many steps in one, and the machine's 0 at a position of the encoder.
+    /// Creates a scale in millimetres, with this number of steps per millimetre, and the machine's 0 at a position of the
+    /// encoder.
     ///
     /// # Errors
-    /// [`ScaleError`] where these steps are no number above 0.
+    /// [`ScaleError`] if the steps are not above 0.
     pub fn millimetres(steps_in_one: f64, zero: u32) -> Result<Self, ScaleError> {
         Scale::new(Unit::Millimetres, steps_in_one, zero)
     }
@@ -112,18 +115,18 @@ impl Scale {
         self.unit
     }
 
-    /// Steps in one unit.
+    /// Returns the steps in one unit.
     pub const fn steps_in_unit(&self) -> f64 {
         self.steps
     }
 
-    /// The encoder's position where the machine is at 0.
+    /// Returns the encoder's position at the machine's 0.
     pub const fn zero(&self) -> u32 {
         self.zero
     }
 
-    /// The machine is at the beginning again where the measuring range ends: so are steps, and degrees where the range
-    /// has whole turns of the machine.
+    /// Returns whether the scale wraps at the end of the measuring range: steps do, and degrees if the range has whole
+    /// turns of the machine.
     pub fn is_round(&self, range: u32) -> bool {
         match self.unit {
             Unit::Steps => true,
@@ -135,7 +138,7 @@ impl Scale {
         }
     }
 
-    /// A step as the machine says it.
+    /// Returns a step in units of the machine.
     pub fn value(&self, step: u32, range: u32) -> f64 {
         let from_zero = f64::from(step) - f64::from(self.zero);
         self.round(from_zero, range) / self.steps
@@ -146,8 +149,8 @@ impl Scale {
         f64::from(range) / self.steps
     }
 
-    /// The step that is nearest to a position of the machine. Degrees go round where the measuring range does; steps have
-    /// to be within it, wherever 0 is.
+    /// Returns the step nearest to a position of the machine. Degrees wrap with the measuring range; steps must be within
+    /// it, wherever 0 is.
     ///
     /// # Errors
     /// [`Outside`] with the limits.
@@ -175,7 +178,7 @@ impl Scale {
         }
     }
 
-    /// Decimals that tell one step from the next.
+    /// Returns the decimals that distinguish one step from the next.
     pub fn decimals(&self) -> usize {
         let one = 1.0 / self.steps;
         let tells = |decimals: &usize| {

@@ -1,5 +1,5 @@
-//! Tables of cams, as they stand in a spreadsheet or on a machine's drawing: read from a file or from what was pasted, and
-//! written. A row is a pulse: program, cam or name, start, stop; in steps, degrees or millimetres of the machine.
+//! Tables of cams, as in a spreadsheet or on a machine's drawing: read from a file or pasted text, and written. A row is a
+//! pulse: program, cam or name, start, stop; in steps, degrees or millimetres of the machine.
 //!
 //! Invalid entries are reported by line and column; the rest is read regardless. Each edge is kept as
 //! rounded to the encoder's steps, with its rounding error.
@@ -16,7 +16,7 @@ use super::{Names, Outside, Scale, Unit};
 use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, Value};
 
-/// How a table is read.
+/// Options for reading a table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableOptions {
     /// Scale of its edges.
@@ -32,7 +32,7 @@ pub struct TableOptions {
 pub struct CamTable {
     /// Delimiter of its columns.
     pub delimiter: Option<Delimiter>,
-    /// Its first line names the columns.
+    /// Its first line contains the column names.
     pub header: bool,
     /// The valid rows, in the order of the table.
     pub rows: Vec<TableRow>,
@@ -62,9 +62,9 @@ pub struct TableRow {
 /// An edge as it was asked for, and as the encoder can have it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TableEdge {
-    /// As it stands in the table, in units.
+    /// As in the table, in units.
     pub requested: f64,
-    /// On the encoder.
+    /// In steps of the encoder.
     pub step: u32,
     /// Rounding error, in units.
     pub off: f64,
@@ -85,7 +85,7 @@ pub struct TableProblem {
 /// A problem in a line.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableProblemKind {
-    /// There is nothing in the table.
+    /// The table is empty.
     #[error("the table has no rows")]
     Empty,
     /// A header without a start or a stop.
@@ -94,22 +94,22 @@ pub enum TableProblemKind {
     /// The line ends before this column.
     #[error("the {0} is missing")]
     Missing(Column),
-    /// No number.
+    /// Not a number.
     #[error("{text:?} is no number")]
     Number {
-        /// As it stands there.
+        /// As in the table.
         text: String,
     },
-    /// No program.
+    /// Not a program.
     #[error("{text:?} is no cam program: there are 1 to 8")]
     Program {
-        /// As it stands there.
+        /// As in the table.
         text: String,
     },
-    /// No cam.
+    /// Not a cam.
     #[error("{text:?} is no cam: there are 0 to 7")]
     Cam {
-        /// As it stands there.
+        /// As in the table.
         text: String,
     },
     /// Beyond the measuring range.
@@ -120,13 +120,13 @@ pub enum TableProblemKind {
         /// With the limits, in units.
         outside: Outside,
     },
-    /// All eight cams of the program are taken.
+    /// All eight cams of the program are in use.
     #[error("program {} has no cam left: it has eight", .0.get())]
     Full(ProgramNumber),
-    /// This cam of the program stands in an earlier line, which counts.
+    /// This cam of the program is in an earlier line, which counts.
     #[error("cam {} of program {} stands in line {first} already", cam.get(), program.get())]
     Twice {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         /// The cam.
         cam: CamNumber,
@@ -141,30 +141,30 @@ pub enum TableProblemKind {
     },
 }
 
-/// Something about what was taken.
+/// Note about the rows that were read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TableNote {
-    /// Several pulses on one track, each of which takes a cam of its own.
+    /// Several pulses on one track, each of which uses a cam of its own.
     Pulses {
-        /// In this program.
+        /// Program of the pulses.
         program: ProgramNumber,
         /// The track's name.
         name: String,
         /// The cams that they take.
         cams: Vec<CamNumber>,
     },
-    /// The first line names no column that is known: they are taken in the usual order.
+    /// The first line names no known column: they are taken in the usual order.
     OtherHeader,
     /// The header names another unit than the one that counts.
     OtherUnit {
-        /// As it stands in the header.
+        /// As in the header.
         header: Unit,
         /// The one that counts.
         used: Unit,
     },
 }
 
-/// A column by what it holds.
+/// Column by its content.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Column {
     /// 1 to 8.
@@ -179,7 +179,7 @@ pub enum Column {
     Stop,
 }
 
-/// A program as a table has it: its cams work, and no others. The edges of those others stay as they are.
+/// Program from a table: its cams are active, and no others. The edges of the others stay as they are.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Filled {
     /// The program.
@@ -206,14 +206,14 @@ impl std::fmt::Display for Column {
 }
 
 impl TableOptions {
-    /// Reads a table. Nothing of it is lost but what is told.
+    /// Reads a table. Everything left out is reported.
     pub fn read(&self, text: &str) -> CamTable {
         read::read(self, text)
     }
 }
 
 impl CamTable {
-    /// The programs that it has something of, as edits take them.
+    /// Returns the programs in the table, for edits.
     pub fn filled(&self) -> Vec<Filled> {
         let own = |program| self.rows.iter().filter(move |row| row.program == program);
         ProgramNumber::all()
@@ -232,12 +232,12 @@ impl CamTable {
             .collect()
     }
 
-    /// The rows with an edge that is not where it was asked for.
+    /// Returns the rows with an edge that was rounded.
     pub fn rounded(&self) -> impl Iterator<Item = &TableRow> {
         self.rows.iter().filter(|row| row.start.is_off() || row.stop.is_off())
     }
 
-    /// The most that an edge is off, in units.
+    /// Returns the most that an edge is off, in units.
     pub fn most_off(&self) -> f64 {
         let edges = self.rows.iter().flat_map(|row| [row.start, row.stop]);
         edges.map(|edge| edge.off.abs()).fold(0.0, f64::max)
@@ -245,7 +245,7 @@ impl CamTable {
 }
 
 impl TableRow {
-    /// Its edges.
+    /// Returns its edges.
     pub fn cam(&self) -> Cam {
         Cam { start: Value::of_word(self.start.step), stop: Value::of_word(self.stop.step) }
     }

@@ -1,4 +1,4 @@
-//! Profiles for tests: an encoder with programs, to be changed.
+//! Test profiles: an encoder with programs, to be changed.
 
 use super::{Direction, Image, InterbusProfile, Item, ItemValue, Parameters, ProfileIdentity, Recorded};
 use crate::devices::interbus::protocol::{
@@ -34,7 +34,8 @@ pub(super) fn with(image: &Image, items: &[(&str, ItemValue)]) -> Image {
     image
 }
 
-/// 3600 steps over a turn, and in each program 8 cams: cam c of program p from 100·c + p to 100·c + p + 49, all of which work.
+/// Returns 3600 steps over a turn, and in each program 8 cams: cam c of program p from 100·c + p to 100·c + p + 49, all of
+/// them active.
 pub(super) fn image() -> Image {
     let parameters =
         Parameters { steps: 3600, revolutions: 1, direction: Direction::Clockwise, preset: 500, zero_shift: 0 };

@@ -1,4 +1,4 @@
-//! The text of an INTERBUS profile: written for people, read from their hands. What is wrong names its entry.
+//! The text of an INTERBUS profile, written for people and edited by them. An error names its entry.
 
 use super::{
     Direction, EntryError, Image, InterbusProfile, Item, ItemError, MountingMark, Names, Parameters, ProfileIdentity,
@@ -44,7 +44,7 @@ impl Profile for InterbusProfile {
     }
 
     fn write(&self, writer: &mut Writer) {
-        // A profile that was made by hand is of no encoder.
+        // A profile made by hand belongs to no encoder.
         if self.identity != ProfileIdentity::default() {
             self.identity.write(writer);
         }
@@ -65,7 +65,7 @@ impl Profile for InterbusProfile {
         }
     }
 
-    /// Compares parameters, the shift of the window, masks and cams. What is only recorded is not part of it, nor are names.
+    /// Compares parameters, the shift of the window, masks and cams. Recorded values and names are not compared.
     fn compare(&self, other: &Self) -> Comparison {
         let mut comparison = Comparison::default();
         for item in Item::writable() {
@@ -237,7 +237,7 @@ fn read_recorded(mut entries: Entries) -> Result<Recorded, ProfileError> {
     })
 }
 
-/// A number that has room in a word.
+/// Reads a number that fits into a word.
 fn value(entries: &mut Entries, name: &str) -> Result<Value, ProfileError> {
     optional_value(entries, name)?.ok_or_else(|| ProfileError::Missing { path: entries.path_of(name) })
 }

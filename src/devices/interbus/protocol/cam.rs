@@ -1,8 +1,8 @@
-//! Cams and programs of them: which are on at a position (reference 5).
+//! Cams and programs: the outputs at a position (reference 5).
 
 use super::value::Value;
 
-/// The number of a program's cam: 0 to 7. Words have room for 16 and the manual names 8 (reference 6.9).
+/// The number of a program's cam: 0 to 7. Words have room for 16, and the manual names 8 (reference 6.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct CamNumber(u8);
 
@@ -10,8 +10,8 @@ pub struct CamNumber(u8);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ProgramNumber(u8);
 
-/// A stretch of positions. Both edges belong to it (`U`); where the start is beyond the stop it goes over the end of the
-/// measuring range.
+/// A range of positions. Both edges belong to it (`U`); if the start is beyond the stop, it passes the end of the measuring
+/// range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Cam {
     /// The first position at which it is on.
@@ -20,17 +20,17 @@ pub struct Cam {
     pub stop: Value,
 }
 
-/// Eight cams, and which of them work.
+/// Eight cams, and their activation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Program {
-    /// By number; `None` where there is none.
+    /// The cams by number; `None` if there is none.
     pub cams: [Option<Cam>; Program::CAMS],
     /// The activation mask: bit i for cam i.
     pub mask: u8,
 }
 
 impl CamNumber {
-    /// All of them, rising.
+    /// All numbers, in ascending order.
     pub const EACH: [CamNumber; Program::CAMS] = [
         CamNumber(0),
         CamNumber(1),
@@ -42,17 +42,17 @@ impl CamNumber {
         CamNumber(7),
     ];
 
-    /// All of them, rising.
+    /// Returns all numbers, in ascending order.
     pub fn all() -> impl Iterator<Item = CamNumber> {
         CamNumber::EACH.into_iter()
     }
 
-    /// `None` beyond 7.
+    /// Creates it from a number; `None` beyond 7.
     pub const fn new(number: u8) -> Option<Self> {
         if (number as usize) < Program::CAMS { Some(CamNumber(number)) } else { None }
     }
 
-    /// 0 to 7.
+    /// Returns 0 to 7.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -64,17 +64,17 @@ impl ProgramNumber {
     /// 1.
     pub const FIRST: ProgramNumber = ProgramNumber(1);
 
-    /// All of them, rising.
+    /// Returns all numbers, in ascending order.
     pub fn all() -> impl Iterator<Item = ProgramNumber> {
         (1..=8).map(ProgramNumber)
     }
 
-    /// `None` where it is not 1 to 8.
+    /// Creates a number from 1 to 8; `None` for others.
     pub const fn new(number: u8) -> Option<Self> {
         if number >= 1 && number as usize <= ProgramNumber::COUNT { Some(ProgramNumber(number)) } else { None }
     }
 
-    /// 1 to 8.
+    /// Returns 1 to 8.
     pub const fn get(self) -> u8 {
         self.0
     }
@@ -110,19 +110,19 @@ impl Program {
         self.mask = self.mask & !(1 << cam.0) | (on as u8) << cam.0;
     }
 
-    /// A cam; `None` where there is none.
+    /// Returns a cam; `None` if there is none.
     pub fn cam(&self, number: CamNumber) -> Option<Cam> {
         self.cams.get(usize::from(number.0)).copied().flatten()
     }
 
-    /// Puts a cam in its place, or takes it away. The mask stays as it is.
+    /// Sets or removes a cam. The mask is unchanged.
     pub fn set_cam(&mut self, number: CamNumber, cam: Option<Cam>) {
         if let Some(place) = self.cams.get_mut(usize::from(number.0)) {
             *place = cam;
         }
     }
 
-    /// The outputs at a position: bit i for cam i.
+    /// Returns the outputs at a position: bit i for cam i.
     pub fn outputs(&self, position: Value) -> u8 {
         let on = |cam: &Option<Cam>| cam.is_some_and(|cam| cam.is_on(position));
         let all = self.cams.iter().rev().fold(0, |bits, cam| bits << 1 | u8::from(on(cam)));

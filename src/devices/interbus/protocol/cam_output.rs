@@ -13,7 +13,7 @@ pub struct CamOutput {
     pub stray: u8,
 }
 
-/// The word says that nothing in it counts: bit 31 is set.
+/// Error: the word is invalid, because bit 31 is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("cam outputs are not valid in {word:08X}")]
 pub struct CamOutputError {
@@ -21,14 +21,14 @@ pub struct CamOutputError {
     pub word: u32,
 }
 
-/// `shift_iw`: how far the position is shifted to the right under the window. 0 to 25.
+/// `shift_iw`: the number of bits by which the position is shifted to the right under the window. 0 to 25.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct WindowShift(u8);
 
 /// The meaning of a bit of the word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CamBit {
-    /// Bit 31: nothing else counts.
+    /// Bit 31: the rest is invalid.
     Invalid,
     /// A bit that should be 0.
     Zero,
@@ -44,17 +44,17 @@ const WINDOW_BITS: u32 = 17;
 const OUTPUT_BITS: u32 = 8;
 
 impl WindowShift {
-    /// `None` beyond 25.
+    /// Creates it from a number; `None` beyond 25.
     pub const fn new(shift: u8) -> Option<Self> {
         if shift as u32 <= Value::BITS { Some(WindowShift(shift)) } else { None }
     }
 
-    /// 0 to 25.
+    /// Returns 0 to 25.
     pub const fn get(self) -> u8 {
         self.0
     }
 
-    /// The bits of the position that lie under the window; none at 25.
+    /// Returns the bits of the position under the window; none at 25.
     pub const fn mask(self) -> u32 {
         (((1_u64 << WINDOW_BITS) - 1) << self.0) as u32 & Value::MAX.get()
     }
@@ -70,7 +70,7 @@ impl CamOutput {
     /// Reads a word.
     ///
     /// # Errors
-    /// Bit 31 is set.
+    /// Returns an error if bit 31 is set.
     pub const fn parse(word: u32) -> Result<Self, CamOutputError> {
         if word >> 31 != 0 {
             return Err(CamOutputError { word });
@@ -82,13 +82,13 @@ impl CamOutput {
         })
     }
 
-    /// The word. Of the window and the stray bits what has room in them.
+    /// Returns the word. Bits of the window and stray bits that do not fit are left out.
     pub const fn emit(self) -> u32 {
         let window = self.window & ((1 << WINDOW_BITS) - 1);
         ((self.stray & 0x3F) as u32) << Value::BITS | window << OUTPUT_BITS | self.outputs as u32
     }
 
-    /// The bits of the position that the window has, at their places; [`WindowShift::mask`] says which they are.
+    /// Returns the bits of the position in the window, at their places; [`WindowShift::mask`] says which they are.
     pub const fn position_bits(self, shift: WindowShift) -> u32 {
         ((self.window as u64) << shift.0) as u32 & shift.mask()
     }

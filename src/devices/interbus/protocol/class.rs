@@ -1,4 +1,4 @@
-//! The three classes of encoders, who they are on the bus, and the words of those without commands (reference 1).
+//! The three classes of encoders, their identification on the bus, and the words of those without commands (reference 1).
 
 use super::value::Value;
 
@@ -33,7 +33,7 @@ impl Class {
     /// All of them.
     pub const ALL: [Class; 3] = [Class::K1, Class::K2, Class::K3];
 
-    /// Bytes from the encoder, and bytes to it.
+    /// Returns the bytes from the encoder, and bytes to it.
     pub const fn bytes(self) -> (usize, usize) {
         match self {
             Class::K1 => (2, 0),
@@ -43,7 +43,7 @@ impl Class {
     }
 }
 
-/// The identification code of an encoder. K3 with copper or fibre is 37h = 55: manual 5.1 prints 36h beside 55
+/// Returns the identification code of an encoder. K3 with copper or fibre is 37h = 55: manual 5.1 prints 36h next to 55
 /// (reference 6.1).
 pub const fn id_code(class: Class, interface: Interface) -> u8 {
     match (class, interface) {
@@ -72,17 +72,17 @@ pub enum Single {
 }
 
 impl Single {
-    /// A K1 word.
+    /// Creates a K1 word.
     pub const fn parse_k1(word: u16) -> Self {
         Single::K1(word)
     }
 
-    /// A K2 word.
+    /// Creates a K2 word.
     pub const fn parse_k2(word: u32) -> Self {
         Single::K2(word)
     }
 
-    /// The word, right-justified.
+    /// Returns the word, right-justified.
     pub const fn emit(self) -> u32 {
         match self {
             Single::K1(word) => word as u32,
@@ -90,7 +90,7 @@ impl Single {
         }
     }
 
-    /// The position in steps.
+    /// Returns the position in steps.
     pub const fn position(self) -> Value {
         match self {
             Single::K1(word) => Value::of_word((word & 0x0FFF) as u32),

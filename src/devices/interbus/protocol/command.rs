@@ -1,4 +1,4 @@
-//! OUT words: what a master asks of a K3 encoder (reference 3 and 5), and in which mode it may.
+//! OUT words: the commands of a master to a K3 encoder (reference 3 and 5), and the modes in which they are allowed.
 
 use super::cam::{CamNumber, ProgramNumber};
 use super::cam_output::WindowShift;
@@ -12,27 +12,27 @@ use super::value::{Code, Value};
 pub enum Command {
     /// 00000000h: normal running.
     Normal,
-    /// 80000000h: run. Its edge leaves parameterisation, a read-out and the setting of cams.
+    /// 80000000h: run. Its edge ends parameterisation, a read-out and the setting of cams.
     Run,
-    /// 40000000h: the position becomes the preset. Once for each preset that was set.
+    /// 40000000h: applies the preset to the position. Once for each preset that was set.
     Preset,
-    /// 60000000h: as often as wanted; run follows.
+    /// 60000000h: any number of times; run follows.
     FrabaPreset,
     /// A parameter is set.
     Set(Parameter, Value),
     /// 20400001h and 20400000h: speed instead of the position, or the position again.
     Velocity(bool),
-    /// 2021xxxxh: something is read out.
+    /// 2021xxxxh: a read-out.
     ReadOut(ReadOut),
     /// 2080000ph: cam mode with this program; without one position mode.
     Cams(Option<ProgramNumber>),
-    /// 2040cccch: which cams work, bit i for cam i. There are 8, so that the upper byte is 0 (reference 6.9).
+    /// 2040cccch: the active cams, bit i for cam i. There are 8, so that the upper byte is 0 (reference 6.9).
     Activate(u16),
-    /// 201000ssh: how far the position is shifted under its window.
+    /// 201000ssh: the shift of the position under its window.
     Shift(WindowShift),
-    /// 40h to 4Fh in front: the first position of a cam.
+    /// 40h to 4Fh as the first byte: the first position of a cam.
     CamStart(CamNumber, Value),
-    /// 60h to 6Fh in front: its last position.
+    /// 60h to 6Fh as the first byte: its last position.
     CamStop(CamNumber, Value),
     /// 20200000h: the activation mask is read.
     ReadActivation,
@@ -42,7 +42,7 @@ pub enum Command {
     ReadCamStop(CamNumber),
     /// 20200040h: the shift of the window is read (20200030h is a misprint, reference 6.5).
     ReadShift,
-    /// A word that the manual does not have.
+    /// A word that is not in the manual.
     Unknown(u32),
 }
 
@@ -72,7 +72,7 @@ const START: u32 = 0b010 << 29;
 const STOP: u32 = 0b011 << 29;
 
 impl Command {
-    /// The word.
+    /// Returns the word.
     pub fn emit(self) -> u32 {
         let edge =
             |which: u32, cam: CamNumber, position: Value| which | u32::from(cam.get()) << Value::BITS | position.get();
@@ -97,10 +97,10 @@ impl Command {
         }
     }
 
-    /// All that a word may mean, in any mode: one or two; [`Command::Unknown`] where the manual has nothing.
+    /// Returns all meanings of a word, in any mode: one or two; [`Command::Unknown`] if it is not in the manual.
     pub fn readings(word: u32) -> Vec<Command> {
         let both: Vec<Command> = [Command::outside_cams(word), Command::of_cams(word)].into_iter().flatten().collect();
-        // Both have the selection of a program, as the same.
+        // Both contain the selection of a program, with the same meaning.
         match both.as_slice() {
             [] => vec![Command::Unknown(word)],
             [one, other] if one == other => vec![*one],
@@ -111,7 +111,7 @@ impl Command {
     /// Parses a word as an encoder in a mode understands it.
     ///
     /// # Errors
-    /// [`Refused`] with what it means in another mode, or nowhere.
+    /// [`Refused`] with its meaning in another mode, or none.
     pub fn in_mode(word: u32, mode: Mode) -> Result<Command, Refused> {
         let readings = Command::readings(word);
         match readings.iter().find(|command| command.is_legal_in(mode)) {
@@ -128,8 +128,8 @@ impl Command {
         if self.is_legal_in(mode) { Ok(()) } else { Err(Refused { command: self, mode }) }
     }
 
-    /// Returns whether it may be sent in a mode. Words stay on the process data, so one that enters a mode is legal in
-    /// it. Read-outs are allowed wherever the outputs are valid, since one of them shows the mode (`U`).
+    /// Returns whether it may be sent in a mode. Words remain on the process data, so one that enters a mode is legal in
+    /// it. Read-outs are allowed if the outputs are valid, since one of them shows the mode (`U`).
     pub const fn is_legal_in(self, mode: Mode) -> bool {
         use Mode::{Cam, Parameterisation, Position, ReadOut, Velocity};
         match self {

@@ -1,14 +1,14 @@
-//! All programs made ready to be asked often: the positions at which anything changes, and what is on from there.
+//! All programs prepared for many evaluations: the positions at which the outputs change, and the outputs from there on.
 
 use super::cam::{Program, ProgramNumber};
 use super::value::Value;
 
-/// Programs as a list of stretches without a change. A preview asks it for millions of positions.
+/// Programs as a list of sections without a change. A preview evaluates it for millions of positions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Compiled {
-    /// Starts of the sections, rising. The outputs before the first of them are in `before`.
+    /// Starts of the sections, in ascending order. The outputs before the first of them are in `before`.
     starts: Vec<u32>,
-    /// Outputs of each section: a byte a program, the first lowest.
+    /// Outputs of each section: a byte per program, the first lowest.
     outputs: Vec<u64>,
     before: u64,
 }
@@ -21,13 +21,13 @@ impl Compiled {
         let mut starts: Vec<u32> = cams.flat_map(|cam| [cam.start.get(), cam.stop.get() + 1]).collect();
         starts.sort_unstable();
         starts.dedup();
-        // Behind the last position nothing begins.
+        // No section begins after the last position.
         starts.retain(|start| (1..=Value::MAX.get()).contains(start));
         let outputs = starts.iter().map(|start| at(*start)).collect();
         Compiled { starts, outputs, before: at(0) }
     }
 
-    /// The outputs at a position: a byte a program, bit i for cam i. The same as [`Program::outputs`] of each.
+    /// Returns the outputs at a position: a byte per program, bit i for cam i. The same as [`Program::outputs`] of each.
     pub fn outputs(&self, position: Value) -> [u8; ProgramNumber::COUNT] {
         let begun = self.starts.partition_point(|start| *start <= position.get());
         let stretch = begun.checked_sub(1).and_then(|at| self.outputs.get(at));

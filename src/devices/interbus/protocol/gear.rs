@@ -1,4 +1,4 @@
-//! The gear: so many steps over so many turns (reference 3).
+//! The gear: a number of steps over a number of turns (reference 3).
 
 use super::value::Value;
 
@@ -7,28 +7,28 @@ pub const STEPS_PER_TURN: u32 = 8192;
 /// The most turns an encoder counts.
 pub const TURNS: u32 = 4096;
 
-/// Steps and turns, which are set apart and work together: `steps` of the position over `turns` of the shaft.
+/// Steps and turns, which are set separately and used together: `steps` of the position over `turns` of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Gear {
     steps: u32,
     turns: u32,
 }
 
-/// Why two numbers are not a gear.
+/// The reason why two numbers are not a gear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GearError {
-    /// Beyond what the encoder counts.
+    /// More turns than the encoder counts.
     #[error("{turns} turns are not within 1 to {TURNS}")]
     Turns {
-        /// As given.
+        /// The given turns.
         turns: u32,
     },
     /// More than the disc has over these turns, or more than 25 bits hold.
     #[error("{steps} steps are not within 1 to {most}, which is what {turns} turns have")]
     Steps {
-        /// As given.
+        /// The given steps.
         steps: u32,
-        /// As given.
+        /// The given turns.
         turns: u32,
         /// The limit.
         most: u32,
@@ -37,7 +37,7 @@ pub enum GearError {
 
 impl Gear {
     /// # Errors
-    /// [`GearError`] where a number is beyond its limit; turns first.
+    /// [`GearError`] if a number is beyond its limit; turns are checked first.
     pub const fn new(steps: u32, turns: u32) -> Result<Self, GearError> {
         if turns == 0 || turns > TURNS {
             return Err(GearError::Turns { turns });
@@ -49,13 +49,13 @@ impl Gear {
         Ok(Gear { steps, turns })
     }
 
-    /// The most steps over so many turns. All 4096 turns have one step more than 25 bits hold.
+    /// Returns the largest number of steps over this number of turns. All 4096 turns have one step more than 25 bits hold.
     pub(super) const fn most_steps(turns: u32) -> u32 {
         let all = STEPS_PER_TURN * turns;
         if all > Value::MAX.get() { Value::MAX.get() } else { all }
     }
 
-    /// Steps of the position over all turns: the measuring range.
+    /// Returns steps of the position over all turns: the measuring range.
     pub const fn steps(self) -> u32 {
         self.steps
     }
@@ -70,13 +70,14 @@ impl Gear {
         STEPS_PER_TURN * self.turns
     }
 
-    /// Converts steps of the disc to steps of the position: `raw · steps / (8192 · turns)`, rounded down (`U`: the
-    /// manual only says that the two are one gear). Nothing wraps here: a whole range gives all steps.
+    /// Converts steps of the disc to steps of the position: `raw · steps / (8192 · turns)`, rounded down (`U`: the manual
+    /// only says that the two are one gear). The result is not wrapped: the complete range results in all steps.
     pub const fn scaled(self, raw: u32) -> u64 {
         raw as u64 * self.steps as u64 / self.range() as u64
     }
 
-    /// The position that the encoder sends at a place of the disc: [`scaled`](Self::scaled) within the range (`U`).
+    /// Returns the position that the encoder sends for a position of the disc: [`scaled`](Self::scaled) within the range
+    /// (`U`).
     pub const fn position(self, raw: u32) -> Value {
         // Less than `steps`, which has 25 bits.
         Value::of_word(self.scaled(raw % self.range()) as u32)

@@ -29,9 +29,9 @@ pub struct Leds {
 pub struct LedRow {
     /// The combination.
     pub leds: Leds,
-    /// Its meaning in the manual's words.
+    /// Meaning in the manual's words.
     pub meaning: &'static str,
-    /// What to do; not in the manual (`U`).
+    /// Remedy; not in the manual (`U`).
     pub remedy: &'static str,
 }
 
@@ -62,7 +62,7 @@ pub const LEDS: [LedRow; 4] = [
 ];
 
 impl Leds {
-    /// The row of the table; `None` for what the manual does not have.
+    /// Returns the row of the table; `None` if it is not in the manual.
     pub fn row(self) -> Option<&'static LedRow> {
         LEDS.iter().find(|row| row.leds == self)
     }

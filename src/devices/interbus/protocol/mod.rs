@@ -1,7 +1,7 @@
 //! INTERBUS: the words of POSITAL OCD-IB encoders (ENCOM profile 71, classes K1, K2 and K3) on the process data.
 //!
-//! Source: POSITAL, manual UME-IB ("the manual" below; the project's reference of it where a section is named so). What the
-//! manual leaves open is marked `U`; where it contradicts itself, reference 6 says what is taken.
+//! Source: POSITAL, manual UME-IB ("the manual" below; the project's reference of it where a section is named so). Facts
+//! that the manual leaves open are marked `U`; where it contradicts itself, reference 6 has the decision.
 //!
 //! ```text
 //! bit  31               30                      29            28..25                   24..0
@@ -9,8 +9,8 @@
 //! IN   error, invalid   parameterisation        manufacturer  parameter or error code  position, value
 //! ```
 //!
-//! The same OUT word means different things in different modes: [`Command::readings`] has all of them, and
-//! [`Command::in_mode`] the one that an encoder in a [`Mode`] takes it for.
+//! The same OUT word has different meanings in different modes: [`Command::readings`] returns all of them, and
+//! [`Command::in_mode`] the one for an encoder in a [`Mode`].
 
 #![warn(missing_docs)]
 
@@ -30,7 +30,7 @@ mod value;
 mod vectors;
 mod word_order;
 
-/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+/// The word for this kind of device: on the command line, in profiles, and in stored data.
 pub const KIND: &str = "interbus";
 
 pub use cam::{Cam, CamNumber, Program, ProgramNumber};

@@ -7,11 +7,11 @@ use std::fmt;
 pub enum Mode {
     /// Running; IN is the position.
     Position,
-    /// A parameter was sent and [`Command::Run`](super::Command::Run) was not yet: the outputs are not valid.
+    /// A parameter was sent and [`Command::Run`](super::Command::Run) not yet: the outputs are not valid.
     Parameterisation,
-    /// A read-out is asked for; IN is its value.
+    /// A read-out is requested; IN is its value.
     ReadOut,
-    /// IN is the speed, in revolutions a minute.
+    /// IN is the speed, in revolutions per minute.
     Velocity,
     /// A cam program is selected; IN is the cam output word.
     Cam,

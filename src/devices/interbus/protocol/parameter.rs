@@ -16,9 +16,9 @@ pub enum Parameter {
     Direction,
     /// The position that the encoder is to have when the preset is fired.
     Preset,
-    /// Zero point shifting. It does not fire the preset, as manual 5.4.1 has it (reference 6.2).
+    /// Zero point shifting. Unlike in manual 5.4.1, it does not apply the preset (reference 6.2).
     ZeroShift,
-    /// Back to what was delivered. Only in the appendix of the manual (reference 6.10): experimental.
+    /// Back to factory settings. Only in the appendix of the manual (reference 6.10): experimental.
     Default,
 }
 
@@ -29,9 +29,9 @@ pub struct ParameterRow {
     pub parameter: Parameter,
     /// Bits 28..25 of its word.
     pub code: u8,
-    /// As the command line spells it.
+    /// Name on the command line.
     pub name: &'static str,
-    /// Of its number; empty where it has none.
+    /// Unit of its number; empty if there is none.
     pub unit: &'static str,
     limit: Limit,
 }
@@ -41,19 +41,19 @@ pub struct ParameterRow {
 enum Limit {
     /// Always the same.
     Fixed(u32, u32),
-    /// From 1 to what the turns have.
+    /// From 1 to the maximum for the turns.
     StepsOfTurns,
     /// From 0 to one step before the range's end.
     WithinRange,
 }
 
-/// A parameter's number beyond its limits.
+/// Error: a parameter's number is outside its limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {value} is not within {low} to {high}", parameter.name())]
 pub struct OutOfRange {
     /// The parameter.
     pub parameter: Parameter,
-    /// As given.
+    /// The given value.
     pub value: u32,
     /// The least.
     pub low: u32,
@@ -78,7 +78,7 @@ const fn row(parameter: Parameter, code: u8, name: &'static str, unit: &'static 
 }
 
 impl Parameter {
-    /// Its row of the table.
+    /// Returns its row of the table.
     pub const fn row(self) -> &'static ParameterRow {
         let [steps, turns, direction, preset, zero_shift, default] = &PARAMETERS;
         match self {
@@ -91,12 +91,12 @@ impl Parameter {
         }
     }
 
-    /// Its name.
+    /// Returns its name.
     pub const fn name(self) -> &'static str {
         self.row().name
     }
 
-    /// The parameter of a code; `None` for codes that the manual does not have.
+    /// Returns the parameter of a code; `None` for codes that are not in the manual.
     pub fn of_code(code: Code) -> Option<Self> {
         PARAMETERS.iter().find(|row| row.code == code.get()).map(|row| row.parameter)
     }
@@ -119,7 +119,7 @@ impl Parameter {
         }
     }
 
-    /// A number for this parameter.
+    /// Returns a number for this parameter.
     ///
     /// # Errors
     /// [`OutOfRange`] with the limits of this gear.

@@ -3,7 +3,7 @@
 use super::cam::ProgramNumber;
 use super::value::Value;
 
-/// The number of a value: bits 15..0 of a word 2021xxxxh. Numbers that the manual does not have are kept.
+/// The number of a value: bits 15..0 of a word 2021xxxxh. Numbers that are not in the manual are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReadOut(u16);
 
@@ -12,13 +12,13 @@ pub struct ReadOut(u16);
 pub struct ReadOutRow {
     /// The value's number.
     pub read_out: ReadOut,
-    /// As the manual calls it.
+    /// Name in the manual.
     pub name: &'static str,
-    /// Of the value as it is sent; empty where it has none.
+    /// Unit of the value as sent; empty if there is none.
     pub unit: &'static str,
 }
 
-/// All read-outs, in the manual's order; the registers of the chip, which are sixteen, stand beside it.
+/// All read-outs, in the manual's order, without the sixteen registers of the chip.
 pub const READ_OUTS: [ReadOutRow; 12] = [
     row(ReadOut::SERIAL_NUMBER, "serial number", ""),
     row(ReadOut(0x1), "steps", "steps"),
@@ -44,19 +44,20 @@ const CHIP: u16 = 0xD;
 /// A value that was read out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadOutValue {
-    /// A number in the unit of its row; also of read-outs and registers that nothing is known of.
+    /// A number in the unit of its row; also for unknown read-outs and registers.
     Plain(u32),
     /// Minutes.
     Minutes(u32),
     /// Tenths of a degree Celsius.
     TenthsOfDegree(i32),
-    /// In which mode the encoder is.
+    /// The mode of the encoder.
     StartupMode(StartupMode),
     /// Flags of the encoder.
     Flags(Flags),
 }
 
-/// Read-out 9: the mode that the encoder is in and starts with. The manual prints `3h to 10h` for the programs: decimal 3 to 10.
+/// Read-out 9: the mode in which the encoder is and starts. The manual prints `3h to 10h` for the programs: decimal 3 to
+/// 10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum StartupMode {
     /// 0: as a K2 encoder.
@@ -80,24 +81,24 @@ impl ReadOut {
     pub const SERIAL_NUMBER: ReadOut = ReadOut(0x0);
     /// 8, in ten minutes.
     pub const OPERATING_TIME: ReadOut = ReadOut(0x8);
-    /// 9: how the mode is told.
+    /// 9: the mode.
     pub const STARTUP_MODE: ReadOut = ReadOut(0x9);
     /// Ah.
     pub const FLAGS: ReadOut = ReadOut(0xA);
     /// Ch, in tenths of a degree Celsius.
     pub const TEMPERATURE: ReadOut = ReadOut(0xC);
 
-    /// Any number is a read-out.
+    /// Creates it: any number is a read-out.
     pub const fn new(number: u16) -> Self {
         ReadOut(number)
     }
 
-    /// A register of the OPC chip: `xDh`. `None` beyond 15.
+    /// Returns a register of the OPC chip: `xDh`. `None` beyond 15.
     pub const fn chip_register(register: u8) -> Option<Self> {
         if register < 16 { Some(ReadOut((register as u16) << 4 | CHIP)) } else { None }
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn number(self) -> u16 {
         self.0
     }
@@ -107,7 +108,7 @@ impl ReadOut {
         if self.0 & 0xF == CHIP && self.0 <= 0xFF { Some((self.0 >> 4) as u8) } else { None }
     }
 
-    /// Its row; `None` for registers of the chip and what the manual does not have.
+    /// Returns its row; `None` for registers of the chip and numbers that are not in the manual.
     pub fn row(self) -> Option<&'static ReadOutRow> {
         READ_OUTS.iter().find(|row| row.read_out == self)
     }
@@ -124,7 +125,7 @@ impl ReadOut {
     }
 }
 
-/// A number with a sign in 25 bits; where bit 24 is clear and it is above 7FFFh, in 16 (`U`: the manual has −10 °C in
+/// Returns a number with a sign in 25 bits; if bit 24 is clear and it is above 7FFFh, in 16 (`U`: the manual has −10 °C in
 /// neither form).
 const fn signed(value: Value) -> i32 {
     let number = value.get();
@@ -143,7 +144,7 @@ impl StartupMode {
         }
     }
 
-    /// Its number.
+    /// Returns its number.
     pub fn emit(self) -> u32 {
         match self {
             StartupMode::K2 => 0,
@@ -156,27 +157,27 @@ impl StartupMode {
 }
 
 impl Flags {
-    /// Any value; what is unknown is kept.
+    /// Creates it from any value; unknown bits are kept.
     pub const fn new(value: Value) -> Self {
         Flags(value)
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn value(self) -> Value {
         self.0
     }
 
-    /// Bit 0: steps are given less one, as older encoders have it.
+    /// Returns bit 0: steps are reported less one, as by older encoders.
     pub const fn steps_minus_one(self) -> bool {
         self.0.get() & 1 != 0
     }
 
-    /// Bit 1: it counts turns.
+    /// Returns bit 1: it counts turns.
     pub const fn multiturn(self) -> bool {
         self.0.get() & 2 != 0
     }
 
-    /// The type of encoder that they make.
+    /// Returns the type of encoder that they make.
     pub const fn type_name(self) -> &'static str {
         match (self.multiturn(), self.steps_minus_one()) {
             (true, false) => "multiturn",
@@ -186,7 +187,7 @@ impl Flags {
         }
     }
 
-    /// The other bits, of which nothing is known.
+    /// Returns the other bits, whose meaning is unknown.
     pub const fn unknown(self) -> u32 {
         self.0.get() & !3
     }

@@ -1,4 +1,4 @@
-//! IN words of a K3 encoder (reference 2). What a position or a value means, the mode tells:
+//! IN words of a K3 encoder (reference 2). The mode defines the meaning of a position or a value:
 //! [`CamOutput`](super::CamOutput), [`ReadOut::value`](super::ReadOut::value).
 
 use super::command::Command;
@@ -12,30 +12,30 @@ pub enum Reply {
     Run {
         /// Bits 24..0.
         value: Value,
-        /// Bits 30..25, which should be 0: what stands in them deserves a warning.
+        /// Bits 30..25, which should be 0: other values are worth a warning.
         stray: u8,
     },
-    /// 110 or 111 in front, code 0: at work on a parameter; of cam 0 it may be the echo.
+    /// Prefix 110 or 111, code 0: busy with a parameter; for cam 0 it may be the echo.
     Busy {
         /// Bit 29.
         manufacturer: bool,
         /// Data of the word.
         data: Value,
     },
-    /// 110 or 111 in front: this has been received. Not yet that it was taken.
+    /// Prefix 110 or 111: the word was received. It may not be accepted yet.
     Echo {
         /// Bit 29.
         manufacturer: bool,
-        /// Of the parameter, or the cam; never 0.
+        /// Code of the parameter, or the cam; never 0.
         code: Code,
-        /// As it was sent.
+        /// The data as sent.
         data: Value,
     },
-    /// 101 in front, code 0: a value that was read out.
+    /// Prefix 101, code 0: a value that was read out.
     ReadOut(Value),
-    /// 101 in front, code 2: no such read-out.
+    /// Prefix 101, code 2: no such read-out.
     UnknownReadOut(Value),
-    /// 101 in front, another code: nothing that the manual has.
+    /// Prefix 101, another code: not in the manual.
     Unknown {
         /// Neither 0 nor 2.
         code: Code,
@@ -46,7 +46,7 @@ pub enum Reply {
     Error(ErrorWord),
 }
 
-/// An error word: 100 in front.
+/// An error word: prefix 100.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ErrorWord {
     /// Bits 28..25.
@@ -61,7 +61,7 @@ const ECHO: u32 = 0b110 << 29;
 const MANUFACTURER: u32 = 1 << 29;
 
 impl Reply {
-    /// Reads a word. Every word is one.
+    /// Parses a word. Every word is valid.
     pub fn parse(word: u32) -> Self {
         let (code, data) = (Code::of_word(word), Value::of_word(word));
         let manufacturer = word & MANUFACTURER != 0;
@@ -76,7 +76,7 @@ impl Reply {
         }
     }
 
-    /// The word. Of stray bits what has room in them.
+    /// Returns the word. Stray bits that do not fit are left out.
     pub fn emit(self) -> u32 {
         let echo = |manufacturer: bool| if manufacturer { ECHO | MANUFACTURER } else { ECHO };
         match self {
@@ -90,8 +90,8 @@ impl Reply {
         }
     }
 
-    /// The echo of a command: its word with bits 31 and 30 set, the data as they were sent (for cams `U`). Compare all of
-    /// it: an older reply may have the same code (reference 4).
+    /// Returns the echo of a command: its word with bits 31 and 30 set, the data as sent (for cams `U`). Compare all of it:
+    /// an older reply may have the same code (reference 4).
     pub fn echo_of(command: Command) -> Self {
         Reply::parse(command.emit() | ECHO)
     }
@@ -128,7 +128,7 @@ impl ErrorWord {
         }
     }
 
-    /// Returns what to do; hardly in the manual (`U`).
+    /// Returns the remedy; mostly not in the manual (`U`).
     pub const fn remedy(self) -> &'static str {
         match (self.code.get(), self.data.get()) {
             (1, _) => "send a number within its limits, then run",

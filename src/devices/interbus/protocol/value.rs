@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Value(u32);
 
-/// Bits 28..25 of a word: which parameter, cam or error it is about. 0 to 15.
+/// Bits 28..25 of a word: the parameter, cam or error. 0 to 15.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Code(u8);
 
@@ -14,12 +14,12 @@ impl Value {
     /// 1FFFFFFh.
     pub const MAX: Value = Value((1 << Value::BITS) - 1);
 
-    /// `None` beyond 25 bits.
+    /// Creates it from a number; `None` beyond 25 bits.
     pub const fn new(number: u32) -> Option<Self> {
         if number <= Value::MAX.0 { Some(Value(number)) } else { None }
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn get(self) -> u32 {
         self.0
     }
@@ -30,24 +30,24 @@ impl Value {
         (self.0 << above) as i32 >> above
     }
 
-    /// The field of a word.
+    /// Creates the field of a word.
     pub const fn of_word(word: u32) -> Self {
         Value(word & Value::MAX.0)
     }
 }
 
 impl Code {
-    /// `None` beyond 4 bits.
+    /// Creates it from a number; `None` beyond 4 bits.
     pub const fn new(code: u8) -> Option<Self> {
         if code < 16 { Some(Code(code)) } else { None }
     }
 
-    /// Its number.
+    /// Returns its number.
     pub const fn get(self) -> u8 {
         self.0
     }
 
-    /// The field of a word.
+    /// Creates the field of a word.
     pub const fn of_word(word: u32) -> Self {
         Code((word >> Value::BITS & 0xF) as u8)
     }

@@ -1,4 +1,5 @@
-//! The words of the reference, both ways, and where the manual contradicts itself. Property tests for all other words.
+//! The words of the reference, in both directions, and the contradictions of the manual. Property tests for all other
+//! words.
 
 use proptest::prelude::*;
 
@@ -27,7 +28,7 @@ fn program(number: u8) -> Command {
     Command::Cams(ProgramNumber::new(number))
 }
 
-/// Reference 3, 5 and 7: a command, its word, a mode in which it is taken for it.
+/// Reference 3, 5 and 7: a command, its word, and a mode in which it has this meaning.
 #[test]
 fn the_published_commands() {
     let register = |number| Command::ReadOut(ReadOut::chip_register(number).unwrap());
@@ -151,7 +152,7 @@ fn what_was_read_out_has_its_unit() {
     assert_eq!((ReadOut::new(0x5D).register(), ReadOut::new(0xC).register()), (Some(5), None));
 }
 
-/// Reference 6, by its numbers; those that are about reading and writing of bytes. 8: the echo of steps 255.
+/// Reference 6, by its numbers, as far as it is about reading and writing of bytes. 8: the echo of steps 255.
 #[test]
 fn the_manual_contradicts_itself() {
     assert_eq!(id_code(Class::K3, Interface::Standard), 55, "1: 37h");
@@ -173,7 +174,7 @@ fn the_manual_contradicts_itself() {
     assert!(matches!(Reply::parse(0xC200_00FF), Reply::Echo { .. }), "11: received");
 }
 
-/// Reference 6.3: the same word in each mode, and what must not be sent.
+/// Reference 6.3: the same word in each mode, and words that must not be sent.
 #[test]
 fn the_mode_tells_what_a_word_means() {
     let (zero, start) = (value(0), Command::Velocity(true));
@@ -207,7 +208,7 @@ fn the_mode_tells_what_a_word_means() {
     }
 }
 
-/// Reference 4 and 5: what a cam's echo looks like is assumed.
+/// Reference 4 and 5: the echo of a cam is an assumption.
 #[test]
 fn echoes_are_told_by_the_mode() {
     assert_eq!(Reply::parse(0xC200_00FF).echoed(Parameterisation), Some(set(P::Steps, 255)));
@@ -271,7 +272,7 @@ fn lamps_say_what_is_the_matter() {
     assert_eq!(says(Off, Off, Off, Off), None);
 }
 
-/// Reference 7; the wrap is assumed there.
+/// Reference 7; the wrap is an assumption there.
 #[test]
 fn the_gear_rounds_down() {
     let cases = [
@@ -306,7 +307,7 @@ fn parameters_have_limits() {
         (P::Turns, 1, 4096),
         (P::Direction, 3, 4),
         (P::Preset, 0, 3599),
-        // Issue 22.6: a place within the measuring range.
+        // Issue 22.6: a position within the measuring range.
         (P::ZeroShift, 0, 3599),
         (P::Default, 0, 0),
     ] {
@@ -337,7 +338,7 @@ fn cams_are_on_between_their_edges() {
     assert_eq!([0x14, 0x15, 0x213, 0x214].map(|at| program.outputs(value(at))), [0, 8, 8, 0]);
 }
 
-/// Any cams, many of them short, at the ends of the range or over them.
+/// Returns any cams, many of them short, at the ends of the range or across them.
 fn any_programs() -> impl Strategy<Value = [Program; 8]> {
     let edge = prop_oneof![0_u32..40, 0x1FF_FFD0_u32..=0x1FF_FFFF, 0..=0x1FF_FFFF_u32];
     let cam = (edge.clone(), edge).prop_map(|(start, stop)| Cam { start: value(start), stop: value(stop) });
@@ -390,7 +391,7 @@ proptest! {
         prop_assert_eq!(output.position_bits(shift(at)), position & shift(at).mask());
     }
 
-    /// The same as the plain programs: at edges, beside them and anywhere.
+    /// The result equals that of the plain programs: at edges, next to them and anywhere.
     #[test]
     fn compiled_programs_are_the_same(programs in any_programs(), anywhere in 0..=0x1FF_FFFF_u32) {
         let compiled = Compiled::new(&programs);

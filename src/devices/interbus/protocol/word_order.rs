@@ -9,10 +9,10 @@ pub const UNIT: Whole<u8> = Whole(Quantity::Unit, 0..=255);
 pub const INPUT: Whole<u16> = Whole(Quantity::InputRegister, 0..=LAST);
 /// The first of the two holding registers of an OUT word.
 pub const OUTPUT: Whole<u16> = Whole(Quantity::HoldingRegister, 0..=LAST);
-/// The last register that has one behind it.
+/// The last register that is followed by another.
 const LAST: u16 = u16::MAX - 1;
 
-/// Which half of a word is in the first of its two registers.
+/// The half of a word that is in the first of its two registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WordOrder {
     /// Bits 31..16 (`U`: the usual order of INTERBUS).
@@ -23,11 +23,11 @@ pub enum WordOrder {
 }
 
 impl WordOrder {
-    /// As links spell it.
+    /// Spelling in links.
     pub const WORDS: Words<WordOrder> =
         Words(&[("high-first", WordOrder::HighFirst), ("low-first", WordOrder::LowFirst)]);
 
-    /// The registers of a word.
+    /// Returns the registers of a word.
     pub const fn registers(self, word: u32) -> [u16; 2] {
         let (high, low) = ((word >> 16) as u16, word as u16);
         match self {
@@ -36,7 +36,7 @@ impl WordOrder {
         }
     }
 
-    /// The word of two registers.
+    /// Returns the word of two registers.
     pub const fn word(self, [first, second]: [u16; 2]) -> u32 {
         let (high, low) = match self {
             WordOrder::HighFirst => (first, second),

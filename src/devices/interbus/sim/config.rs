@@ -1,5 +1,5 @@
-//! The settings of a virtual encoder and its gateway, as the query of a `sim:` link gives them:
-//! `steps=360&revolutions=1&cams=demo&rpm=10`. It opens nothing.
+//! The settings of a virtual encoder and its gateway, as in the query of a `sim:` link:
+//! `steps=360&revolutions=1&cams=demo&rpm=10`. Nothing is opened here.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ parameters! {
     /// The settings of a virtual gateway and the encoders behind it. The default is one K3 encoder with factory
     /// settings, at rest, without faults; a gateway with unit 1, registers from 0 and the high word first.
     pub struct Config: ConfigError {
-        // The gear, with what has to fit into it: checked together, and put into the memory.
+        // The gear, and the values that must fit into it: checked together, and put into the memory.
         steps: Option<String> = None, "steps" => Maybe(ANY);
         revolutions: Option<String> = None, "revolutions" => Maybe(ANY);
         pub(super) memory: Memory = Memory::delivered();
@@ -35,12 +35,12 @@ parameters! {
         pub(super) narrow_temperature: bool = false, "temperature-bits" => Words(&[("25", false), ("16", true)]);
         /// Read-out 3 gives 0 or 1 and not a code (`U`).
         pub(super) complement_bit: bool = false, "complement" => Words(&[("code", false), ("bit", true)]);
-        /// The cam program that runs, else normal running.
+        /// The running cam program, else normal running.
         pub(super) mode: StartupMode = StartupMode::K3, "program" => Checked(Expected::Program, mode);
-        /// There are programs with cams.
+        /// If set, there are programs with cams.
         demonstration: bool = false, "cams" => Words(&[("demo", true), ("none", false)]);
         pub(super) stores: u32 = 3, "stores" => Checked(Expected::Stores, number::<u32>);
-        /// Steps are given less one, as in older encoders.
+        /// If set, steps are reported minus one, as by older encoders.
         pub(super) steps_minus_one: bool = false, "steps-minus-one" => SWITCH;
         /// How long the word reports busy.
         pub(super) busy: Duration = Duration::from_millis(5), "busy" => Milliseconds(0..=60_000);
@@ -67,11 +67,11 @@ parameters! {
 const VALUE: Whole<u32> = Whole(Quantity::Number, 0..=Value::MAX.get());
 
 impl Config {
-    /// Reads keys and values, already percent-decoded. Of a key given twice the last counts. Numbers are decimal or
+    /// Parses keys and values, already percent-decoded. Of a key given twice the last one counts. Numbers are decimal or
     /// `0x…`.
     ///
     /// # Errors
-    /// With a sentence that names the key and what is allowed.
+    /// A sentence that names the key and the allowed values.
     pub fn from_pairs(pairs: &[(String, String)]) -> Result<Self, ConfigError> {
         let mut config: Config = setting::read(VirtualDevice::EncoderOf("INTERBUS"), pairs)?;
         config.fill_memory()?;

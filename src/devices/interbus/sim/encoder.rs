@@ -1,14 +1,14 @@
-//! The encoder without any line: what an OUT word does at a moment, and what its IN word is then (reference 2 to 5).
+//! The encoder without a line: the effect of an OUT word at a moment, and the resulting IN word (reference 2 to 5).
 //!
 //! ```text
 //! running ── parameter, cam word ──▶ setting ── run ──▶ store, running
 //!    ├── 2021xxxxh, 2020xxxxh ──▶ reading out ── normal, run ──▶ running (setting, if something was set and not stored)
 //!    └── 2080000ph ──▶ cam program; of a changed one before it a store
 //! ```
-//! Chosen here (`U`): a store is spent for every parameterisation and every program into which anything was written, be it
-//! what it held; a parameter that comes where none is legal is an unknown one (84000000), and any other word that means
-//! nothing in its mode gets no reaction; the mode, the place of the zero point and a preset that was fired survive a loss
-//! of power without a store; a speed has its sign in 25 bits; IN is 86000000 while what the EEPROM held is lost.
+//! Chosen here (`U`): a store is used for every parameterisation and every program to which anything was written, even an
+//! equal value; a parameter where none is legal is unknown (84000000), and any other word without a meaning in its mode has
+//! no effect; the mode, the zero point and a fired preset survive a loss of power without a store; a speed has its sign in
+//! 25 bits; IN is 86000000 while the content of the EEPROM is lost.
 
 mod cams;
 mod position;
@@ -67,7 +67,7 @@ struct Identity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Activity {
     Running,
-    /// A parameter or a cam word was the last: position and cam outputs do not count.
+    /// A parameter or a cam word was the last: position and cam outputs are invalid.
     Setting,
     ReadingOut,
 }
@@ -80,12 +80,12 @@ enum InWordContent {
     Word(u32),
 }
 
-/// The IN word before the OUT word changed. Every reading of the IN word is a cycle; without readings cycles go on by
+/// The IN word before the OUT word changed. Every reading of the IN word is a cycle; without readings cycles continue by
 /// themselves.
 #[derive(Clone, Copy, Debug, Default)]
 struct Old {
     word: u32,
-    /// In which it still stands there.
+    /// Number of cycles in which it is still returned.
     cycles: u32,
     until: Moment,
 }
@@ -121,7 +121,8 @@ impl Encoder {
     /// Chosen; read-out 7.
     const SOFTWARE_VERSION: u32 = 204;
 
-    /// The encoder that `config` wants; of several behind a gateway this one, counted from 0. It got its power long ago.
+    /// Creates an encoder from `config`; of several behind a gateway this one, counted from 0. It has been powered for a
+    /// long time.
     pub(super) fn new(config: &Config, number: u8) -> Self {
         let memory = config.memory.clone();
         Encoder {
@@ -179,7 +180,7 @@ impl Encoder {
         self.eeprom.stores()
     }
 
-    /// The mode that read-out 9 gives.
+    /// Returns the mode that read-out 9 gives.
     pub const fn startup_mode(&self) -> StartupMode {
         self.mode
     }
@@ -195,12 +196,12 @@ impl Encoder {
         }
     }
 
-    /// The OUT word that stands there.
+    /// Returns the present OUT word.
     pub const fn out(&self) -> u32 {
         self.out
     }
 
-    /// Warms or cools it: tenths of a degree Celsius.
+    /// Sets its temperature in tenths of a degree Celsius.
     pub const fn set_temperature(&mut self, tenths: i32) {
         self.identity.temperature = tenths;
     }
@@ -210,7 +211,7 @@ impl Encoder {
         self.eeprom.set_die_in_store(faults.die_in_store());
     }
 
-    /// Returns whether it has power, without which it has no words.
+    /// Returns whether it has power; without it, it has no words.
     pub const fn has_power(&self) -> bool {
         self.power
     }
@@ -223,7 +224,7 @@ impl Encoder {
         (self.content, self.old) = (InWordContent::Live, Old::default());
     }
 
-    /// Gives the power back to an encoder that has lost it. What its master still says it takes as something new.
+    /// Restores the power of an encoder that has lost it. The present word of its master counts as a new one.
     pub fn connect(&mut self, now: Moment) {
         if !self.power {
             self.power = true;
@@ -292,8 +293,8 @@ impl Encoder {
         }
     }
 
-    /// A word that means nothing in its mode. What a parameter, an edge, a shift or a read-out would look like gets the
-    /// error of its kind.
+    /// Handles a word without a meaning in its mode. One that looks like a parameter, an edge, a shift or a read-out gets
+    /// the error of its kind.
     fn wonder(&mut self, now: Moment, word: u32) {
         let of_cams = matches!(self.mode, StartupMode::Cams(_));
         match (word >> 29, word >> 16) {
@@ -336,13 +337,13 @@ impl Encoder {
         Ok(())
     }
 
-    /// The edge of run: back to position, speed or cam output.
+    /// Handles the edge of run: back to position, speed or cam output.
     fn run(&mut self) {
         self.store();
         self.turn_to(Activity::Running, InWordContent::Live);
     }
 
-    /// Keeps what was set, if anything was.
+    /// Stores the values that were set, if any.
     fn store(&mut self) {
         let Some(what) = self.unstored.take() else { return };
         match self.eeprom.store(&self.memory, what) {
@@ -375,7 +376,7 @@ impl Encoder {
         }
     }
 
-    /// Cam mode with this program, or position mode. A program that was changed is stored before.
+    /// Selects cam mode with this program, or position mode. A changed program is stored before.
     fn select(&mut self, now: Moment, program: Option<ProgramNumber>) {
         self.store();
         if !self.power {

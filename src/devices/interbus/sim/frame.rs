@@ -1,5 +1,5 @@
-//! One Modbus/TCP request and its reply (*MODBUS Messaging on TCP/IP Implementation Guide V1.0b*; *MODBUS Application
-//! Protocol V1.1b3*): functions 3, 4, 6 and 16. What is read and written by them is the registers' matter.
+//! Modbus/TCP requests and replies (*MODBUS Messaging on TCP/IP Implementation Guide V1.0b*; *MODBUS Application Protocol
+//! V1.1b3*): functions 3, 4, 6 and 16. Their registers are in another module.
 
 use rmodbus::ModbusProto;
 use rmodbus::consts::ModbusFunction;
@@ -8,13 +8,13 @@ use rmodbus::server::{ModbusFrame, Read};
 /// Why a request is refused: the codes of exceptions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Exception {
-    /// No such function here.
+    /// Unsupported function.
     Function = 0x01,
-    /// No such registers.
+    /// Unknown registers.
     Address = 0x02,
     /// A length or a count that cannot be.
     Value = 0x03,
-    /// The device behind the gateway does not answer: it is another unit, or has no power.
+    /// The device behind the gateway does not reply: another unit, or one without power.
     NoAnswer = 0x0B,
 }
 
@@ -27,7 +27,7 @@ pub(super) trait Registers {
 
 /// Bytes in front of the unit: transaction, protocol, length.
 const PREFIX: usize = 6;
-/// A frame's length counts from the unit on: unit and function at least, and a PDU of 253 bytes.
+/// A frame's length counts from the unit on: at least unit and function, and a PDU of up to 253 bytes.
 const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
 /// Takes a complete frame from the received bytes; `None` if it is not complete. Bytes that are not Modbus are dropped,
@@ -42,7 +42,7 @@ pub(super) fn next(received: &mut Vec<u8>) -> Option<Vec<u8>> {
     (received.len() >= PREFIX + length).then(|| received.drain(..PREFIX + length).collect())
 }
 
-/// The reply to a whole frame.
+/// Returns the reply to a whole frame.
 pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -> Vec<u8> {
     match carry_out(request, unit, registers) {
         Ok(reply) => reply,
@@ -50,7 +50,7 @@ pub(super) fn answer(request: &[u8], unit: u8, registers: &mut impl Registers) -
     }
 }
 
-/// The reply that refuses a request.
+/// Returns the reply that refuses a request.
 pub(super) fn refuse(request: &[u8], exception: Exception) -> Vec<u8> {
     let [high, low, _, _, _, _, unit, function, ..] = *request else { return Vec::new() };
     vec![high, low, 0, 0, 0, 3, unit, function | 0x80, exception as u8]

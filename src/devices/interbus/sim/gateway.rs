@@ -1,5 +1,5 @@
-//! The gateway: Modbus/TCP bytes of its clients, and the encoders behind it. Several clients may be connected at once,
-//! as with a real one, and every encoder obeys the last command, whoever sent it. Chosen here: a reply takes two
+//! The gateway: Modbus/TCP bytes of its clients, and the encoders behind it. Several clients may be connected at once, as
+//! with a real one, and every encoder obeys the last command, whichever client sent it. Chosen here: a reply takes two
 //! milliseconds; another unit, and an encoder without power, is exception 0Bh.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -15,7 +15,7 @@ use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, Faults, Motor};
 use crate::units::Moment;
 
-/// A client's connection to a virtual gateway. Made of a [`Config`]; [`connection`](Self::connection) gives another
+/// A client's connection to a virtual gateway. Created from a [`Config`]; [`connection`](Self::connection) gives another
 /// client's.
 #[derive(Clone)]
 pub struct Gateway {
@@ -40,7 +40,7 @@ struct Shared {
 impl Gateway {
     const REPLY: Duration = Duration::from_millis(2);
 
-    /// The virtual gateway as `config` wants it, with its encoders.
+    /// Creates the virtual gateway from `config`, with its encoders.
     pub fn new(config: &Config) -> Self {
         let shared = Shared {
             unit: config.unit,
@@ -65,7 +65,7 @@ impl Gateway {
         self.with_encoder(|encoder| encoder.motor())
     }
 
-    /// Looks into the first encoder, or does something to it that no bus can.
+    /// Reads the first encoder, or changes it in a way that no bus can.
     pub fn with_encoder<T>(&self, work: impl FnOnce(&mut Encoder) -> T) -> T {
         work(&mut self.lock().encoders.first)
     }
@@ -78,7 +78,7 @@ impl Gateway {
     }
 
     fn lock(&self) -> MutexGuard<'_, Shared> {
-        // A virtual device left behind by a panicking test is still a device.
+        // The virtual device stays usable after a test has panicked.
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -101,14 +101,14 @@ impl Registers for GatewayRegisters<'_> {
 }
 
 impl Shared {
-    /// Carries a request out; its reply as it comes back to the host, if it does.
+    /// Carries out a request; returns its reply as received by the host, if it is.
     fn take(&mut self, request: &[u8]) -> Option<Vec<u8>> {
         let silent = self.faults.silent_after().is_some_and(|requests| requests <= self.requests);
         self.requests = self.requests.saturating_add(1);
         if silent {
             return None;
         }
-        // f64() is below 1, so that 1 always happens and 0 never does.
+        // f64() is below 1, so 1 always happens and 0 never does.
         let reply = if self.rng.f64() < self.exceptions {
             frame::refuse(request, Exception::NoAnswer)
         } else {
@@ -118,7 +118,8 @@ impl Shared {
         self.carry(reply)
     }
 
-    /// TCP brings bytes or none: what happens to a byte of a serial line happens to a reply as a whole.
+    /// Applies the faults to a reply. TCP delivers bytes or none: a fault of one byte on a serial line affects the whole
+    /// reply.
     fn carry(&mut self, mut reply: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.passage(&mut self.rng, 0);
         let carried = passage.carried?;

@@ -1,4 +1,4 @@
-//! The settings of an encoder, and the EEPROM that keeps them: about 200 stores, guaranteed up to 500 (reference 3).
+//! The settings of an encoder, and the EEPROM that stores them: about 200 stores, guaranteed up to 500 (reference 3).
 
 use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, Program, ProgramNumber, STEPS_PER_TURN, TURNS, Value, WindowShift,
@@ -31,27 +31,27 @@ impl Memory {
         }
     }
 
-    /// Steps and turns.
+    /// Returns steps and turns.
     pub const fn gear(&self) -> Gear {
         self.gear
     }
 
-    /// 3 clockwise, 4 counterclockwise.
+    /// Returns 3 for clockwise, 4 for counterclockwise.
     pub const fn direction(&self) -> u32 {
         if self.counterclockwise { 4 } else { 3 }
     }
 
-    /// The position that the preset gives.
+    /// Returns the position that the preset gives.
     pub const fn preset(&self) -> u32 {
         self.preset
     }
 
-    /// A preset was set and not fired yet.
+    /// Returns whether a preset was set and not fired yet.
     pub const fn preset_is_armed(&self) -> bool {
         self.armed
     }
 
-    /// Zero point shifting.
+    /// Returns the zero point shifting.
     pub const fn zero_shift(&self) -> u32 {
         self.zero_shift
     }
@@ -61,7 +61,7 @@ impl Memory {
         self.shift
     }
 
-    /// A cam program; every cam is there, whether it works or not.
+    /// Returns a cam program; it has every cam, active or not.
     pub fn program(&self, number: ProgramNumber) -> &Program {
         let [first, ..] = &self.programs;
         self.programs.get(usize::from(number.get()) - 1).unwrap_or(first)
@@ -71,8 +71,8 @@ impl Memory {
         self.programs.get_mut(usize::from(number.get()) - 1)
     }
 
-    /// Programs that show what cams do: a staircase, cams within each other, cams over the end of the range; and where the
-    /// range has room for it the manual's example, cam 3 from 15 to 213.
+    /// Adds programs that demonstrate cams: a staircase, nested cams, cams over the end of the range; and if the range
+    /// allows it the manual's example, cam 3 from 15 to 213.
     pub(super) fn with_demonstration(mut self) -> Self {
         let steps = self.gear.steps();
         let place = |sixteenths: u32| (u64::from(steps) * u64::from(sixteenths) / 16) as u32;
@@ -103,7 +103,7 @@ const NONE: Program = {
     Program { cams: [Some(ZERO); Program::CAMS], mask: 0 }
 };
 
-/// All turns, and all steps that 25 bits hold.
+/// All turns, and all steps that fit into 25 bits.
 const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
     Ok(gear) => gear,
     Err(_) => unreachable!(),
@@ -113,10 +113,10 @@ const FULL: Gear = match Gear::new(Value::MAX.get(), TURNS) {
 #[derive(Clone, Debug)]
 pub(super) struct Eeprom {
     pub(super) kept: Memory,
-    /// Its content was lost: 86000000 until all of it is stored again.
+    /// Its content was lost: 86000000 until everything is stored again.
     pub(super) lost: bool,
     stores: u32,
-    /// Of those since the encoder was made: what a fault counts.
+    /// Number of stores since the encoder was created, which faults count.
     begun: u32,
     die_in_store: Option<u32>,
 }
@@ -132,9 +132,9 @@ pub(super) enum Stored {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
     Kept,
-    /// It is worn out, and what it held is lost (`U`: the manual guarantees 500 and says nothing of later ones).
+    /// It is worn out, and its content is lost (`U`: the manual guarantees 500 and says nothing about later ones).
     Worn,
-    /// Power was lost in the middle of it.
+    /// Power was lost during it.
     Died,
 }
 
@@ -180,10 +180,10 @@ impl Eeprom {
     }
 }
 
-/// A cam of a program.
+/// Returns a cam of a program.
 pub(super) fn cam_mut(program: &mut Program, number: CamNumber) -> Option<&mut Cam> {
     program.cams.get_mut(usize::from(number.get())).and_then(Option::as_mut)
 }
 
-/// Steps of the disc: all places of the shaft that an encoder tells apart.
+/// Steps of the disc: all positions of the shaft that an encoder distinguishes.
 pub(super) const PLACES: u32 = STEPS_PER_TURN * TURNS;

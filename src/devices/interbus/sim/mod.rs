@@ -1,6 +1,6 @@
-//! The virtual K3 encoder and the Modbus/TCP gateway in front of it (INTERBUS reference): the handshake with its busy
-//! words and its old echoes, the modes, eight cam programs, the EEPROM and its wear, losses of power. Whatever the manual
-//! leaves open (`U`) follows one documented choice, or a setting.
+//! The virtual K3 encoder and the Modbus/TCP gateway in front of it (INTERBUS reference): the handshake with its busy words
+//! and its old echoes, the modes, eight cam programs, the EEPROM and its wear, losses of power. What the manual leaves open
+//! (`U`) follows one documented choice, or a setting.
 //!
 //! | file | what it is |
 //! |---|---|

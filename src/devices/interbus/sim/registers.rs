@@ -1,6 +1,6 @@
 //! Process data as Modbus registers: every encoder has two input registers with its IN word and two holding registers with
 //! its OUT word. Reading one or both of them, or writing one or both, is a cycle of its process data. The word of a K1
-//! encoder, which is half as long, stands in the lower register.
+//! encoder, which is half as long, is in the lower register.
 
 use super::config::Config;
 use super::encoder::Encoder;
@@ -48,12 +48,12 @@ impl Map {
         Map { input: config.input, output: config.output, order: config.order }
     }
 
-    /// IN words: function 4.
+    /// Reads IN words: function 4.
     pub(super) fn inputs(&self, encoders: &mut Encoders, now: Moment, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.input, first, count, |encoder| encoder.read(now).ok_or(Exception::NoAnswer))
     }
 
-    /// OUT words as they stand: function 3.
+    /// Reads the present OUT words: function 3.
     pub(super) fn outputs(&self, encoders: &mut Encoders, first: u16, count: u16) -> Result<Vec<u16>> {
         self.read(encoders, self.output, first, count, |encoder| Ok(encoder.out()))
     }
@@ -100,7 +100,7 @@ impl Map {
         Ok(registers)
     }
 
-    /// Returns the range of registers, counted from the first encoder's; all of them have to exist.
+    /// Returns the range of registers, counted from the first encoder's; all of them must exist.
     fn range(&self, encoders: &Encoders, base: u16, first: u16, count: usize) -> Result<usize> {
         let begin = first.checked_sub(base).map(usize::from).ok_or(Exception::Address)?;
         if begin + count <= encoders.registers() { Ok(begin) } else { Err(Exception::Address) }

@@ -1,9 +1,9 @@
-//! The shaft: its place as an exact function of time, in steps of the disc, of which a turn has 8192.
+//! The shaft: its position as an exact function of time, in steps of the disc, of which a turn has 8192.
 
 use crate::devices::interbus::protocol::STEPS_PER_TURN;
 use crate::units::Moment;
 
-/// A shaft turning at constant speed. Its position does not wrap: that is done by the gear.
+/// Shaft turning at constant speed. Its position does not wrap: the gear does that.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shaft {
     rpm: f64,
@@ -17,7 +17,7 @@ impl Shaft {
         Shaft { rpm, place: f64::from(place), since: Moment::START }
     }
 
-    /// Revolutions a minute; above 0 it turns clockwise, and its place rises.
+    /// Returns the revolutions per minute; positive clockwise, with a rising position.
     pub(super) const fn rpm(&self) -> f64 {
         self.rpm
     }

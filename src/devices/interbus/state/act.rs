@@ -1,4 +1,4 @@
-//! The user's actions on an encoder: edits take effect at once, everything else is a job on its line or a task.
+//! The user's actions on an encoder: edits take effect at once, everything else is a job of the session or a task.
 
 use super::action::InterbusAction;
 use super::encoder::Encoder;
@@ -62,7 +62,7 @@ impl Encoder {
         };
     }
 
-    /// A profile was read for a file: with the names that its cams have here.
+    /// Takes a profile that was read for a file, and adds the names of its cams.
     pub(super) fn saved(&mut self, mut profile: InterbusProfile, services: &mut Services) {
         let programs: Vec<_> = profile.image.known().map(|(number, own)| (number, *own)).collect();
         self.staged.refresh_parameters(profile.image.parameters);
@@ -74,7 +74,7 @@ impl Encoder {
         self.session.write_read(Body::new(profile), edits, Vec::new(), services);
     }
 
-    /// Reads the rest of a virtual encoder by itself; false if there is nothing more.
+    /// Reads the rest of a virtual encoder automatically; returns false if there is nothing more.
     pub(super) fn read_on(&mut self, services: &mut Services) -> bool {
         if !self.session.is_virtual() || self.session.phase == Phase::Offline {
             return false;

@@ -1,7 +1,8 @@
-//! The cams of a program as a chart: a lane for each, over the measuring range or around a ring; what can be taken hold of
-//! in it, and where that would come to. It says what a cam becomes; it changes none.
+//! The cams of a program as a chart: a lane for each, over the measuring range or around a ring; its movable parts, and the
+//! result of moving them. It computes changed cams; it changes none.
 //!
-//! A position is a place with a width: a cam from 10 to 19 is drawn from 10 to 20, so that what is not on is not drawn.
+//! A position is a place with a width: a cam from 10 to 19 is drawn from 10 to 20, so that inactive positions are not
+//! drawn.
 
 mod grid;
 mod moving;
@@ -34,15 +35,15 @@ pub struct Chart {
 pub struct Lane {
     pub cam: CamNumber,
     pub name: Option<String>,
-    /// It works.
+    /// The cam is active.
     pub on: bool,
     /// Its edges; `None` if the profile does not contain them.
     pub edges: Option<Cam>,
     /// The encoder, or the profile, has it otherwise.
     pub edited: bool,
-    /// It works and lies beyond the measuring range.
+    /// It is active and beyond the measuring range.
     pub beyond: bool,
-    /// It works and meets another pulse of its track.
+    /// It is active and overlaps another pulse of its track.
     pub clashes: bool,
 }
 
@@ -63,9 +64,9 @@ pub struct VisibleRange {
 /// An output at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lamp {
-    /// As the program that is wanted gives it; `None`: nothing is known of the position or the program.
+    /// Output by the edited program; `None`: the position or the program is not known.
     pub simulated: Option<bool>,
-    /// As the encoder gives it; `None`: it does not.
+    /// Output reported by the encoder; `None`: not reported.
     pub own: Option<bool>,
 }
 
@@ -73,14 +74,14 @@ pub struct Lamp {
 const LEAST_SPAN: f64 = 8.0;
 
 impl Chart {
-    /// A program of what is wanted; `None`: nothing is known of it.
+    /// Creates the chart of an edited program; `None`: it is not known.
     pub fn of(staged: &Staged, program: ProgramNumber) -> Option<Self> {
         let wanted = staged.wanted()?;
         wanted.image.program(program)?;
         Some(Chart::wanted(staged, wanted, program))
     }
 
-    /// The same of something that is only tried.
+    /// Creates the same for a trial.
     pub fn wanted(staged: &Staged, wanted: &EditedValues, program: ProgramNumber) -> Self {
         let marks = wanted.marks();
         let about = |cam, is: fn(&Mark) -> bool| marks.iter().any(|mark| is(mark) && mark.is_about(program, cam));
@@ -101,7 +102,7 @@ impl Chart {
         self.lanes.get(usize::from(cam.get()))
     }
 
-    /// The same with a cam somewhere else: what is shown while it is dragged.
+    /// Returns the same with a cam at another place: shown during a drag.
     #[must_use]
     pub fn with(&self, cam: CamNumber, to: Cam) -> Self {
         let mut chart = self.clone();
@@ -117,25 +118,25 @@ impl Chart {
         self.lanes.iter().find(|lane| !lane.on).map(|lane| lane.cam)
     }
 
-    /// The last position.
+    /// Returns the last position.
     pub const fn last(&self) -> u32 {
         self.range.saturating_sub(1)
     }
 
-    /// The outputs at a position: bit i for cam i, as far as their edges are known.
+    /// Returns the outputs at a position: bit i for cam i, as far as their edges are known.
     pub fn outputs(&self, position: u32) -> u8 {
         let on = |lane: &&Lane| lane.on && lane.edges.is_some_and(|cam| cam.is_on(Value::of_word(position)));
         self.lanes.iter().filter(on).fold(0, |outputs, lane| outputs | 1 << lane.cam.get())
     }
 
-    /// The outputs as indicators: those of this program at a position, beside the encoder's own.
+    /// Returns the outputs as indicators: those of this program at a position, and the encoder's own.
     pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [Lamp; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
         CamNumber::EACH.map(|cam| Lamp { simulated: bit(simulated, cam), own: bit(own, cam) })
     }
 
-    /// A cam's edge; `None` where the cam has none.
+    /// Returns a cam's edge; `None` if the cam has none.
     pub fn edge(&self, cam: CamNumber, edge: Edge) -> Option<u32> {
         Some(of_edge(self.lane(cam)?.edges?, edge).get())
     }
@@ -149,7 +150,7 @@ impl Lane {
 }
 
 impl Lamp {
-    /// The encoder says something else than this program gives.
+    /// Returns whether the encoder reports another state than this program gives.
     pub fn differs(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)
     }
@@ -164,12 +165,12 @@ impl Lamp {
 }
 
 impl VisibleRange {
-    /// The whole measuring range.
+    /// Creates the whole measuring range.
     pub fn whole(range: u32) -> Self {
         VisibleRange { first: 0.0, span: f64::from(range.max(1)) }
     }
 
-    /// The first position that is to be seen, with its fraction.
+    /// Returns the first visible position, with its fraction.
     pub const fn first(&self) -> f64 {
         self.first
     }
@@ -208,7 +209,7 @@ impl VisibleRange {
         VisibleRange { first: self.first + by, ..*self }.within(range)
     }
 
-    /// The same for another range, which may be shorter by now.
+    /// Returns the same for another range, which may be shorter by now.
     #[must_use]
     pub fn within(&self, range: u32) -> Self {
         let most = f64::from(range.max(1));
@@ -226,7 +227,7 @@ pub fn stretches(cam: Cam, range: u32) -> Vec<Stretch> {
     within.map(|(first, end)| Stretch { first, last: end.min(last) }).collect()
 }
 
-/// One of a cam's edges.
+/// Returns one of a cam's edges.
 pub const fn of_edge(cam: Cam, edge: Edge) -> Value {
     match edge {
         Edge::Start => cam.start,

@@ -10,10 +10,10 @@ use crate::devices::interbus::sim::Config;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// The way to the encoder.
+/// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum InterbusLinkKind {
-    /// The virtual encoder in this program, behind a virtual gateway.
+    /// Virtual encoder in this program, behind a virtual gateway.
     #[default]
     Virtual,
     /// A Modbus/TCP gateway.
@@ -22,14 +22,14 @@ pub enum InterbusLinkKind {
     Replay,
 }
 
-/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
-/// for what is usual.
+/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
+/// means the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct InterbusForm {
     pub kind: InterbusLinkKind,
     /// Name or address of the gateway.
     pub host: String,
-    /// Its TCP port; empty: 502.
+    /// TCP port; empty: 502.
     pub tcp_port: String,
     /// The recording.
     pub file: String,
@@ -49,7 +49,7 @@ const PORT: &str = "502";
 impl FormModel for InterbusForm {
     type Finder = NoFinder<Self>;
 
-    // The virtual encoder as the window begins with it: a machine that turns slowly, with cams on its turn.
+    // The virtual encoder initially offered by the window: a machine that turns slowly, with cams.
     fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         for (name, value) in [("rpm", "6"), ("steps", "3600"), ("revolutions", "1"), ("cams", "demo")] {
@@ -88,7 +88,7 @@ impl FormModel for InterbusForm {
 }
 
 impl InterbusForm {
-    /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
+    /// Returns the parameters to enter: those of the virtual encoder, if it is one, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == InterbusLinkKind::Virtual { Config::entries() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
@@ -104,7 +104,7 @@ impl InterbusForm {
         Config::entries()
     }
 
-    /// Fills in the entry of a parameter; false where there is none that can show it.
+    /// Fills in the entry of a parameter; returns false if no entry can show it.
     fn take(&mut self, name: &str, value: &str) -> bool {
         let is_low_first = (name, value) == LOW_FIRST;
         self.low_first |= is_low_first;

@@ -10,7 +10,7 @@ use crate::devices::interbus::profile::InterbusProfile;
 use crate::profile::Document;
 use crate::store::DeviceKey;
 
-/// The edits, each with its place.
+/// The edits by location.
 pub(crate) type Edits = Vec<SavedEdit>;
 
 impl HasSession for Encoder {

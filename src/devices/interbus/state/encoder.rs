@@ -1,5 +1,4 @@
-//! An INTERBUS encoder on the desk, or a profile of one: what is known of it, the user's edits beside it, what runs on its
-//! line.
+//! An open INTERBUS encoder, or a profile of one: its known data, the user's edits, and the running jobs.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -32,7 +31,7 @@ pub struct Encoder {
     pub survey: Option<Survey>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
-    /// Parameters and cams beside the edits of them.
+    /// Parameters and cams, and their edits.
     pub staged: Staged,
     /// The values read out, by number.
     pub read_outs: BTreeMap<u16, Value>,
@@ -50,7 +49,7 @@ pub struct Encoder {
     pub scale: Scale,
     /// Why the last edit was refused.
     pub refusal: Option<Text>,
-    /// A person has said that the machine stands.
+    /// The user has confirmed that the machine stands still.
     stopped: bool,
     /// Rows of the table that is being opened which name no program are for this one.
     pub(super) table_program: ProgramNumber,
@@ -87,20 +86,20 @@ impl Encoder {
         self.staged.wanted().map(EditedValues::marks).unwrap_or_default()
     }
 
-    /// The same for the eye, on every page but where a program is shown with its own.
+    /// Returns the marks to show on every page, except those of a program that is shown with its own.
     pub fn marks_beside(&self, program: Option<ProgramNumber>) -> Vec<Text> {
         let other = |mark: &Mark| program.is_none() || mark.program() != program;
         let marks: Vec<Mark> = self.marks().into_iter().filter(other).collect();
         some(&cams::words::marks(&marks), Text::clone)
     }
 
-    /// The profile, where this is one.
+    /// Returns the profile, if this is one.
     pub fn profile(&self) -> Option<&InterbusProfile> {
         let Source::File { document, .. } = &self.session.source else { return None };
         document.body.get::<InterbusProfile>()
     }
 
-    /// The profile as the user wants it, where this is one.
+    /// Returns the edited profile, if this is one.
     pub(crate) fn wanted_profile(&self) -> Option<InterbusProfile> {
         let (profile, wanted) = (self.profile()?, self.staged.wanted()?);
         Some(InterbusProfile { image: wanted.image.clone(), names: wanted.names.clone(), ..profile.clone() })
@@ -127,7 +126,7 @@ impl Encoder {
         self.record.last().and_then(|reading| reading.mode).or_else(read)
     }
 
-    /// Returns what is needed to read its IN words.
+    /// Returns the facts needed to decode its IN words.
     pub fn known(&self) -> WordContext {
         let mode = match self.mode() {
             Some(StartupMode::Velocity) => Mode::Velocity,
@@ -137,12 +136,12 @@ impl Encoder {
         WordContext { mode, read_out: None, shift: self.shift() }
     }
 
-    /// The shift of the window that the encoder has.
+    /// Returns the shift of the window that the encoder has.
     pub fn shift(&self) -> Option<WindowShift> {
         self.staged.device().and_then(|image| image.shift)
     }
 
-    /// The position that came last, in steps; `None` where the word does not tell it.
+    /// Returns the latest position in steps; `None` if the word does not contain it.
     pub fn position(&self) -> Option<u32> {
         self.record.last().and_then(WordReading::position)
     }
@@ -153,7 +152,7 @@ impl Encoder {
         url.query.read("order", &WordOrder::WORDS).ok().flatten().unwrap_or_default()
     }
 
-    /// A person has said that the machine stands; nothing moves behind a virtual encoder.
+    /// Returns whether the user has confirmed that the machine stands still; a virtual encoder moves none.
     pub fn is_stopped(&self) -> bool {
         self.stopped || self.session.is_virtual()
     }
@@ -167,7 +166,7 @@ impl Encoder {
         self.stopped = stopped;
     }
 
-    /// Steps of the measuring range, as it is wanted.
+    /// Returns the steps of the measuring range, as edited.
     pub fn range(&self) -> u32 {
         self.staged.wanted().map_or(0, EditedValues::range)
     }
@@ -176,17 +175,17 @@ impl Encoder {
         self.read_outs.get(&what.number()).copied()
     }
 
-    /// The programs that were read.
+    /// Returns the programs that were read.
     pub(super) fn known_programs(&self) -> Vec<ProgramNumber> {
         self.staged.device().map(|image| image.known().map(|(number, _)| number).collect()).unwrap_or_default()
     }
 
-    /// Programs that were read, of eight.
+    /// Returns the number of programs that were read, of eight.
     pub fn programs_read(&self) -> usize {
         self.staged.device().map_or(0, |image| image.known().count())
     }
 
-    /// Write cycles of its memory that this computer has seen, beside those that cannot be counted.
+    /// Returns the write cycles of its memory recorded on this computer, without those that cannot be counted.
     pub fn stores(&self) -> Option<u64> {
         self.session.cycles
     }
@@ -242,7 +241,7 @@ impl Encoder {
         services.note(Severity::Note, vec![fact], Some(&self.session.name()));
     }
 
-    /// A word of a handshake passed.
+    /// Handles a word of a handshake.
     pub(super) fn shake(&mut self, step: Handshake) {
         self.handshake.push_back(step);
         let surplus = self.handshake.len().saturating_sub(STEPS);
@@ -250,7 +249,7 @@ impl Encoder {
     }
 }
 
-/// The name by which the log and the jobs call an encoder.
+/// Returns the name by which the log and the jobs call an encoder.
 fn title(identity: &Identity) -> String {
     format!("K3 · {}", identity.serial_number)
 }

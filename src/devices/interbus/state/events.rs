@@ -130,7 +130,7 @@ impl SessionEvents for Encoder {
             InterbusOutput::Saved(profile) => self.saved(*profile, services),
             InterbusOutput::Prepared(prepared) => self.planned(prepared, services),
             InterbusOutput::Committed(committed) => self.committed(*committed, services),
-            // The command line asks for these.
+            // Only the command line requests these.
             InterbusOutput::Identity(_) | InterbusOutput::Status(_) | InterbusOutput::Item(_) => {}
         }
     }
@@ -139,7 +139,7 @@ impl SessionEvents for Encoder {
         words::is_silence(error)
     }
 
-    /// Forgets also whether the machine stands still.
+    /// Also forgets whether the machine stands still.
     fn forget_requests(&mut self) {
         self.say_stopped(false);
         self.forget_plan();

@@ -1,4 +1,4 @@
-//! An INTERBUS encoder in words: the errors of jobs with it, and what is said on the way.
+//! Texts of an INTERBUS encoder: the errors of its jobs, and messages of its session.
 
 mod check;
 mod entry;
@@ -22,7 +22,7 @@ use crate::devices::interbus::procedures::{Awaited, Error, Implausible, LeftStat
 use crate::devices::interbus::protocol::{ErrorWord, GearError, Reply};
 use crate::link::LinkError;
 
-/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
     match error {
         JobError::Device(error) => vec![encoder(error)],
@@ -34,7 +34,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }
 }
 
-/// The wire itself failed, so that nothing more can be asked over it: why.
+/// Returns why the connection failed, if nothing more can be requested over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     lost(error.device()?).map(link)
 }
@@ -172,7 +172,7 @@ pub fn step_text(job_step: &JobStep) -> Text {
     }
 }
 
-/// A word as it is written everywhere.
+/// Returns a word in the usual form.
 fn word(word: u32) -> String {
     format!("0x{word:08X}")
 }

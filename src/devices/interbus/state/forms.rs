@@ -1,4 +1,4 @@
-//! Numbers that are typed, and what they are to change.
+//! Numbers entered by the user, and the changes that they mean.
 
 use super::staged::Edit;
 use super::words;
@@ -8,7 +8,7 @@ use crate::devices::interbus::profile::{Parameters, Scale, Unit};
 use crate::devices::interbus::protocol::{Parameter, Value};
 use crate::devices::interbus::state::TEXTS;
 
-/// A whole number, with blanks or apostrophes between its digits if need be.
+/// Parses a whole number; blanks or apostrophes between its digits are allowed.
 pub fn number(text: &str) -> Result<u32, Text> {
     let digits: String = text.chars().filter(|own| !matches!(own, ' ' | '\'' | '\u{a0}' | '\u{202f}')).collect();
     let number = match digits.strip_prefix("0x").or_else(|| digits.strip_prefix("0X")) {
@@ -18,10 +18,10 @@ pub fn number(text: &str) -> Result<u32, Text> {
     number.ok_or_else(|| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// The edit of a parameter that was typed. Whether it goes together with the others the edit says.
+/// Returns the edit of an entered parameter. The edit checks whether it fits the others.
 ///
 /// # Errors
-/// No number, in words.
+/// Not a number.
 pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<Edit, Text> {
     let value = number(text)?;
     Ok(match parameter {
@@ -35,10 +35,10 @@ pub fn parameter(parameter: Parameter, text: &str, now: &Parameters) -> Result<E
     })
 }
 
-/// The preset that is to be set; where nothing is typed, the one that is stored.
+/// Parses the preset to be set; an empty entry means the stored one.
 ///
 /// # Errors
-/// No number, or beyond the measuring range, in words.
+/// Not a number, or beyond the measuring range.
 pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
     if text.trim().is_empty() {
         return Ok(now.preset);
@@ -49,13 +49,13 @@ pub fn preset(text: &str, now: &Parameters) -> Result<u32, Text> {
 /// Parses how far a program is shifted, later or earlier.
 ///
 /// # Errors
-/// No number, in words.
+/// Not a number.
 pub fn offset(text: &str) -> Result<i64, Text> {
     let entry = text.trim().replace('\u{2212}', "-");
     entry.parse::<i32>().map(i64::from).map_err(|_| TEXTS.text("ib_entry.number").with("entry", text.trim()))
 }
 
-/// A position as it is typed: in the units of the machine.
+/// Returns a position as an entry, in the units of the machine.
 pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => step.to_string(),
@@ -63,10 +63,10 @@ pub fn typed(step: u32, scale: &Scale, range: u32) -> String {
     }
 }
 
-/// The step that is nearest to a position that was typed in the units of the machine.
+/// Returns the step that is nearest to a position that was typed in the units of the machine.
 ///
 /// # Errors
-/// No number, or beyond the measuring range, in words.
+/// Not a number, or beyond the measuring range.
 pub fn position(text: &str, scale: &Scale, range: u32) -> Result<u32, Text> {
     let refused = || TEXTS.text("ib_entry.position").with("entry", text.trim());
     let value = decimal(text).ok_or_else(refused)?;
@@ -90,7 +90,7 @@ pub fn usual_scale(unit: Unit, zero: u32, range: u32) -> Scale {
     Scale::new(unit, steps, zero).unwrap_or_default()
 }
 
-/// Steps in a turn of the machine, or in a millimetre; `None` where there is nothing to say.
+/// Returns the steps in a turn of the machine, or in a millimetre; `None` for steps.
 pub fn steps_of(scale: &Scale) -> Option<f64> {
     match scale.unit() {
         Unit::Steps => None,
@@ -99,20 +99,20 @@ pub fn steps_of(scale: &Scale) -> Option<f64> {
     }
 }
 
-/// A scale with other steps.
+/// Returns a scale with other steps.
 ///
 /// # Errors
-/// No number above 0, in words.
+/// Not a number above 0.
 pub fn scale(unit: Unit, text: &str, zero: u32) -> Result<Scale, Text> {
     let refused = || TEXTS.text("ib_entry.scale").with("entry", text.trim());
     let steps = decimal(text).ok_or_else(refused)?;
     Scale::new(unit, steps, zero).map_err(|_| refused())
 }
 
-/// A scale with its 0 at another position of the encoder.
+/// Returns a scale with its 0 at another position of the encoder.
 ///
 /// # Errors
-/// No position of the measuring range, in words.
+/// Not a position of the measuring range.
 pub fn with_zero(own: &Scale, text: &str, range: u32) -> Result<Scale, Text> {
     let zero = number(text)?;
     let last = range.saturating_sub(1);
@@ -157,7 +157,7 @@ mod tests {
         let edit = |parameter: Parameter, text: &str| super::parameter(parameter, text, &now());
         assert_eq!(edit(Parameter::Turns, "4096"), Ok(Edit::Revolutions(4096)));
         assert_eq!(edit(Parameter::Preset, "4095"), Ok(Edit::Preset(4095)));
-        // Reference 3: a preset is below the steps; steps are at most 8192 a turn.
+        // Reference 3: a preset is below the steps; steps are at most 8192 per turn.
         let refused = edit(Parameter::Preset, "4096").unwrap_err().words(crate::app::Language::English);
         assert_eq!(refused, "Preset value: 4096 is not within 0 to 4095.");
         assert!(edit(Parameter::Steps, "8193").is_err() && edit(Parameter::Steps, "8192").is_ok());

@@ -1,4 +1,4 @@
-//! Jobs in words, and which of them a running machine would notice.
+//! Texts of the jobs, and which of them disturb a running machine.
 
 use crate::app::Text;
 use crate::devices::interbus::jobs::InterbusJob;
@@ -23,7 +23,7 @@ pub(super) fn words(job: &InterbusJob) -> Text {
     }
 }
 
-/// Returns whether the job takes the position away or switches the outputs: the machine has to stand still.
+/// Returns whether the job removes the position or switches the outputs: the machine must stand still.
 pub(super) fn disturbs(job: &InterbusJob) -> bool {
     !matches!(job, InterbusJob::Hello | InterbusJob::Position)
 }

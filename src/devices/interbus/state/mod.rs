@@ -1,5 +1,4 @@
-//! The INTERBUS tab: what is known of an encoder, what is wanted of it beside that, and its cams as a chart. Complete
-//! without a window.
+//! The INTERBUS tab: the known data of an encoder, the user's edits, and its cams as a chart. Complete without a window.
 
 mod act;
 mod action;

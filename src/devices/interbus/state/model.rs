@@ -67,7 +67,7 @@ impl DeviceModel for Encoder {
     }
 
     fn ask_where_to_save(&mut self, services: &mut Services) {
-        // Before a name is asked for: reading for a file selects cam programs. What was read before needs no reading.
+        // Before asking for a file name: reading for a file selects cam programs. Data already read need no reading.
         if self.asks_for_standstill() && !self.is_stopped() && !self.saves_what_was_read() {
             services.notify(Severity::Warning, vec![TEXTS.text("ib_stop.first")], Some(&self.session.name()));
         } else {

@@ -1,4 +1,4 @@
-//! The cams that an encoder holds, made ready to be asked for every word: whether its outputs are what they give.
+//! The cams in an encoder, prepared for checking every word: whether its outputs match them.
 
 use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, StartupMode, Value};
@@ -8,21 +8,21 @@ use crate::devices::interbus::protocol::{Compiled, Program, ProgramNumber, Start
 pub struct Preview {
     programs: [Option<Program>; ProgramNumber::COUNT],
     compiled: Compiled,
-    /// Words whose outputs are what the program gives at their position.
+    /// Words whose outputs match the program at their position.
     pub same: u64,
-    /// Words whose outputs are others.
+    /// Words whose outputs differ.
     pub other: u64,
     /// The last of those.
     pub last: Option<Differing>,
 }
 
-/// Outputs that are not what a program gives.
+/// Outputs that differ from those of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differing {
     pub position: u32,
-    /// As the encoder says: bit i for cam i.
+    /// Reported by the encoder: bit i for cam i.
     pub own: u8,
-    /// As the program gives them.
+    /// By the program.
     pub expected: u8,
 }
 
@@ -38,14 +38,14 @@ impl Preview {
         Preview { programs, compiled, same: 0, other: 0, last: None }
     }
 
-    /// The encoder holds these; where they are others than before, nothing was compared yet.
+    /// Takes the programs of the encoder; if they differ from the previous ones, the comparison starts again.
     pub(super) fn follow(&mut self, programs: &[Option<Program>; ProgramNumber::COUNT]) {
         if self.programs != *programs {
             *self = Preview::of(*programs);
         }
     }
 
-    /// Compares the outputs in a word with those of its program, where both and the position are known.
+    /// Compares the outputs in a word with those of its program, if both and the position are known.
     pub(super) fn compare(&mut self, reading: &WordReading) {
         let Some(StartupMode::Cams(program)) = reading.mode else { return };
         let at = usize::from(program.get() - 1);
@@ -88,7 +88,7 @@ mod tests {
         for (position, outputs) in [(14, 0), (15, 8), (213, 8), (214, 0)] {
             preview.compare(&reading(2, position, outputs));
         }
-        // Of another program nothing is known.
+        // Another program is not known.
         preview.compare(&reading(1, 15, 0));
         assert_eq!((preview.same, preview.other), (4, 0));
         preview.compare(&reading(2, 214, 8));

@@ -20,7 +20,7 @@ pub enum WordSource {
 }
 
 impl WordSource {
-    /// All of them.
+    /// All kinds of words.
     pub const ALL: [WordSource; 4] = [WordSource::In, WordSource::Out, WordSource::K1, WordSource::K2];
 
     pub const fn word(self) -> &'static str {
@@ -50,7 +50,7 @@ impl WordSource {
 pub struct Reading {
     /// Direction of the words.
     pub source: WordSource,
-    /// In which mode the encoder is.
+    /// The mode of the encoder.
     pub mode: Mode,
     /// The value being read out, if any.
     pub read_out: Option<ReadOut>,
@@ -64,10 +64,10 @@ impl Default for Reading {
     }
 }
 
-/// A word and what it says.
+/// Word with its meaning.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DecodedWord {
-    /// As it was typed.
+    /// As entered.
     pub word: String,
     /// The meaning, or why it is not a word.
     pub meaning: Result<Text, Text>,
@@ -76,7 +76,7 @@ pub struct DecodedWord {
 }
 
 impl Reading {
-    /// Reads words that stand between blanks and commas, each with `0x` or `h` where it has one.
+    /// Decodes words separated by blanks and commas, with `0x` or `h` if present.
     pub fn lines(&self, text: &str) -> Vec<DecodedWord> {
         let words = text.split([' ', ',', ';', '\n', '\r', '\t']).filter(|word| !word.is_empty());
         words.map(|word| self.line(word)).collect()

@@ -1,4 +1,4 @@
-//! The recording of an INTERBUS encoder while its IN word is read: positions by its gear, its own speed, and its cam
+//! The recording of an INTERBUS encoder while its IN word is read: positions by its gear, its reported speed, and its cam
 //! outputs.
 
 use crate::devices::interbus::state::TEXTS;
@@ -12,16 +12,16 @@ use crate::devices::interbus::procedures::WordReading;
 use crate::devices::interbus::protocol::{CamNumber, Gear, StartupMode};
 use crate::units::Moment;
 
-/// Data that an encoder sends instead of its position, or with it.
+/// Data that an encoder sends instead of its position, or in addition to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RecordedValue {
-    /// Its own speed, in velocity mode.
+    /// Reported speed, in velocity mode.
     Speed,
     /// The output of a cam.
     Cam(CamNumber),
 }
 
-/// The recorder of an encoder, and the word that came last.
+/// Recorder of an encoder, and the latest word.
 #[derive(Debug, Default)]
 pub struct Record {
     pub(super) track: Track<RecordedValue>,
@@ -29,7 +29,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// A session has begun; what was recorded before stays.
+    /// Begins a session; earlier recordings stay.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.last = None;
         self.track.begin(began);
@@ -44,7 +44,7 @@ impl Record {
         }
     }
 
-    /// Records the first word: it is not known yet whether it is a position, so it is in no line.
+    /// Records the first word: it is not known yet whether it is a position, so it is added to no line.
     pub(super) fn glimpse(&mut self, reading: WordReading) {
         self.last = Some(reading);
     }
@@ -87,7 +87,7 @@ impl Record {
         self.track.add_watched(&what, &Watching { at, value, is_warned: false, never: None });
     }
 
-    /// The word that came last.
+    /// Returns the latest word.
     pub fn last(&self) -> Option<&WordReading> {
         self.last.as_ref()
     }

@@ -1,4 +1,4 @@
-//! The review of a write into an INTERBUS encoder: what its plan needs, warns of and costs.
+//! The review of a write to an INTERBUS encoder: the permissions, warnings and costs of its plan.
 
 use crate::app::explain::plain;
 use crate::app::review::{self, OpWords, Permit, Reviewed};
@@ -9,7 +9,7 @@ use crate::devices::interbus::profile::Op;
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as words;
 
-/// A write on its way.
+/// Review of a write.
 pub type Review = review::Review<Interbus>;
 pub type ReviewState = review::ReviewState<Interbus>;
 
@@ -79,7 +79,7 @@ impl Reviewed for Interbus {
     }
 
     fn is_worn(prepared: &Prepared) -> bool {
-        // Beyond the manufacturer's limit the user has to confirm once more; so where it is refused otherwise.
+        // Above the manufacturer's limit the user must confirm once more, also if it would otherwise be refused.
         matches!(prepared.wear(), Some(Wear::Ask(_) | Wear::Worn(_) | Wear::Unknown))
     }
 

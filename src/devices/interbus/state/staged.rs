@@ -1,10 +1,10 @@
-//! The values of a K3 encoder or a profile, and the edited ones beside them. Nothing is written to an encoder here; a
-//! plan is made of the difference.
+//! The values of a K3 encoder or a profile, and the edited ones. Nothing is written to an encoder here; a plan is made from
+//! the difference.
 //!
-//! Every edit makes another whole, which is what an undone step brings back. Edits survive a fresh reading: what the user
-//! changed stays as he wants it, whatever the encoder has now, and all else follows the encoder, in the steps before too.
-//! A cam program that was not read cannot be edited, since the cost of a change is not known; edits of an
-//! earlier time wait until it is read. In a profile, what is not said can be said.
+//! Every edit creates a complete new state, to which an undo returns. Edits survive a new reading: edited values stay,
+//! whatever the encoder has now, and all others follow the encoder, in earlier states as well. A cam program that was not
+//! read cannot be edited, since the cost of a change is not known; earlier edits of it wait until it is read. A profile can
+//! gain values that it does not have.
 //!
 //! Positions are steps, from 0 to one below the measuring range.
 
@@ -26,12 +26,12 @@ use crate::app::history::History;
 use crate::devices::interbus::profile::{Image, Names, Parameters};
 use crate::devices::interbus::protocol::{Cam, CamNumber, Program, ProgramNumber, WindowShift};
 
-/// All that can be edited, as it is wanted.
+/// All values that can be edited, in their edited state.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct EditedValues {
     /// The values written to an encoder.
     pub image: Image,
-    /// Names of programs and cams, which no encoder keeps. Two cams of a program with the same name are pulses on one
+    /// Names of programs and cams, which no encoder stores. Two cams of a program with the same name are pulses on one
     /// track.
     pub names: Names,
 }
@@ -39,10 +39,10 @@ pub struct EditedValues {
 /// The values that the edits are compared with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum BaseSource {
-    /// An encoder: what was not read is not known.
+    /// Encoder: a value that was not read is not known.
     #[default]
     Encoder,
-    /// A profile: what is not in it is not said.
+    /// Profile: a missing value is not in the profile.
     Profile,
 }
 
@@ -54,7 +54,7 @@ pub struct Staged {
     base: Option<EditedValues>,
     wanted: Option<EditedValues>,
     history: History<EditedValues>,
-    /// Edits of an earlier time whose place was not read yet.
+    /// Earlier edits of items that were not read yet.
     waiting: Vec<SavedEdit>,
 }
 
@@ -64,12 +64,12 @@ impl EditedValues {
         EditedValues { image, names: Names::default() }
     }
 
-    /// Steps of the measuring range; positions are below.
+    /// Returns the steps of the measuring range; positions are below.
     pub const fn range(&self) -> u32 {
         self.image.parameters.steps
     }
 
-    /// A cam's edges; `None`: nothing is known of them.
+    /// Returns a cam's edges; `None`: they are not known.
     pub fn cam(&self, program: ProgramNumber, cam: CamNumber) -> Option<Cam> {
         self.image.program(program)?.cams.get(usize::from(cam.get())).copied().flatten()
     }
@@ -91,8 +91,8 @@ impl Staged {
         Staged { base_source: BaseSource::Profile, wanted: Some(base.clone()), base: Some(base), ..Staged::default() }
     }
 
-    /// The profile says this now. Where that is what is wanted, it was saved, and the steps that led to it stay; else others
-    /// wrote it, and only what was edited here stays as it is wanted.
+    /// Takes the new content of the profile. If it equals the edited values, it was saved, and the undo steps stay;
+    /// otherwise others have written it, and only the values edited here keep their edits.
     pub fn saved(&mut self, image: Image, names: Names) {
         let now = EditedValues { image, names };
         if self.wanted.as_ref() == Some(&now) {
@@ -117,12 +117,12 @@ impl Staged {
         self.rebase(EditedValues { image, names });
     }
 
-    /// The parameters were read.
+    /// Takes the parameters that were read.
     pub fn refresh_parameters(&mut self, parameters: Parameters) {
         self.refresh(Image::of(parameters));
     }
 
-    /// Cam programs were read, and the shift of the window with them. Nothing happens before the parameters were.
+    /// Takes a reading of cam programs, with the shift of the window. Does nothing before the parameters were read.
     pub fn refresh_programs(&mut self, programs: &[(ProgramNumber, Program)], shift: Option<WindowShift>) {
         let Some(base) = &self.base else { return };
         let mut image = Image { shift, ..Image::of(base.image.parameters) };
@@ -149,7 +149,7 @@ impl Staged {
         self.take_draft(waiting);
     }
 
-    /// Forgets everything: another encoder.
+    /// Discards everything, for another encoder.
     pub fn clear(&mut self) {
         *self = Staged { base_source: self.base_source, ..Staged::default() };
     }
@@ -169,24 +169,24 @@ impl Staged {
         self.wanted.as_ref()
     }
 
-    /// A program as it is wanted; `None`: it was not read, or the profile does not say it.
+    /// Returns a program as edited; `None`: it was not read, or is not in the profile.
     pub fn program(&self, number: ProgramNumber) -> Option<&Program> {
         self.wanted.as_ref()?.image.program(number)
     }
 
-    /// Changes something, as one step that can be undone. Whether anything is other than before.
+    /// Makes an edit, as one step that can be undone. Returns whether anything changed.
     ///
     /// # Errors
-    /// Why it cannot be; then nothing is changed.
+    /// Why it is not possible; nothing is changed then.
     pub fn edit(&mut self, edit: &Edit) -> Result<bool, EditError> {
         let after = self.tried(edit)?;
         Ok(self.step(after))
     }
 
-    /// Returns the values after an edit without making it: for the picture while something is dragged.
+    /// Returns the values after an edit without making it: for the picture during a drag.
     ///
     /// # Errors
-    /// Why it cannot be.
+    /// Why it is not possible.
     pub fn tried(&self, edit: &Edit) -> Result<EditedValues, EditError> {
         let wanted = self.wanted.as_ref().ok_or(EditError::NothingRead)?;
         edit::edited(wanted, edit, self.base_source)

@@ -1,4 +1,4 @@
-//! Tables of cams: read from a file or pasted, looked at, and only then taken into the edits; and written.
+//! Tables of cams: read from a file or pasted text, shown, and only then taken into the edits; and written.
 
 use std::path::PathBuf;
 
@@ -52,8 +52,8 @@ impl Encoder {
         }
     }
 
-    /// Takes the imported table into the edits, or drops it. One that cannot be taken stays, with the reason: a line
-    /// left out would switch its cam off.
+    /// Takes the imported table into the edits, or drops it. One that cannot be taken stays, with the reason: omitting a
+    /// line would switch its cam off.
     pub(super) fn take_table(&mut self, take: bool) {
         let Some(import) = &self.import else { return };
         if take && !import.table.problems.is_empty() {

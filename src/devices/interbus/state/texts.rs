@@ -2,5 +2,5 @@
 
 use crate::app::Catalogue;
 
-/// The texts that INTERBUS alone has; names that are not here are those of common texts.
+/// Texts of INTERBUS; other names are those of common texts.
 pub static TEXTS: Catalogue = Catalogue::new(include_str!("../../../../assets/texts/interbus.ron"));

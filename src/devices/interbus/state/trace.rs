@@ -9,12 +9,12 @@ use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::explain as explained;
 use crate::link::{Direction, TraceEntry};
 
-/// Reads frames in the order in which they went over the wire.
+/// Decoder of frames, in the order in which they were transmitted.
 #[derive(Debug)]
 pub(super) struct Meaning {
-    /// Which half of a word comes first.
+    /// Order of the halves of a word.
     pub(super) order: WordOrder,
-    /// The shift of the window, where it was read.
+    /// The shift of the window, if it was read.
     pub(super) shift: Option<WindowShift>,
     mode: Mode,
     read_out: Option<ReadOut>,
@@ -28,7 +28,7 @@ impl Meaning {
         Meaning { order, shift: None, mode: Mode::Position, read_out: None, requested: Vec::new() }
     }
 
-    /// The encoder is known to be in this mode.
+    /// Notes that the encoder is known to be in this mode.
     pub(super) fn found(&mut self, mode: Mode) {
         self.mode = mode;
     }
@@ -49,7 +49,7 @@ impl Meaning {
         }
     }
 
-    /// A reply; an error word in it is one of the encoder's.
+    /// Decodes a reply; an error word in it is reported by the encoder.
     fn received(&mut self, bytes: &[u8]) -> Explained {
         let meaning = self.meanings(Direction::Received, bytes);
         let is_error = match carried(false, bytes, self.order) {
@@ -104,8 +104,8 @@ mod tests {
     use crate::bits::{MaskedBytes, parse_hex};
     use crate::units::Moment;
 
-    /// Issue 22.11: replies of a gateway (Modbus application protocol 1.1b3, 6.4 and 7) that are broken by hand, that refuse, and
-    /// that carry an error word of the encoder (reference 2), have a meaning and a mark.
+    /// Issue 22.11: replies of a gateway (Modbus application protocol 1.1b3, 6.4 and 7) that are damaged by hand, refusals,
+    /// and those with an error word of the encoder (reference 2), have a meaning and a mark.
     #[test]
     fn a_broken_reply_has_a_meaning_and_a_mark() {
         let request = "00 07 00 00 00 06 01 04 00 00 00 02";

@@ -68,7 +68,7 @@ pub fn command_text(command: Command) -> Text {
     }
 }
 
-/// The mode that an encoder is in to take a command for what it is; of those that are taken in several, not the cams'.
+/// Returns the mode in which an encoder interprets a command as such; of several modes, not the cam mode.
 pub fn mode_of(command: Command) -> Mode {
     if command.is_legal_in(Mode::Position) || !command.is_legal_in(Mode::Cam) { Mode::Position } else { Mode::Cam }
 }
@@ -100,7 +100,7 @@ pub fn word_text(word: u32, known: &WordContext) -> Text {
     }
 }
 
-/// Bits that should be 0, where some are set: a warning beside what a word says.
+/// Returns a warning if bits are set that should be 0.
 pub fn stray(word: u32) -> Option<Text> {
     match Reply::parse(word) {
         Reply::Run { stray, .. } if stray != 0 => {

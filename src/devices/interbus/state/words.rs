@@ -18,7 +18,7 @@ pub fn parameter(parameter: Parameter) -> Text {
     })
 }
 
-/// A parameter's number.
+/// Returns the text for a parameter's number.
 pub fn setting(parameter: Parameter, number: u32) -> Text {
     match (parameter, Direction::of_code(number)) {
         (Parameter::Direction, Some(own)) => direction(own),
@@ -26,7 +26,7 @@ pub fn setting(parameter: Parameter, number: u32) -> Text {
     }
 }
 
-/// A mode, in a sentence.
+/// Returns the text for a mode, in a sentence.
 pub fn mode(mode: Mode) -> Text {
     TEXTS.text(match mode {
         Mode::Position => "ib_mode.position",
@@ -90,7 +90,7 @@ pub fn interface(interface: Interface) -> Text {
     })
 }
 
-/// A measuring range.
+/// Returns the text for a measuring range.
 pub fn range(steps: u32, turns: u32) -> Text {
     let id = if turns == 1 { "ib_card.range_one" } else { "ib_card.range_of" };
     TEXTS.text(id).with("steps", steps).with("turns", turns)

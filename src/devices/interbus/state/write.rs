@@ -15,8 +15,8 @@ use crate::devices::interbus::state::TEXTS;
 use crate::profile::{Body, ProfileError};
 
 impl Encoder {
-    /// Returns the edited values. Of programs only edited ones, since each program of a plan is selected to be read. If
-    /// the measuring range shrinks, all known ones, since their cams have to stay within it.
+    /// Returns the edited values. Only edited programs are included, since each program of a plan is selected to be read.
+    /// If the measuring range shrinks, all known ones are included, since their cams must stay within it.
     fn edited_image(&self) -> Option<Image> {
         let (wanted, device) = (&self.staged.wanted()?.image, self.staged.device()?);
         let mut edited = Image::of(wanted.parameters);
@@ -109,7 +109,7 @@ impl Saved for Encoder {
     }
 }
 
-/// The programs that a plan changes; `None`: any of them.
+/// Returns the programs that a plan changes; `None`: any of them.
 fn changed_by(plan: &InterbusPlan) -> Option<Vec<ProgramNumber>> {
     let of_programs = plan.base.programs.iter().map(|(number, _)| *number).collect();
     (!plan.ops.contains(&Op::Default)).then_some(of_programs)

@@ -1,5 +1,4 @@
-//! Eight programs of eight cams: the open one as lanes, as a ring and as a table, and the word in which an encoder sends
-//! its outputs.
+//! Eight programs of eight cams: the open one as lanes, as a ring and as a table, and the cam output word of an encoder.
 
 mod bar;
 mod chart;
@@ -29,7 +28,7 @@ pub(super) struct CamsUiState {
 }
 
 impl CamsUiState {
-    /// The program that is open.
+    /// Returns the program that is open.
     pub(super) fn shown(&self) -> ProgramNumber {
         self.program.unwrap_or(ProgramNumber::FIRST)
     }
@@ -68,7 +67,7 @@ pub(super) fn page_ui(
     );
 }
 
-/// A program of which nothing is known, and the way to know it.
+/// Draws a program that was not read, with the button to read it.
 fn unread(ui: &mut Ui, theme: &Theme, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_cams.title"), |ui| {
         let id = encoder.session.id;

@@ -93,7 +93,7 @@ fn check(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action
     });
 }
 
-/// The word that comes, and what comes: position, speed, or the outputs of a program.
+/// Draws the present word and its content: position, speed, or the outputs of a program.
 fn sends(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("ib_sends.title"), |ui| {
         match encoder.record.last() {

@@ -37,7 +37,7 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) 
     let word = format!("0x{:08X}", reading.word);
     let place = reading.place();
     if ui.available_height() < LOW {
-        // In a low window the plot needs the room.
+        // In a low window the plot needs the space.
         let place = place
             .map(|own| format!("{} {} · {}° · ", theme.say("live.turns"), own.turns, theme.number(own.degrees, 2)));
         let words = format!("{}{word}", place.unwrap_or_default());

@@ -1,5 +1,5 @@
-//! The problems of the edited values, above every page: a smaller measuring range leaves cams beyond it, which are
-//! edited on another page.
+//! The problems of the edited values, above every page: a smaller measuring range leaves cams beyond it, which are edited
+//! on another page.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::devices::interbus::state::Encoder;
 use crate::ui::controls::paragraph;
 use crate::ui::{Theme, icons};
 
-/// Draws it, but for the program that is shown with its own.
+/// Draws them, except those of a program that is shown with its own.
 pub(super) fn marks_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, shown: Option<ProgramNumber>) {
     let marks = encoder.marks_beside(shown);
     for mark in &marks {

@@ -1,4 +1,4 @@
-//! The INTERBUS tab: its pages, each about one thing that a person wants of an encoder.
+//! The INTERBUS tab: its pages, one per task.
 
 mod cams;
 mod connect_form;
@@ -31,7 +31,7 @@ pub(crate) enum Page {
     Cams,
     /// Values, LEDs and words.
     Diagnosis,
-    /// Profiles, backups and what was written.
+    /// Profiles, backups and the logbook.
     Backups,
 }
 
@@ -52,7 +52,7 @@ impl Page {
     }
 }
 
-/// The state of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct InterbusUiState {
     parameters: parameters::EncoderParametersUiState,
@@ -105,7 +105,7 @@ impl TypedDeviceView for InterbusView {
         actions: &mut Vec<Action>,
     ) {
         if page.has_edit_bar() {
-            // Stays where it is while the rest scrolls.
+            // Fixed while the rest scrolls.
             let around = page::sides(ui, theme);
             let margin = egui::Margin { left: around, right: around, top: 0, bottom: 8 };
             egui::Panel::bottom(egui::Id::unique(encoder.session.id).with("interbus_foot"))
@@ -140,7 +140,7 @@ impl TypedDeviceView for InterbusView {
     }
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

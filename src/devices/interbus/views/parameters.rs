@@ -1,4 +1,4 @@
-//! The parameters beside what is wanted of them, the preset, the memory's wear, and the words of the handshake.
+//! The parameters and their edits, the preset, the memory's wear, and the words of the handshake.
 
 use std::collections::BTreeMap;
 
@@ -196,7 +196,7 @@ fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     });
 }
 
-/// The words of the last handshakes.
+/// Draws the words of the last handshakes.
 fn handshake(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
     card(ui, theme, TEXTS.text("ib_handshake.title"), |ui| {
         if encoder.handshake.is_empty() {

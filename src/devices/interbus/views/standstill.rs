@@ -1,4 +1,4 @@
-//! The confirmation that the machine stands still, before anything that a running machine would notice.
+//! The confirmation that the machine stands still, before anything that would disturb a running machine.
 
 use egui::{RichText, Ui};
 
@@ -8,7 +8,7 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Asks for it, and offers what it opens.
+/// Draws the confirmation, and the actions that it permits.
 pub(super) fn bar_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &mut Vec<Action>) {
     if !encoder.asks_for_standstill() {
         return;

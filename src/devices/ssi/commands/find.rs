@@ -1,4 +1,4 @@
-//! `ssi find`: layouts that fit recorded frames, the best first, and what would decide among them.
+//! `ssi find`: layouts that fit recorded frames, best first, and what would distinguish them.
 
 use serde_json::{Value as Json, json};
 
@@ -11,7 +11,7 @@ use crate::devices::ssi::protocol::{self, Class, Families, Search};
 use crate::devices::ssi::state::explain as words;
 use crate::devices::ssi::state::{Frames, read_frames};
 
-/// Bits of a frame in hex where nothing says how many: as many as there can be.
+/// Bits of a hexadecimal frame if their number is not given: the maximum.
 const MOST_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Result {
@@ -84,7 +84,7 @@ fn text(search: &Search, families: &Families) -> String {
     format!("{}{verdict}\n{next}", lines.text())
 }
 
-/// The most probable layout of a class.
+/// Returns the most probable layout of a class.
 fn spec(class: &Class, families: &Families) -> String {
     class.members.first().map_or_else(String::new, |member| member.spec(families))
 }
@@ -96,7 +96,7 @@ fn why(class: &Class) -> String {
     frame.into_iter().chain([evidence]).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns which motion would decide; `None` if nothing is open.
+/// Returns the motion that would distinguish the layouts; `None` if there is only one.
 fn next(search: &Search) -> Option<String> {
     let doubt = search.doubt.filter(|doubt| *doubt != protocol::Uncertainty::Open);
     let doubt = doubt.map(|doubt| words::doubt(Some(doubt)).terminal());

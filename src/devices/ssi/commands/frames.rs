@@ -1,4 +1,4 @@
-//! `ssi decode` and `ssi encode`: what frames say, and how they are made.
+//! `ssi decode` and `ssi encode`: decoding and encoding frames.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -14,7 +14,7 @@ use crate::devices::ssi::state::explain as words;
 
 pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
     let layout = choose(output, spec)?.layout;
-    // All are looked at before any is told.
+    // All are checked before any is printed.
     let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
     for frame in frames {
         let frame_decoded = DecodedFrame::new(&layout, frame);
@@ -23,7 +23,7 @@ pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDe
     Ok(Done::Well)
 }
 
-/// The bits of a frame, right-justified.
+/// Returns the bits of a frame, right-justified.
 fn frame(layout: &Layout, text: &str) -> Result<u64> {
     parse_frame(text, layout.clocks()).map_err(|error| match error {
         FrameTextError::Form(_) => Failure::Usage(error.to_string()),
@@ -31,7 +31,7 @@ fn frame(layout: &Layout, text: &str) -> Result<u64> {
     })
 }
 
-/// A frame with what it says.
+/// Frame with its meaning.
 pub(super) struct DecodedFrame<'a> {
     pub(super) layout: &'a Layout,
     pub(super) frame: u64,
@@ -47,7 +47,7 @@ impl<'a> DecodedFrame<'a> {
         self.layout.is_valid(self.reading)
     }
 
-    /// The position, if the bits are one, and what it is.
+    /// Returns the position, if the bits are one, and its location.
     pub(super) fn place(&self) -> Option<(u64, Location)> {
         let range = self.layout.descriptor().range;
         let is_none = self.reading.flags.has(Flags::CODE);
@@ -103,7 +103,7 @@ impl<'a> DecodedFrame<'a> {
     }
 }
 
-/// The bits, those that belong together in one word: `MT 000100100011  ST 10101011110000  ERROR 0`.
+/// Returns the bits grouped by field: `MT 000100100011  ST 10101011110000  ERROR 0`.
 fn fields(layout: &Layout, frame: u64) -> String {
     let mut words: Vec<(String, String)> = Vec::new();
     for cell in layout.cells(frame) {

@@ -1,4 +1,4 @@
-//! The layout that `--layout` names: a profile in a file, a family with its settings, any frame in one word, or a format
+//! The layout named by `--layout`: a profile in a file, a family with its settings, any frame in one word, or a format
 //! string of LinuxCNC.
 
 use std::path::Path;
@@ -19,11 +19,11 @@ use crate::store::Store;
 
 /// A layout to work with.
 pub(crate) struct Chosen {
-    /// All that is known of it.
+    /// Everything known about it.
     pub(crate) profile: SsiProfile,
     /// Its frame, checked.
     pub(crate) layout: Layout,
-    /// The times of its family; `None` where it has none, or one that is not known here.
+    /// The times of its family; `None` if it has none, or an unknown one.
     pub(crate) times: Option<Times>,
     /// Title of the layout.
     pub(crate) title: String,
@@ -43,7 +43,7 @@ pub(crate) fn choose(output: &Output, SsiLayout { spec }: &SsiLayout) -> Result<
     if is_file(spec, &families) { in_file(output, spec, &families) } else { of_family(output, spec, &families) }
 }
 
-/// The families that ship, with the user's own before them; of those that cannot be used is said why.
+/// Returns the families, the user's own before the built-in ones; errors of those that cannot be used are printed.
 pub(super) fn families(output: &Output) -> Result<Families> {
     let store = Store::for_user().map_err(|error| failed(&explain::store(&error)))?;
     let (families, broken) = read_families(&store);
@@ -54,7 +54,7 @@ pub(super) fn families(output: &Output) -> Result<Families> {
 }
 
 /// Returns whether it names a file: by a path, by its extension, or because there is one and no family of this name.
-/// After the first comma there are settings, in which `/` is a fraction.
+/// Settings follow the first comma, in which `/` is a fraction.
 fn is_file(spec: &str, families: &Families) -> bool {
     let key = spec.split(',').next().unwrap_or(spec);
     let is_path = key.contains('/') || key.contains(std::path::MAIN_SEPARATOR);

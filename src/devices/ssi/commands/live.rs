@@ -66,7 +66,7 @@ fn seconds(at: Time) -> String {
     format!("{:.3} s", at.seconds_since(Time::ORIGIN))
 }
 
-/// Turns, steps and degrees of a shaft; steps and millimetres of a scale.
+/// Columns: turns, steps and degrees of a shaft; steps and millimetres of a scale.
 struct Columns {
     turns: Option<u64>,
     steps: Option<u64>,

@@ -1,4 +1,4 @@
-//! The commands for SSI encoders: `ssi` without an encoder, and what can be done with one or its profile.
+//! The commands for SSI encoders: `ssi` without an encoder, and the commands with one or its profile.
 
 mod args;
 mod export;
@@ -112,7 +112,7 @@ impl OwnCommand for SsiCommand {
     }
 }
 
-/// The adapter before a virtual encoder that sends the frames of `--layout`.
+/// Returns the adapter before a virtual encoder that sends the frames of `--layout`.
 fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>> {
     let settings = settings(output, arguments)?;
     let LayoutOption { layout } = arguments.own.read()?;
@@ -127,14 +127,14 @@ fn simulated(output: &Output, arguments: &Simulate) -> Result<Box<dyn Simulated>
         }
         None => AtAdapter::DELIVERED,
     };
-    // In place of the one that is as delivered, which has the same settings.
+    // In place of the delivered one, which has the same settings.
     let others = at_adapter().iter().copied().filter(|device| device.keys() != encoder.keys());
     let devices: Vec<&dyn Attachable> = [&encoder as &dyn Attachable].into_iter().chain(others).collect();
     let adapter = Adapter::from_pairs(&settings, &devices).map_err(|error| Failure::Usage(error.to_string()))?;
     Ok(Box::new(adapter))
 }
 
-/// Refuses a command that SSI encoders do not have, and says what there is instead.
+/// Refuses a command that SSI encoders do not have, and names the alternative.
 fn refuse<T>(command: &str, instead: &str) -> Result<T> {
     Err(Failure::Usage(format!("{command} is not for {KIND} devices, which send only a position: {instead}")))
 }

@@ -1,4 +1,4 @@
-//! Profiles of SSI encoders: made of a layout, since the encoder cannot tell its own, and compared.
+//! Profiles of SSI encoders: made from a layout, since the encoder does not report its own, and compared.
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub(super) fn save(common: &Common, output: &Output, save: &Save) -> Result {
     Ok(Done::Well)
 }
 
-/// The document of a layout. It was read from no device, so that nothing in it tells when.
+/// Returns the document of a layout. It was read from no device, so it contains no time.
 pub(super) fn document(profile: SsiProfile) -> Document {
     Document { saved: None, ..Document::new(String::new(), Body::new(profile)) }
 }

@@ -21,7 +21,7 @@ use crate::worker::Session;
 pub(super) type Runner = runner::Runner<Ssi>;
 
 impl Runs for Ssi {
-    /// How words are read unless an option says otherwise: as in the link.
+    /// How words are read unless an option overrides it: as in the link.
     type Context = Asking;
     const COMMANDS: &'static dyn DeviceCommands = &SsiCommands;
 
@@ -38,8 +38,8 @@ impl Runs for Ssi {
     }
 }
 
-/// Opens the link and has words taken as the layout needs them; clock and pause are the link's where it names them, else
-/// those of the profile. What the times of the encoder do not allow is a remark.
+/// Opens the link and reads words as the layout requires; clock and pause are those of the link if given, else those of the
+/// profile. A violation of the encoder's times is a remark.
 pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result<Runner> {
     let mut runner = Runner::open(common)?;
     let names = |name: &str| common.link.as_ref().is_some_and(|url| url.query.get(name).is_some());
@@ -63,7 +63,7 @@ pub(super) fn begin(common: &Common, output: &Output, chosen: &Chosen) -> Result
     Ok(runner)
 }
 
-/// The word that a job gave.
+/// Returns the word that a job gave.
 pub(super) fn words(came: SsiOutput) -> Result<Words> {
     Ok(result_of!(came, SsiOutput::Read(words) => words))
 }

@@ -1,11 +1,11 @@
-//! The families of encoders: the built-in ones, and those of the user's own.
+//! The families of encoders: the user's own, and the built-in ones.
 
 use crate::devices::ssi::protocol::{Families, KIND};
 use crate::profile::Cause;
 use crate::store::{Store, StoreError, read_folder};
 
-/// The built-in families of encoders, those of the user's own in the place of those with the same key, and what is wrong
-/// with those that cannot be used (a `FamilyError` each).
+/// Returns the built-in families of encoders, with the user's own replacing those with the same key, and the errors of
+/// those that cannot be used (a `FamilyError` each).
 pub fn families(store: &Store) -> (Families, Vec<StoreError>) {
     let (files, unread) = read_folder(&store.device_folder(KIND), "ron");
     let (own, broken) = Families::read(files.iter().map(|(name, text)| (name.as_str(), text.as_str())));

@@ -1,5 +1,5 @@
-//! An SSI encoder behind an adapter, at the end of a session, and its jobs. The encoder has no memory: nothing is ever
-//! written into it.
+//! An SSI encoder behind an adapter as seen by a session, and its jobs. The encoder has no memory: nothing is ever written
+//! to it.
 
 mod families;
 mod open;
@@ -19,13 +19,13 @@ use crate::sim::Motor;
 use crate::store::Store;
 use crate::worker::{Device, EndedEarly, JobReport, Progress, Session, SessionContext, Watched};
 
-/// An SSI encoder behind its adapter.
+/// SSI encoder behind its adapter.
 pub struct Ssi {
     wire: Box<dyn ByteLink>,
     station: Station,
     /// Motor of a virtual encoder.
     motor: Option<Motor>,
-    /// Microseconds between the words of a stream, where they are wished closer than one can ask for them.
+    /// Interval of the words in a stream, in microseconds, if it is shorter than single requests allow.
     streamed_us: Option<u32>,
 }
 
@@ -34,11 +34,11 @@ pub struct Ssi {
 pub enum SsiJob {
     /// Identifies the adapter; switches the encoder's supply on if requested, and configures how words are read.
     Hello,
-    /// Words are taken like this from now on; a stream that is wished goes on with it.
+    /// Reads words this way from now on; a requested stream continues with it.
     Set(Asking),
     /// One word.
     Read,
-    /// The device check, with what the layout says of words.
+    /// Runs the device check, which also compares words with the layout.
     Check(Box<Layout>),
 }
 
@@ -47,7 +47,7 @@ pub enum SsiJob {
 pub enum SsiOutput {
     /// The identity of the adapter.
     Hello(Box<Identity>),
-    /// The new way of reading words.
+    /// Identity with the new way of reading words.
     Set(Box<Identity>),
     /// The word, a run of one.
     Read(Words),
@@ -55,7 +55,7 @@ pub enum SsiOutput {
     Check(Vec<check::SsiStepResult>),
 }
 
-/// The step that is told of a job: words are taken.
+/// Step of a job: words are being read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct JobStep;
 
@@ -68,7 +68,7 @@ impl EndedEarly for Error {
     }
 }
 
-/// Words that are wished as close as this come as a stream.
+/// Largest interval at which requested words are streamed.
 const STREAMED: Duration = Duration::from_millis(2);
 
 impl fmt::Debug for Ssi {
@@ -78,14 +78,14 @@ impl fmt::Debug for Ssi {
 }
 
 impl Ssi {
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     fn master<'a>(&'a mut self, context: &'a mut SessionContext) -> Master<'a> {
         Master::new(context.ctx(&mut *self.wire), &mut self.station)
     }
 }
 
 impl Session<Ssi> {
-    /// A session on an open wire. With a motor the encoder lives in this process.
+    /// Creates a session on an open connection. With a motor the encoder is a virtual one in this process.
     pub fn to_adapter(
         wire: Box<dyn ByteLink>,
         clock: Arc<dyn Clock>,
@@ -120,7 +120,7 @@ impl Device for Ssi {
     /// All messages are part of the words.
     type DeviceMessage = Infallible;
     type Sample = Words;
-    /// There is nothing but words.
+    /// There are no values other than words.
     type Watch = Infallible;
     type JobStep = JobStep;
 

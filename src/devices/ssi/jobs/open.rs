@@ -1,4 +1,4 @@
-//! From a link URL to a session with an SSI encoder.
+//! Opening a session with an SSI encoder from a link URL.
 
 use std::sync::Arc;
 
@@ -15,13 +15,13 @@ use crate::worker::{OpenError, Session};
 /// Checks a link to an SSI encoder without opening it.
 ///
 /// # Errors
-/// [`OpenError::Url`] or [`OpenError::Sim`] for what cannot be.
+/// [`OpenError::Url`] or [`OpenError::Sim`] for invalid settings.
 pub fn check(url: &LinkUrl) -> Result<(), OpenError> {
     read(url).map(|_| ())
 }
 
-/// Opens a link to an SSI encoder: `bridge:` leads to the adapter before it, `sim:` to a virtual one, `replay:` to a
-/// recording of one.
+/// Opens a link to an SSI encoder: `bridge:` to the adapter before it, `sim:` to a virtual one, `replay:` to a recording of
+/// one.
 ///
 /// # Errors
 /// See [`OpenError`]; nothing has been sent.
@@ -29,7 +29,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     let (station, adapter) = read(url)?;
     let clock: Arc<dyn Clock> = Arc::new(RealClock::start());
     let mut motor = None;
-    // The setting of an adapter's serial port matters only behind a converter; it is the same for all adapters.
+    // The format of an adapter's serial port matters only behind a converter; it is the same for all adapters.
     let wire = open_bytes(url, FORMAT, &clock, || {
         motor = Some(adapter.motor());
         Ok(inside(adapter, &clock))
@@ -37,7 +37,7 @@ pub fn open(url: &LinkUrl, store: Store) -> Result<Session<Ssi>, OpenError> {
     Ok(Session::to_adapter(wire, clock, station, store, motor))
 }
 
-/// The line, and the virtual adapter, which counts for a link to it alone.
+/// Returns the line, and the virtual adapter, which counts for a link to it alone.
 fn read(url: &LinkUrl) -> Result<(Station, Adapter), OpenError> {
     if !matches!(url.scheme, Scheme::Sim | Scheme::Bridge | Scheme::Replay) {
         return Err(leads_elsewhere(url.scheme, "sim:, bridge:, replay:"));

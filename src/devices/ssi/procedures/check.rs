@@ -1,5 +1,5 @@
-//! The device check: the adapter, the encoder's supply, and words that are taken one after the other, beside what the layout
-//! says of them; with a verdict a line. Nothing is written: the encoder has no memory.
+//! The device check: the adapter, the encoder's supply, and consecutive words compared with the layout, with one verdict
+//! per item. Nothing is written: the encoder has no memory.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ pub use crate::analysis::check::Verdict;
 
 /// Words that are taken.
 pub const WORDS: u64 = 50;
-/// Positions that follow each other this close are a shaft that stands: it may tremble by a step or two.
+/// Maximum step between consecutive positions of a shaft at standstill, which may jitter by a step or two.
 const TREMBLES: u64 = 4;
 
 /// One line of the check.
@@ -39,11 +39,11 @@ pub enum CheckStep {
 pub enum CheckFinding {
     /// The adapter's name and firmware.
     Adapter(String, String),
-    /// The clock in hertz as it was asked for, and as it is.
+    /// The requested and the actual clock in hertz.
     Clock { asked: u32, got: u32 },
-    /// Millivolts wished and measured, and milliamperes.
+    /// Millivolts requested and measured, and milliamperes.
     Supply {
-        /// Millivolts wished.
+        /// Millivolts requested.
         requested: u16,
         /// Millivolts measured.
         measured: u16,
@@ -52,33 +52,33 @@ pub enum CheckFinding {
     },
     /// The encoder is supplied from elsewhere.
     SuppliedElsewhere,
-    /// Words that were taken, and how many of them are different.
+    /// Number of words read, and of different ones.
     Words {
         /// Number of words.
         taken: u64,
         different: usize,
     },
-    /// A finding about words, and in how many of them.
+    /// Finding about words, and the number of words with it.
     Said {
         /// The finding.
         finding: Said,
-        /// In how many words.
+        /// Number of words.
         count: u64,
     },
     /// Every word is a frame of the layout.
     Fits,
-    /// No error bit spoke.
+    /// No error bit is active.
     Silent,
-    /// The shaft stands: its position, and how many steps it trembles.
+    /// The shaft stands still: its position, and the jitter in steps.
     Stands {
         /// The last position.
         position: u64,
         /// Steps between the lowest and the highest.
         steps: u64,
     },
-    /// The shaft turns: the most steps from one word to the next.
+    /// The shaft turns: the maximum steps from one word to the next.
     Turns {
-        /// Steps, the short way round.
+        /// Steps, the shorter way round.
         most: u64,
     },
 }
@@ -134,7 +134,7 @@ fn judge(identity: &Identity, layout: &Layout, words: &[u64]) -> Vec<SsiStepResu
     let is_of_the_form = |what: &Said| matches!(what, Said::Code | Said::Padding | Said::Parity | Said::Repeat);
     let is_error = |what: &Said| matches!(what, Said::Error { .. } | Said::Pattern { .. });
     let or = |findings: Vec<CheckFinding>, none: CheckFinding| if findings.is_empty() { vec![none] } else { findings };
-    // A wrong layout is bad even where each of its signs is a warning.
+    // A wrong layout is a fault even if each of its signs is a warning.
     let form = verdict(is_of_the_form);
     let form = if form == Verdict::Good { Verdict::Good } else { Verdict::Bad };
     vec![
@@ -174,7 +174,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
     let supplied = identity.supply.and_then(|supply| Some((supply.millivolt, supply.measured?)));
     let (verdict, finding) = match supplied {
         Some((requested, (measured, milliampere))) => {
-            // A tenth is what encoders for 5 V stand.
+            // A tenth is the tolerance of encoders for 5 V.
             let is_near = measured.abs_diff(requested) <= requested / 10;
             let verdict = if is_near && milliampere > 0 { Verdict::Good } else { Verdict::Attention };
             (verdict, CheckFinding::Supply { requested, measured, milliampere })
@@ -184,7 +184,7 @@ fn supply(identity: &Identity) -> SsiStepResult {
     SsiStepResult { step: CheckStep::Supply, verdict, findings: vec![finding] }
 }
 
-/// Judges the motion of the position from word to word, the short way round.
+/// Evaluates the motion of the position from word to word, the shorter way round.
 fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
     let all = u128::from(layout.coding().last()) + 1;
     let apart = |one: u64, other: u64| {
@@ -201,7 +201,7 @@ fn motion(layout: &Layout, positions: &[u64]) -> SsiStepResult {
         Some(position) if spread <= TREMBLES => {
             (Verdict::Good, CheckFinding::Stands { position: *position, steps: spread })
         }
-        // From a word to the next by more than a quarter of all positions: no shaft turns like that.
+        // From one word to the next by more than a quarter of all positions: no shaft turns like that.
         Some(_) if u128::from(most) * 4 > all => (Verdict::Attention, CheckFinding::Turns { most }),
         Some(_) => (Verdict::Good, CheckFinding::Turns { most }),
     };
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn a_wrong_layout_is_bad() {
-        // Zeros behind 12 bits in the 14 of an AHS36, in which the encoder sends bits.
+        // Zeros after 12 bits in the 14 of an AHS36, where the encoder sends bits.
         let words = [0x2A5B << 1, 0x2A5C << 1, 0x2A5F << 1];
         let lines = judge(&identity(400_000, None), &layout("ahs36,st=12"), &words);
         assert_eq!(lines[3].verdict, Bad);

@@ -12,7 +12,7 @@ pub enum Error {
     Link(#[from] LinkError),
     #[error(transparent)]
     Adapter(#[from] AdapterError),
-    /// The user wished an end.
+    /// The user cancelled it.
     #[error("cancelled")]
     Cancelled,
 }

@@ -1,8 +1,8 @@
-//! The host's side of the adapter: who it is, how it takes words, and the words. While a stream runs, the adapter has no
-//! time for anything else, so that whatever comes next ends it first.
+//! The host's side of the adapter: its identity, its settings, and the words. While a stream runs, the adapter cannot do
+//! anything else, so any other request ends it first.
 //!
-//! Taking a word changes nothing but error bits that a transfer clears, so that it may be repeated: an adapter that has
-//! spoken before is asked five times, within eight seconds; one that never has said anything, as the reference says, twice.
+//! Reading a word changes nothing but error bits that a transfer clears, so it may be repeated: an adapter that has replied
+//! before is asked five times, within eight seconds; one that has never replied is asked twice, by the reference.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::link::Ctx;
 use crate::link::line::SerialLine;
 use crate::units::Moment;
 
-/// A wish to end is heard so often.
+/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(20);
 
 /// The host's side of an adapter before an SSI encoder.
@@ -25,17 +25,18 @@ pub struct Master<'a> {
 }
 
 impl<'a> Master<'a> {
-    /// A master on this line, for one job: it has its patience before it.
+    /// Creates a master for one job, with the whole time limit ahead.
     pub fn new(ctx: Ctx<'a>, station: &'a mut Station) -> Self {
         station.line.begin_job();
         Master { line: SerialLine::new(ctx), station }
     }
 
-    /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets how words are taken; what
-    /// is known and set already stays.
+    /// Identifies the adapter, switches the encoder's supply on if requested, and configures how words are read; known and
+    /// present settings are not repeated.
     ///
     /// # Errors
-    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], what it refuses, or the wire.
+    /// [`AdapterError::Version`], [`AdapterError::NoSsi`], [`AdapterError::NoSupply`], a refusal, or errors of the
+    /// connection.
     pub fn hello(&mut self) -> Result<Identity, Error> {
         self.end_words()?;
         self.repeated(|master| master.adapter().hello())?;
@@ -66,7 +67,7 @@ impl<'a> Master<'a> {
     /// As [`hello`](Self::hello).
     pub fn word(&mut self) -> Result<Words, Error> {
         match self.word_as_set() {
-            // The adapter has lost its setting: it was reset. One more attempt, with a new setting.
+            // The adapter has lost its settings: it was reset. One more attempt, with new settings.
             Err(Error::Adapter(AdapterError::Refused { code: ErrorCode::BAD_ARGUMENT, operation, .. }))
                 if operation == Request::SsiRead.operation() =>
             {
@@ -85,11 +86,12 @@ impl<'a> Master<'a> {
         Ok(Words { first: self.station.count(), ..word })
     }
 
-    /// The next words of a stream whose words are so many microseconds apart, or as close as the adapter can; begins it
-    /// where it does not run.
+    /// Returns the next words of a stream with this interval in microseconds, or the shortest that the adapter supports;
+    /// starts the stream if necessary.
     ///
     /// # Errors
-    /// As [`hello`](Self::hello) when it begins; then the adapter's, or the user's wish, with which the stream goes on.
+    /// At the start as [`hello`](Self::hello); then errors of the adapter, or cancellation, after which the stream
+    /// continues.
     pub fn words(&mut self, period_us: u32) -> Result<Words, Error> {
         let streamed = Streamed::Ssi { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
@@ -117,7 +119,7 @@ impl<'a> Master<'a> {
     /// Ends the running stream, even after cancellation. Requested words are counted from the start again.
     ///
     /// # Errors
-    /// The adapter's; then it is tried again before whatever comes next.
+    /// Errors of the adapter; ending is then tried again before the next request.
     pub fn end_words(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.asked = 0;
@@ -127,7 +129,7 @@ impl<'a> Master<'a> {
         self.line.shield(shielded);
         match ended {
             Ok(()) => Ok(()),
-            // It knows of no stream: it was reset, and has to be set again.
+            // The adapter knows of no stream: it was reset, and must be configured again.
             Err(Failure::Adapter(AdapterError::Refused { .. })) => {
                 self.station.forget_settings();
                 Ok(())
@@ -139,10 +141,10 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// Leaves the encoder's supply as it is to be left at the end of a session.
+    /// Sets the encoder's supply for the end of a session.
     ///
     /// # Errors
-    /// The adapter's.
+    /// Errors of the adapter.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
         if !self.station.adapter.supply_goes_off() {
             return Ok(());
@@ -167,7 +169,7 @@ impl<'a> Master<'a> {
         Ok(self.line.wait(Supply::POWER_UP)?)
     }
 
-    /// Sets how words are taken, where that is another way than before; gives the clock in hertz as it is in fact.
+    /// Configures how words are read if it differs from the present way; returns the actual clock in hertz.
     fn set_clocks(&mut self, fastest: u32) -> Result<u32, Error> {
         let asking = self.station.asking;
         if let Some((_, clock_hz)) = self.station.set.filter(|(own, _)| *own == asking) {
@@ -213,7 +215,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Repeats `once`, which may be done twice, until it is answered.
+    /// Repeats `once`, which may be done twice, until there is a reply.
     fn repeated<T>(&mut self, mut once: impl FnMut(&mut Self) -> Result<T, Failure>) -> Result<T, Error> {
         let longest = 2 * (REPEAT_AFTER + self.station.line.margin);
         let mut tries = 0;
@@ -237,7 +239,7 @@ impl<'a> Master<'a> {
         }
     }
 
-    /// An adapter that was reset has to be set again. A wish to end says nothing of it.
+    /// Notes that the adapter may have been reset and must be configured again. Cancellation is no sign of that.
     fn may_be_reset(&mut self, error: Error) -> Error {
         if error != Error::Cancelled {
             self.station.forget_settings();
@@ -245,10 +247,10 @@ impl<'a> Master<'a> {
         error
     }
 
-    /// A stream that failed is over, at the adapter too where that can be told.
+    /// Notes that a stream has failed and is over, at the adapter as well if that can be told.
     fn stream_failed(&mut self, error: Error) -> Error {
         if error != Error::Cancelled && self.end_words().is_err() {
-            // Restarting sends HELLO, which ends all streams.
+            // Identifying the adapter again sends HELLO, which ends all streams.
             self.station.forget_adapter();
         }
         error

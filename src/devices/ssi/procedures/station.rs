@@ -15,9 +15,9 @@ use crate::parameters;
 use crate::units::SupplyVoltage;
 
 parameters! {
-    /// The line and the encoder's supply, as a link says.
+    /// Parameters of the line and the encoder's supply in a link.
     pub struct LinkParameters: UrlError {
-        /// How much later than the protocol's worst case a reply may arrive; `None` for the default of the link.
+        /// Additional delay allowed for a reply beyond the protocol's worst case; `None` for the default of the link.
         pub margin: Option<Duration> = None, "margin" => Maybe(MARGIN), "connect.margin" like "50";
         /// Clock in hertz.
         pub clock_hz: u32 = 400_000, "clock" => CLOCK;
@@ -35,15 +35,15 @@ parameters! {
 pub struct Asking {
     /// Bits of a word, 1…64.
     pub clocks: u8,
-    /// Clock in hertz; the adapter takes the nearest that it has.
+    /// Clock in hertz; the adapter uses the nearest one that it supports.
     pub clock_hz: u32,
-    /// Least pause between two words in microseconds; longer than the encoder's monoflop time.
+    /// Minimum pause between two words in microseconds; longer than the encoder's monoflop time.
     pub pause_us: u16,
 }
 
 impl Default for Asking {
-    /// A word of 25 clocks, slow enough for 50 m of cable (SICK SSI description 2.7), with a pause behind which every family
-    /// is ready.
+    /// Returns a word of 25 clocks, slow enough for 50 m of cable (SICK SSI description 2.7), with a pause after which
+    /// every family is ready.
     fn default() -> Self {
         let LinkParameters { clock_hz, pause_us, .. } = LinkParameters::default();
         Asking { clocks: 25, clock_hz, pause_us }
@@ -59,43 +59,43 @@ pub struct Identity {
     pub asking: Asking,
     /// The clock in hertz, as the adapter has set it.
     pub clock_hz: u32,
-    /// The encoder's supply, where the adapter switches it.
+    /// The encoder's supply, if the adapter switches it.
     pub supply: Option<Supply>,
 }
 
 /// The state of a session's adapter and how it reads words.
 #[derive(Clone, Debug)]
 pub struct Station {
-    /// Silences and damage: what every line has.
+    /// Silence and damage on the line.
     pub line: LineState,
     pub adapter: AdapterState,
     /// How words are read.
     pub asking: Asking,
-    /// The encoder's supply, where the adapter is to switch it.
+    /// The encoder's supply, if the adapter is to switch it.
     pub supply: Option<Supply>,
-    /// The adapter's setting and its actual clock; `None` before, and when it may have been reset.
+    /// The adapter's setting and its actual clock; `None` before, and after a possible reset.
     pub(super) set: Option<(Asking, u32)>,
     /// The stream that the adapter sends.
     pub(super) flow: Option<Flow>,
     /// The last word of the streams before.
     pub(super) streamed_until: Option<Time>,
-    /// Of many words that are asked for one by one, those since they are taken like this.
+    /// Number of words requested singly since they are read this way.
     pub(super) asked: u64,
 }
 
 /// The encoder's supply as an adapter gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Supply {
-    /// Millivolts wished.
+    /// Millivolts requested.
     pub millivolt: u16,
     /// Millivolts and milliamperes measured when it was switched on; `None` before.
     pub measured: Option<(u16, u16)>,
 }
 
 impl Supply {
-    /// Until words mean something (`U`: the manual does not tell).
+    /// Time until words are valid (`U`: the manual does not specify it).
     pub(super) const POWER_UP: Duration = Duration::from_millis(500);
-    /// Millivolts that encoders with SSI are made for: from 5 V less a tenth to 30 V (SICK SSI description, TTK70).
+    /// Millivolts for which SSI encoders are made: from 5 V minus a tenth to 30 V (SICK SSI description, TTK70).
     const RANGE: std::ops::RangeInclusive<u16> = 4_500..=30_000;
 
     /// Returns the supply voltage with its limits. The encoder is not known: a tenth above the requested voltage is too
@@ -148,12 +148,12 @@ impl Station {
         }
     }
 
-    /// The next word that is asked for is the first of many.
+    /// Makes the next requested word the first of many.
     pub(crate) fn count_anew(&mut self) {
         self.asked = 0;
     }
 
-    /// The number of the next of many words that are asked for.
+    /// Returns the number of the next of many words that are asked for.
     pub(super) fn count(&mut self) -> u64 {
         let number = self.asked;
         self.asked = number.wrapping_add(1);

@@ -1,4 +1,4 @@
-//! Words as they came: the bits of one burst of clocks each.
+//! Words as received: the bits of one burst of clocks each.
 
 use std::time::Duration;
 
@@ -7,29 +7,29 @@ use crate::buses::bridge::procedures::Portion;
 use crate::buses::bridge::protocol::SsiData;
 use crate::units::Moment;
 
-/// Words that follow each other at equal distances, or one that was asked for by itself.
+/// Consecutive words at equal intervals, or a single requested one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Words {
-    /// Number of the first since words are taken like this; what is missing counts.
+    /// Number of the first word since words are read this way, including missing ones.
     pub first: u64,
-    /// When that was taken.
+    /// Time of the first word.
     pub at: Moment,
-    /// Nanoseconds from one to the next; 0 for a word that was asked for by itself.
+    /// Nanoseconds from one to the next; 0 for a single requested word.
     pub period_ns: i64,
     /// Words that are missing before the first.
     pub lost: u64,
     /// Bits of a word, 1…64.
     pub clocks: u8,
-    /// The words, one at least: the first bit received is the highest of the `clocks` bits, right-justified.
+    /// At least one word: the first bit received is the highest of the `clocks` bits, right-justified.
     pub words: Vec<u64>,
     /// The clock in hertz, as the adapter has set it.
     pub clock_hz: u32,
-    /// They cannot come as close to each other as was wished.
+    /// The words cannot have the requested interval.
     pub is_limited: bool,
 }
 
 impl Words {
-    /// A word that was asked for by itself.
+    /// Creates a single requested word.
     pub(super) fn one(at: Moment, word: u64, asking: Asking, clock_hz: u32) -> Self {
         Words {
             first: 0,
@@ -48,7 +48,7 @@ impl Words {
         let Portion { first, time, period_ns, lost, .. } = *portion;
         Words {
             first,
-            // Not before the stream began.
+            // Not before the start of the stream.
             at: Moment::after_start(Duration::from_nanos(time.nanoseconds().max(0).unsigned_abs())),
             period_ns,
             lost,
@@ -69,7 +69,7 @@ impl Words {
         self.period_ns > 0
     }
 
-    /// Each word with the moment in which it was taken.
+    /// Returns each word with the moment in which it was taken.
     pub fn timed(&self) -> impl Iterator<Item = (Moment, u64)> {
         let period = Duration::from_nanos(self.period_ns.unsigned_abs());
         (0..).zip(&self.words).map(move |(number, word)| (self.at + period * number, *word))

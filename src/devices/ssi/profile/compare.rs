@@ -4,7 +4,7 @@ use super::SsiProfile;
 use crate::devices::ssi::protocol::{Range, Word};
 use crate::profile::{Comparison, Difference};
 
-/// Compares frame, direction, preset and how both are read. What is left out in a file counts with its value.
+/// Compares frame, direction, preset and the reading settings. Omitted entries of a file count with their default values.
 pub(super) fn compare(left: &SsiProfile, right: &SsiProfile) -> Comparison {
     let (left, right) = (items(left), items(right));
     let mut comparison = Comparison::default();

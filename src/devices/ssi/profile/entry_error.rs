@@ -11,7 +11,7 @@ pub enum EntryError {
     /// A position that the frame does not have.
     #[error("{preset} is not within 0 to {last}")]
     Preset {
-        /// As it is written.
+        /// As in the profile.
         preset: u64,
         /// The last position.
         last: u64,
@@ -19,7 +19,7 @@ pub enum EntryError {
     /// Entries that exclude one another.
     #[error("not together with {0}")]
     NotWith(&'static str),
-    /// Nothing says which positions there are.
+    /// The range of positions is missing.
     #[error("the range of positions needs singleturn, steps or bits")]
     NoPositions,
 }

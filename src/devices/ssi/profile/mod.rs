@@ -1,5 +1,5 @@
-//! The profile of an SSI encoder: its frame, which way it counts and from where, and how it is read. The encoder itself has
-//! no memory: a profile is never written into one, so that there is no plan and no backup.
+//! The profile of an SSI encoder: its frame, its counting direction and offset, and how it is read. The encoder itself has
+//! no memory: a profile is never written to one, so there is no plan and no backup.
 
 #![warn(missing_docs)]
 

@@ -5,14 +5,14 @@ use std::time::Duration;
 use crate::devices::ssi::protocol::{Descriptor, Direction, Family, Range, Reads, Resolved};
 use crate::profile::ron_text::Unknown;
 
-/// An SSI encoder as it is saved.
+/// Profile of an SSI encoder.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SsiProfile {
     /// The user's name for it; may be empty.
     pub name: String,
-    /// Key of the family whose times and limits count; `None`: they are not known.
+    /// Key of the family whose times and limits apply; `None`: they are not known.
     pub family: Option<String>,
-    /// The frame. Of what was read from a file it is known that it works.
+    /// The frame. One read from a file is known to be valid.
     pub descriptor: Descriptor,
     /// Direction in which positions grow.
     pub direction: Direction,
@@ -24,42 +24,42 @@ pub struct SsiProfile {
     pub unknown: UnknownEntries,
 }
 
-/// How an encoder is read.
+/// Settings for reading an encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ReadingSettings {
     /// Clock in hertz, 1000…20 000 000.
     pub clock_hz: u32,
     /// From the last clock of a burst to the first of the next, in microseconds, at least 1.
     pub pause_us: u16,
-    /// Cable in metres; `None`: it is not looked at.
+    /// Cable in metres; `None`: not checked.
     pub cable_metres: Option<u16>,
     /// Positions are made when the host clocks.
     pub synchronous: bool,
 }
 
-/// Entries that this program does not know, by the structure in which they stand.
+/// Unknown entries, by their structure, which are preserved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnknownEntries {
     pub(super) frame: Unknown,
     pub(super) reading: Unknown,
     pub(super) parity: Unknown,
     pub(super) repeat: Unknown,
-    /// By the name of the error bit, so that they stay with it.
+    /// By the name of the error bit, to stay with it.
     pub(super) errors: Vec<(String, Unknown)>,
     /// By the name of the pattern.
     pub(super) patterns: Vec<(String, Unknown)>,
 }
 
 impl Default for ReadingSettings {
-    /// A clock for 50 m of cable (SICK SSI description 2.7), and a pause behind which every family is ready, also an ATM60
-    /// with any number of steps (more than 200 µs, reference section 5).
+    /// Returns a clock for 50 m of cable (SICK SSI description 2.7), and a pause after which every family is ready,
+    /// including an ATM60 with any number of steps (more than 200 µs, reference section 5).
     fn default() -> Self {
         ReadingSettings { clock_hz: 400_000, pause_us: 250, cable_metres: None, synchronous: false }
     }
 }
 
 impl SsiProfile {
-    /// A frame of no family, counted as it is by default.
+    /// Creates the profile of a frame without a family, with the default counting.
     pub fn new(descriptor: Descriptor) -> Self {
         SsiProfile {
             name: String::new(),

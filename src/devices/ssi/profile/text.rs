@@ -1,5 +1,5 @@
-//! The text of an SSI profile: written for people, read from their hands. What is as usual is left out; what is wrong
-//! names its entry, and a frame that cannot work is refused with the reason.
+//! The text of an SSI profile, written for people and edited by them. Default values are left out; an error names its
+//! entry, and an impossible frame is refused with the reason.
 
 use std::collections::VecDeque;
 use std::str::FromStr;
@@ -27,7 +27,7 @@ impl Profile for SsiProfile {
 
     fn read(entries: &mut Entries) -> Result<Self, ProfileError> {
         let name = entries.optional("name", Expected::Text)?.unwrap_or_default();
-        // Keys have small letters; a person may write the type's name.
+        // Keys are in lower case; a user may write the type's name.
         let family = entries.optional("family", Expected::Text)?.map(|key: String| key.to_ascii_lowercase());
         let mut unknown = UnknownEntries::default();
         let path = entries.path_of("frame");
@@ -195,13 +195,13 @@ fn write_list(writer: &mut Writer, name: &str, lines: impl ExactSizeIterator<Ite
     }
 }
 
-/// Takes what is kept of this name.
+/// Takes the preserved entries of this name.
 fn of_name(kept: &mut VecDeque<&(String, Unknown)>, name: &str) -> Unknown {
     let at = kept.iter().position(|(own, _)| own == name);
     at.and_then(|at| kept.remove(at)).map(|(_, unknown)| unknown.clone()).unwrap_or_default()
 }
 
-/// Clocks of the position without zeros behind it.
+/// Returns the clocks of the position without zeros after it.
 fn usual_area(frame: &Descriptor) -> u8 {
     let coding = frame.range.last().ok().and_then(|last| Coding::new(frame.code, last).ok());
     let bits = coding.map_or(0, |coding| coding.bits());
@@ -349,7 +349,7 @@ fn read_reading(mut entries: Entries, unknown: &mut UnknownEntries) -> Result<Re
     Ok(ReadingSettings { clock_hz, pause_us, cable_metres, synchronous })
 }
 
-/// A text that is one of some words.
+/// Returns a text that is one of some words.
 fn word<T: FromStr<Err = Expected>>(entries: &mut Entries, name: &str) -> Result<Option<T>, ProfileError> {
     let path = entries.path_of(name);
     let Some(word) = entries.optional::<String>(name, Expected::Text)? else { return Ok(None) };

@@ -10,17 +10,17 @@ pub enum Code {
     Binary,
     /// One bit changes from a position to the next.
     Gray,
-    /// Gray, cut out of the middle of the whole code, so that one bit changes at the end of the range too, although
-    /// the number of steps is no power of two. It has to be even.
+    /// Gray, cut out of the middle of the complete code, so that one bit changes at the end of the range too, although the
+    /// number of steps is no power of two. It has to be even.
     GrayExcess,
     /// Four bits a decimal digit.
     Bcd,
 }
 
-/// Why positions have no code words.
+/// The reason why positions have no code words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CodeError {
-    /// Gray excess leaves out as many words before the positions as behind them.
+    /// Gray excess leaves out as many words before the positions as after them.
     #[error(
         "Gray excess needs an even number of steps, not {0}: with an odd number two bits would change at the end of \
          the range"
@@ -31,12 +31,12 @@ pub enum CodeError {
     Digits(u32),
 }
 
-/// `word` in Gray: `b ^ (b >> 1)`.
+/// Returns `word` in Gray: `b ^ (b >> 1)`.
 pub const fn gray(word: u64) -> u64 {
     word ^ word >> 1
 }
 
-/// The number whose Gray code `word` is.
+/// Returns the number whose Gray code is `word`.
 pub const fn ungray(word: u64) -> u64 {
     let word = word ^ word >> 1;
     let word = word ^ word >> 2;
@@ -52,7 +52,7 @@ pub struct Coding {
     code: Code,
     last: u64,
     bits: u8,
-    /// Gray excess: the number whose Gray code stands for position 0.
+    /// Gray excess: the number whose Gray code means position 0.
     offset: u64,
 }
 
@@ -60,10 +60,10 @@ impl Coding {
     /// A single bit.
     pub(super) const BIT: Coding = Coding { code: Code::Binary, last: 1, bits: 1, offset: 0 };
 
-    /// The coding of the positions 0…`last`.
+    /// Creates the coding of the positions 0…`last`.
     ///
     /// # Errors
-    /// [`CodeError`] where the code has no words for so many positions.
+    /// [`CodeError`] if the code has no words for this number of positions.
     pub fn new(code: Code, last: u64) -> Result<Self, CodeError> {
         let binary_bits = bits_of(last);
         let (bits, offset) = match code {
@@ -84,22 +84,22 @@ impl Coding {
         self.code
     }
 
-    /// Bits of a code word, 1…64.
+    /// Returns the number of bits of a code word, 1…64.
     pub const fn bits(&self) -> u8 {
         self.bits
     }
 
-    /// The last position.
+    /// Returns the last position.
     pub const fn last(&self) -> u64 {
         self.last
     }
 
-    /// Gray excess: the number whose Gray code stands for position 0; 0 for the other codes.
+    /// Returns for Gray excess the number whose Gray code means position 0; 0 for the other codes.
     pub const fn offset(&self) -> u64 {
         self.offset
     }
 
-    /// The code word of a position; `None` behind the last one.
+    /// Returns the code word of a position; `None` after the last one.
     pub fn encode(&self, position: u64) -> Option<u64> {
         if position > self.last {
             return None;
@@ -112,7 +112,7 @@ impl Coding {
         })
     }
 
-    /// The position of a code word; `None` where it is none.
+    /// Returns the position of a code word; `None` if it is invalid.
     #[inline]
     pub fn decode(&self, word: u64) -> Option<u64> {
         let position = match self.code {
@@ -125,7 +125,7 @@ impl Coding {
     }
 }
 
-/// Bits that a number needs, at least one.
+/// Returns the number of bits that a number needs, at least one.
 pub(super) const fn bits_of(number: u64) -> u8 {
     let bits = 64 - number.leading_zeros();
     if bits == 0 { 1 } else { bits as u8 }

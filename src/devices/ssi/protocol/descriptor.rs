@@ -1,5 +1,5 @@
-//! A frame as it is designed: what is on which clock. Anything can be written down here; whether it can work is
-//! [`super::Layout`]'s to say.
+//! A frame as designed: the content of each clock. Any frame can be described here; [`super::Layout`] checks whether it is
+//! possible.
 
 use serde::Deserialize;
 
@@ -19,11 +19,11 @@ pub struct Descriptor {
     pub coded: Coded,
     /// Clocks 1…`area` belong to the position and the zeros around it. Shifting right shifts these.
     pub area: u8,
-    /// Zeros before the position.
+    /// Zeros between multiturn and singleturn, if the range has bits for each.
     pub lead: u8,
     /// Zeros between multiturn and singleturn, where the range has bits for each.
     pub between: u8,
-    /// The area comes one clock later: a zero first, its last bit lost (SICK SSI description 3.4, SSI-SHIFT-RIGHT).
+    /// The area begins one clock later: a zero first, its last bit lost (SICK SSI description 3.4, SSI-SHIFT-RIGHT).
     pub shift_right: bool,
     /// Error and warning bits, at most 8.
     pub errors: Vec<ErrorBit>,
@@ -31,20 +31,20 @@ pub struct Descriptor {
     pub parity: Option<Parity>,
     /// The same bits once more.
     pub repeat: Option<Repeat>,
-    /// Data wires are exchanged: every bit upside down.
+    /// Whether the data wires are exchanged: every bit is inverted.
     pub inverted: bool,
-    /// Words that stand for something else than a position, at most 4; tested before anything is decoded.
+    /// Words with another meaning than a position, at most 4; tested before anything is decoded.
     pub patterns: Vec<Pattern>,
 }
 
 /// The bits that a Gray code covers; binary and BCD cover only the position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coded {
-    /// The position's bits; zeros and error bits are put around the code word.
+    /// The position's bits; zeros and error bits are outside the code word.
     Position,
     /// The whole area, zeros included (reference section 2: the other reading of the manual, `U`).
     Area,
-    /// The whole area and the error bits behind it (known from sensors that number them among the data).
+    /// The whole area and the error bits after it (known from sensors that number them among the data).
     AreaAndErrors,
 }
 
@@ -52,16 +52,16 @@ pub enum Coded {
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ErrorBit {
-    /// As its manual calls it.
+    /// Name in its manual.
     pub name: String,
     /// The clock, counted from 1.
     pub clock: u8,
     /// Its meaning for the position.
     pub meaning: Meaning,
-    /// It speaks when it is 0.
+    /// Whether it is active at 0.
     #[serde(default)]
     pub active_low: bool,
-    /// A transfer clears it: it says what happened since the last one.
+    /// Whether a transfer clears it: it is about the time since the last one.
     #[serde(default)]
     pub cleared_by_transfer: bool,
 }
@@ -70,9 +70,9 @@ pub struct ErrorBit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Meaning {
-    /// It is not valid.
+    /// The position is invalid.
     Invalid,
-    /// It is valid; something wants attention.
+    /// The position is valid, with a warning.
     Warning,
 }
 
@@ -94,7 +94,7 @@ pub struct Repeat {
     pub gap: u8,
 }
 
-/// A word with a meaning of its own.
+/// A word with its own meaning.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
@@ -117,7 +117,7 @@ pub enum Word {
 }
 
 impl Descriptor {
-    /// The position's bits and nothing else, of so many turns and steps, in binary.
+    /// Returns only the position's bits, of this number of turns and steps, in binary.
     pub const fn plain(multiturn: u8, singleturn: u8) -> Self {
         let bits = multiturn + singleturn;
         Descriptor {
@@ -137,7 +137,7 @@ impl Descriptor {
         }
     }
 
-    /// Clocks of one frame, without its repetition.
+    /// Returns the clocks of one frame, without its repetition.
     pub fn word(&self) -> u8 {
         self.repeat.map_or(self.clocks, |repeat| repeat.word)
     }

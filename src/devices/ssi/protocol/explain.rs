@@ -13,7 +13,7 @@ pub enum Role {
     Multiturn(u8),
     /// This bit of the steps within a turn.
     Singleturn(u8),
-    /// This bit of the code word, where turns and steps have no bits of their own.
+    /// This bit of the code word, if turns and steps have no separate bits.
     Position(u8),
     /// This error bit of the descriptor.
     Error(usize),
@@ -34,19 +34,19 @@ pub struct Cell {
     pub bit: bool,
 }
 
-/// Something to say of a frame.
+/// A finding about a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FrameFinding {
-    /// An error bit speaks.
+    /// An active error bit.
     Error {
         /// Its name.
         name: String,
         /// Its meaning for the position.
         meaning: Meaning,
-        /// It is about the time since the last transfer.
+        /// Whether it is about the time since the last transfer.
         cleared_by_transfer: bool,
     },
-    /// The frame is a word with a meaning of its own.
+    /// A word with its own meaning.
     Pattern {
         /// Its name.
         name: String,
@@ -55,12 +55,12 @@ pub enum FrameFinding {
     },
     /// Every bit is 1.
     StuckHigh {
-        /// No position looks like that; else it may be one.
+        /// Whether it cannot be a position.
         sure: bool,
     },
     /// Every bit is 0.
     StuckLow {
-        /// No position looks like that; else it may be one.
+        /// Whether it cannot be a position.
         sure: bool,
     },
     /// The code word is no position.
@@ -124,7 +124,7 @@ impl Layout {
         roles
     }
 
-    /// Every bit of a frame with what it carries.
+    /// Returns every bit of a frame with its content.
     pub fn cells(&self, frame: u64) -> Vec<Cell> {
         let clocks = self.clocks();
         let numbered = (1..=clocks).zip(self.roles());
@@ -165,13 +165,13 @@ impl Layout {
         findings
     }
 
-    /// The position may be used.
+    /// Returns whether the position may be used.
     pub fn is_valid(&self, reading: FrameReading) -> bool {
         let stuck = reading.flags.any(Flags::ONES.with(Flags::ZEROS)) && self.is_no_position(reading);
         !reading.flags.any(self.invalid()) && !stuck
     }
 
-    /// A healthy encoder does not send this.
+    /// Returns whether a healthy encoder does not send this.
     fn is_no_position(&self, reading: FrameReading) -> bool {
         let form = Flags::CODE.with(Flags::PADDING).with(Flags::PARITY).with(Flags::REPEAT);
         let errors = (0..self.descriptor().errors.len()).fold(form, |all, index| all.with(Flags::error(index)));

@@ -18,7 +18,7 @@ pub use structured_text::structured_text;
 pub use svg::{frame_svg, timing_svg};
 pub use table::bit_table;
 
-/// A name as programs have them: letters, digits and underscores, no digit first.
+/// Returns a name for programs: letters, digits and underscores, no digit first.
 fn identifier(name: &str) -> String {
     let word: String =
         name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '_' }).collect();

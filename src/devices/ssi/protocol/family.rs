@@ -1,6 +1,6 @@
-//! Families of SSI encoders: a description that anybody can write (RON, `assets/devices/ssi/`), with the frames that a
-//! family can send, its times and its further signals. It is data: nothing is opened here. What a family's settings
-//! make of it: [`Settings`].
+//! Families of SSI encoders: a description that users can write (RON, `assets/devices/ssi/`), with the frames that a family
+//! can send, its times and its further signals. It is data: nothing is opened here. [`Settings`] has the result of a
+//! family's settings.
 
 mod sends;
 mod setting_name;
@@ -24,34 +24,34 @@ use super::timing::Times;
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Family {
-    /// As it is written on the command line: `ahm36`.
+    /// Key on the command line: `ahm36`.
     pub key: String,
-    /// As its maker calls it.
+    /// Name given by its maker.
     pub name: String,
     /// Source of this description.
     pub source: String,
-    /// The position is a length: of a step, in nanometres. None: an angle.
+    /// Length of a step in nanometres, if the position is a length. None: an angle.
     #[serde(default)]
     pub step_nanometres: Option<u32>,
-    /// Bits of the revolutions: the least, as delivered, the most. None: singleturn, or a length.
+    /// Bits of the revolutions: the least, the factory setting, the most. None: singleturn, or a length.
     #[serde(default)]
     pub multiturn: Option<(u8, u8, u8)>,
     /// Bits within a revolution, or of a length, likewise.
     pub singleturn: (u8, u8, u8),
-    /// Bits of both together at most, where that is less.
+    /// Most bits of both together, if that is less.
     #[serde(default)]
     pub together: Option<u8>,
     /// Numbers of steps that are no power of two.
     #[serde(default)]
     pub steps: Option<StepLimits>,
-    /// Codes that the manual names, the one as delivered first; others are accepted with a remark.
+    /// Codes that the manual names, the factory setting first; others are accepted with a remark.
     pub codes: Vec<Code>,
     /// The possible alignments; the factory setting is the first with enough room.
     pub align: Vec<Align>,
     /// The whole frame can come one clock later.
     #[serde(default)]
     pub shift: bool,
-    /// Frames by resolution: the first that has room for the position counts.
+    /// Frames by resolution: the first with room for the position counts.
     pub frames: Vec<Frame>,
     /// Words with a meaning of their own.
     #[serde(default)]
@@ -73,11 +73,11 @@ pub struct Family {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StepLimits {
-    /// In a turn.
+    /// Steps per turn.
     pub per_turn: u32,
     /// Altogether.
     pub total: u32,
-    /// Number of turns of a round axis, above and below the line; none: no round axis.
+    /// Number of turns of a round axis, as numerator and denominator; none: no round axis.
     #[serde(default)]
     pub revolutions: Option<(u32, u32)>,
 }
@@ -86,18 +86,18 @@ pub struct StepLimits {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Frame {
-    /// For positions of so many bits and fewer.
+    /// Largest number of bits of the position.
     pub up_to: u8,
     /// Clocks of the position and its zeros; none: as many as the position has bits.
     #[serde(default)]
     pub area: Option<u8>,
-    /// Error bits in their order; `clock` of the first is where they are fixed.
+    /// Error bits in their order; `clock` of the first is their fixed place.
     #[serde(default)]
     pub errors: Vec<ErrorBit>,
     /// The possible places of error bits, the factory setting first.
     #[serde(default)]
     pub place: Vec<ErrorPlace>,
-    /// Clocks that a burst may have at most; none: as many as the frame has bits.
+    /// Most clocks of a burst; none: as many as the frame has bits.
     #[serde(default)]
     pub most_clocks: Option<u8>,
 }
@@ -112,7 +112,7 @@ pub enum Align {
     Right24,
     /// Its last bit on clock 25.
     Right25,
-    /// Turns end on clock 12, steps begin on 13: zeros before and behind ("Tannenbaum").
+    /// Turns end on clock 12, steps begin on 13: zeros before and after ("Tannenbaum").
     #[serde(rename = "tree12_13")]
     Tree12,
     /// Turns end on clock 13, steps begin on 14.
@@ -124,15 +124,15 @@ pub enum Align {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ErrorPlace {
-    /// They are not sent, or not clocked in.
+    /// Not sent, or not clocked in.
     None,
-    /// On their own clocks, whatever the resolution.
+    /// On their own clocks, with any resolution.
     Fix,
-    /// Right behind the position's last bit.
+    /// Immediately after the position's last bit.
     Following,
 }
 
-/// A signal beside SSI.
+/// A signal in addition to SSI.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Signal {
@@ -149,11 +149,11 @@ pub struct Signal {
     pub supply_volts: Option<(f64, f64)>,
 }
 
-/// A family that cannot be used, and where.
+/// A family that is invalid, and the position of the error.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}, line {line}, column {column}: {problem}")]
 pub struct FamilyError {
-    /// The file's name as it was given.
+    /// The file's name as given.
     pub file: String,
     /// Line, counted from 1.
     pub line: usize,
@@ -163,16 +163,16 @@ pub struct FamilyError {
     pub problem: FamilyProblem,
 }
 
-/// Why a family cannot be used.
+/// The reason why a family is invalid.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FamilyProblem {
-    /// Not the RON expected, as the parser says it.
+    /// Not the RON expected, with the parser's message.
     #[error("{0}")]
     Parser(String),
-    /// A key that cannot stand on the command line.
+    /// A key that is not possible on the command line.
     #[error("the key {0:?} may contain only lower-case letters, digits, - and _")]
     Key(String),
-    /// German for what is neither the source nor a note.
+    /// German text for neither the source nor a note.
     #[error("german: {0:?} is neither the source nor a note")]
     German(String),
     /// A frame as delivered that cannot work.
@@ -180,16 +180,16 @@ pub enum FamilyProblem {
     Delivered(SettingsError),
 }
 
-/// All families known.
+/// All known families.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Families(Vec<Family>);
 
 impl Family {
-    /// Reads a family. `file` is what an error is to call it.
+    /// Parses a family. `file` is its name for errors.
     ///
     /// # Errors
-    /// With line and column: text that is not RON, unknown or missing keys; a key that cannot stand on the command line,
-    /// and a family whose frame as delivered cannot work.
+    /// Returns line and column: text that is not RON, unknown or missing keys; a key that is not possible on the command
+    /// line, and a family whose frame with factory settings is not possible.
     pub fn parse(file: &str, text: &str) -> Result<Self, FamilyError> {
         let error = |line, column, what| FamilyError { file: file.to_owned(), line, column, problem: what };
         let family: Family = ron::from_str(text).map_err(|wrong| {
@@ -219,13 +219,13 @@ impl Family {
         self.german.get(english).map_or(english, String::as_str)
     }
 
-    /// The code as delivered.
+    /// Returns the code as delivered.
     pub fn code(&self) -> Code {
         self.codes.first().copied().unwrap_or(Code::Binary)
     }
 }
 
-/// Line and column of the first line that begins with an entry, counted from 1; the beginning where none does.
+/// Returns line and column of the first line that begins with an entry, counted from 1; the beginning if there is none.
 fn place(text: &str, entry: &str) -> (usize, usize) {
     let lines = text.lines().enumerate();
     let found = lines.filter(|(_, line)| line.trim_start().starts_with(entry)).map(|(at, line)| {
@@ -264,13 +264,13 @@ impl Families {
         (Families(read), errors)
     }
 
-    /// The built-in ones.
+    /// Creates the built-in ones.
     pub fn built_in() -> Self {
-        // That they can be read is tested.
+        // A test checks that they can be read.
         Self::read(Self::BUILT_IN).0
     }
 
-    /// These, with those of `others` in the place of their own where both have the same key.
+    /// Returns these families with those of `others`, which replace those with the same key.
     #[must_use]
     pub fn overlaid_with(self, others: Families) -> Self {
         let mut all = others.0;
@@ -287,7 +287,7 @@ impl Families {
         self.0.iter().find(|family| family.key == key)
     }
 
-    /// All of them.
+    /// Returns all of them.
     pub fn iter(&self) -> impl Iterator<Item = &Family> {
         self.0.iter()
     }

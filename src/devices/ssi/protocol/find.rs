@@ -1,6 +1,7 @@
 //! Finds the layout of recorded frames. Every way to read them as numbers is tried; a turning shaft moves evenly, and a
-//! frame that is read wrong jumps. What fits is ranked by how much has to be said about the frames once it is known, and by
-//! how usual it is. Layouts that these frames cannot tell apart are one class, with the motion that would decide.
+//! wrong reading of a frame causes jumps. The possible layouts are ranked by the information still needed for the frames
+//! once the layout is known, and by how usual they are. Layouts that these frames cannot distinguish are one class, with
+//! the motion that would decide.
 
 mod any_other;
 mod code_ends;
@@ -26,9 +27,9 @@ use reading::{Read, readings};
 use super::family::{Families, Settings};
 use super::layout::Layout;
 
-/// Frames that are looked at: the newest.
+/// Largest number of frames that are analysed: the newest.
 const MOST_FRAMES: usize = 4_000;
-/// Fewer different frames say nothing: a shaft that stands, or trembles.
+/// Least number of different frames: with fewer, the shaft stands still, or trembles.
 const LEAST_DIFFERENT: usize = 32;
 /// Classes that are shown.
 const CLASSES: usize = 6;
@@ -36,9 +37,9 @@ const CLASSES: usize = 6;
 const WEIGHT_BITS: f64 = 8.0;
 /// Classes less probable than the first by this much are left out.
 const IMPROBABLE: f64 = 8.0;
-/// Of a thousand frames, those in which two ways have to agree to be the same.
+/// Of a thousand frames, those in which two readings have to agree to be the same.
 const SAME_PERMILLE: usize = 995;
-/// Families are looked for in what takes no more bits than this beside the best, for all frames.
+/// Families are searched for readings that need no more bits than this beyond the best, for all frames.
 const NEAR_BITS: f64 = 300.0;
 
 /// The result of the search.
@@ -48,53 +49,52 @@ pub struct Search {
     pub frames: usize,
     /// Number of different frames.
     pub different: usize,
-    /// Why the first class is not certain; `None`: it is the only one, and every bit is explained.
+    /// The reason why the first class is not certain; `None`: it is the only one, and every bit is explained.
     pub doubt: Option<Uncertainty>,
-    /// The classes that fit, the best first; may be empty.
+    /// The possible classes, the best first; may be empty.
     pub classes: Vec<Class>,
 }
 
-/// Why the result is not certain.
+/// The reason why the result is not certain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Uncertainty {
-    /// The shaft stood, or hardly moved.
+    /// The shaft was at standstill, or hardly moved.
     Standing,
     /// Every bit is 0 or 1 in all frames.
     Stuck {
-        /// It is 1.
+        /// Whether it is 1.
         high: bool,
     },
-    /// Nothing makes the motion even: not SSI, a disturbed line, or a shaft that turns too fast.
+    /// No reading makes the motion even: not SSI, a disturbed line, or a shaft that turns too fast.
     Nothing,
     /// Two classes fit as well.
     Close,
-    /// One class is left, but not every bit of it is explained.
+    /// One class remains, but not every bit of it is explained.
     Open,
 }
 
-/// Layouts that these frames cannot tell apart.
+/// Layouts that these frames cannot distinguish.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
-    /// The most probable first: as delivered before what had to be set, usual widths before others.
+    /// The most probable first: factory settings before changed ones, usual widths before others.
     pub members: Vec<Proposal>,
     /// The evidence.
     pub evidence: Evidence,
-    /// What would separate the members, or prove them.
+    /// Motions that would separate the members, or prove them.
     pub open: Vec<Open>,
 }
 
 /// A layout that fits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proposal {
-    /// The family's key with its settings; `None`: any other encoder. Where the data wires are exchanged, only the layout
-    /// says so.
+    /// The family's key with its settings; `None`: any other encoder. Exchanged data wires are only in the layout.
     pub family: Option<(String, Settings)>,
     /// The frame.
     pub layout: Layout,
 }
 
 impl Proposal {
-    /// The layout in one word, as the command line takes it: a family with as few settings as there can be, or any frame.
+    /// Returns the layout in one word, as for the command line: a family with as few settings as possible, or any frame.
     pub fn spec(&self, families: &Families) -> String {
         let descriptor = self.layout.descriptor();
         let named = self.family.as_ref().and_then(|(key, _)| {
@@ -108,7 +108,7 @@ impl Proposal {
 /// The evidence for a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evidence {
-    /// 0…1: how well it explains the frames, and how usual it is.
+    /// 0…1: the quality of its explanation of the frames, and how usual it is.
     pub score: f64,
     /// Frames that follow from their neighbours.
     pub explained: usize,
@@ -118,7 +118,7 @@ pub struct Evidence {
     pub bits_a_frame: f64,
     /// Frames that jump from the one before.
     pub jumps: usize,
-    /// Frames with another value where a bit is constant, or a code word that is none.
+    /// Frames with another value for a constant bit, or an invalid code word.
     pub misfits: usize,
     /// Bits from the highest that moved to the lowest.
     pub bits_seen: u8,
@@ -127,7 +127,7 @@ pub struct Evidence {
 /// An open question: how to separate the members of a class, or an unexplained bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Open {
-    /// The boundary of turns and steps: turn exactly once, and note by how much the position grows.
+    /// The boundary of turns and steps: turn exactly once, and note the increase of the position.
     TurnOnce,
     /// The meaning of clocks that never changed: turn until they do, or the position starts again.
     TurnFarther {
@@ -138,11 +138,11 @@ pub enum Open {
     },
     /// The end of the range: turn until the position starts again.
     PassAnEnd,
-    /// Exchanged wires or reversed counting: turn clockwise, and see whether the position grows.
+    /// Exchanged wires or reversed counting: turn clockwise, and check whether the position increases.
     Direction,
     /// The lowest bit: turn at another speed, unevenly.
     OtherSpeed,
-    /// The number of steps: turn slowly over the end of the range.
+    /// The number of steps: turn slowly across the end of the range.
     PassTheEnd {
         /// The least.
         least: u32,
@@ -154,13 +154,13 @@ pub enum Open {
         /// The first such clock.
         clock: u8,
     },
-    /// The error bits: provoke one (turn too fast, exchange the supply).
+    /// The error bits: cause one (turn too fast, exchange the supply).
     SeeAnError,
-    /// The family, where two send the same: see the type label.
+    /// The family, if two send the same: check the type label.
     TypeLabel,
 }
 
-/// A way to read the frames with all layouts that do so.
+/// A reading of the frames with all layouts that result in it.
 struct Group {
     read: Read,
     members: Vec<Member>,
@@ -187,7 +187,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
         if known.is_none() && groups.len() >= CLASSES {
             continue;
         }
-        // Families are worth the search where the motion may be right.
+        // Families are searched if the motion may be right.
         let near = groups.first().is_none_or(|best| read.bits < best.bits + NEAR_BITS || known == Some(0));
         let best = known.and_then(|known| groups.get(known)).map_or(&read, |group| &group.read);
         let probe = Probe::new(&seen, &words, repeat, best);
@@ -226,7 +226,7 @@ pub fn find(frames: &[u64], clocks: u8, families: &Families) -> Search {
     search(doubt, verdict::classes(&words, groups))
 }
 
-/// Returns whether two layouts see the same motion: forwards or backwards, in the same steps or in halved ones.
+/// Returns whether two layouts result in the same motion: forwards or backwards, in the same steps or in halved ones.
 fn same(one: &Motion, other: &Motion) -> bool {
     let halvings = |motion: &Motion| {
         let steps =
@@ -247,9 +247,9 @@ fn same(one: &Motion, other: &Motion) -> bool {
         forwards += usize::from(step >> by == other >> other_by);
         backwards += usize::from(step >> by == -(other >> other_by));
     }
-    // Where one of them jumps, the other must as well.
+    // If one of them jumps, the other must as well.
     let even = |motion: &Motion| (0..motion.steps.len()).filter(|at| motion.is_even(*at)).count();
-    // A disturbed bit may be one that the other does not look at.
+    // A disturbed bit may be one that the other ignores.
     let disturbed = one.jumps.min(other.jumps) / 2;
     let most = even(one).max(even(other));
     (all + disturbed) * 1000 >= SAME_PERMILLE * most && forwards.max(backwards) * 1000 >= SAME_PERMILLE * all

@@ -1,5 +1,5 @@
-//! Any frame in one word, for the command line: `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. What can stand in a
-//! profile in more words (names, patterns) has no place here.
+//! Any frame in one word, for the command line: `frame,clocks=27,lead=1,mt=12,st=13,code=gray,ones=1`. It cannot express
+//! the parts that need more words in a profile (names, patterns).
 
 use super::code::Code;
 use super::descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Repeat};
@@ -35,21 +35,21 @@ const NAMES: &[&str] = &[
 
 /// Name of an unexplained bit.
 const UNKNOWN: &str = "BIT";
-/// Lists of clocks with what the bits there are called, and whether they speak when they are 0.
+/// Lists of clocks with the names of their bits, and whether they are active at 0.
 const LISTS: [(&str, &str, bool); 3] = [("ones", "HIGH", true), ("err", "ERROR", false), ("unknown", UNKNOWN, false)];
 
 impl Descriptor {
-    /// Reads a frame in one word; `None`: it begins with something else. What is left out is 0, binary, and of as many
-    /// clocks as the position has bits.
+    /// Parses a frame in one word; `None`: it begins with another word. Omitted values are 0, binary, and as many clocks as
+    /// the position has bits.
     ///
     /// # Errors
-    /// [`SpecError`], with what may stand there.
+    /// [`SpecError`], with the allowed values.
     pub fn parse(text: &str) -> Option<Result<Self, SpecError>> {
         let mut words = text.split(',').map(str::trim);
         words.next().is_some_and(|key| key.eq_ignore_ascii_case(KEY)).then(|| parse(words))
     }
 
-    /// The frame in one word. Names of error bits, what they mean, and patterns are not in it.
+    /// Returns the frame in one word, without names and meanings of error bits, and without patterns.
     pub fn spec(&self) -> String {
         let own = Self::plain(0, 0);
         let mut words = vec![format!("clocks={}", self.clocks)];
@@ -172,14 +172,14 @@ mod tests {
         Descriptor::parse(text).unwrap().unwrap()
     }
 
-    /// Reference section 8: AHM36 in Gray is 12 and 14 bits with an error bit behind them.
+    /// Reference section 8: AHM36 in Gray is 12 and 14 bits followed by an error bit.
     #[test]
     fn frames_in_one_word_read_frames() {
         let layout = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,area=26")).unwrap();
         assert_eq!(layout.decode(0x0D9_3EEC).position, 0x123 << 14 | 0x2A5B);
         let inverted = Layout::new(frame("frame,clocks=27,mt=12,st=14,code=gray,err=27,inverted=1,area=26")).unwrap();
         assert_eq!(inverted.decode(!0x0D9_3EEC & 0x7FF_FFFF).position, 0x123 << 14 | 0x2A5B);
-        // A start bit, 4 bits, odd parity; and that once more behind a zero.
+        // A start bit, 4 bits, odd parity; and the same again after a zero.
         let twice = Layout::new(frame("frame,clocks=13,lead=1,st=4,ones=1,parity=odd@6,repeat=6+1,area=5")).unwrap();
         let reading = twice.decode(0b1_1001_0011_0010);
         assert_eq!(reading.position, 0b1001, "1 1001 1, 0, and again");

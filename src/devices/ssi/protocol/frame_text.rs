@@ -1,30 +1,30 @@
-//! A frame as people write it down: bits in the order of the clocks, or a number.
+//! A frame as users write it: bits in the order of the clocks, or a number.
 
-/// Why a text is not a frame.
+/// The reason why a text is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FrameTextError {
     /// Neither bits nor a number.
     #[error("{0:?} is not a frame: enter bits in clock order (0b1010 or 1010), or 0x and hexadecimal digits")]
     Form(String),
-    /// Not as many bits as the layout has clocks.
+    /// Another number of bits than the layout has clocks.
     #[error("{text} {} {bits} bits; the layout has {clocks} clocks", if *.is_number { "needs" } else { "has" })]
     Bits {
-        /// As it was written.
+        /// The given text.
         text: String,
-        /// Its bits, or those that its number needs.
+        /// Its number of bits, or the bits that its number needs.
         bits: u32,
         /// Clocks of the layout.
         clocks: u8,
-        /// It is a number.
+        /// Whether it is a number.
         is_number: bool,
     },
 }
 
-/// Reads a frame of so many clocks: `0b1010…` or only 0 and 1 in the order of the clocks, as many as there are clocks;
-/// or `0x…` right-justified. Blanks and underscores between bits do not count.
+/// Parses a frame of `clocks` clocks: `0b1010…` or only 0 and 1 in the order of the clocks, as many as there are clocks; or
+/// `0x…` right-justified. Blanks and underscores between bits are ignored.
 ///
 /// # Errors
-/// [`FrameTextError`] with what would be a frame.
+/// [`FrameTextError`] with the possible forms of a frame.
 pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     let text = text.trim();
     let form = || FrameTextError::Form(text.to_owned());
@@ -52,7 +52,7 @@ pub fn parse_frame(text: &str, clocks: u8) -> Result<u64, FrameTextError> {
     frame.ok().filter(|_| fits).ok_or_else(|| too_long(bits))
 }
 
-/// The bits of a frame in the order of the clocks.
+/// Returns the bits of a frame in the order of the clocks.
 pub fn frame_bits(frame: u64, clocks: u8) -> String {
     (0..clocks.min(64)).rev().map(|behind| if frame >> behind & 1 == 1 { '1' } else { '0' }).collect()
 }

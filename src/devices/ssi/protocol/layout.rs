@@ -1,4 +1,4 @@
-//! A frame that can work: positions to bits and back, fast. What each bit is: [`super::explain`].
+//! A possible frame: positions to bits and back, fast. [`super::explain`] has the meaning of each bit.
 
 mod check;
 #[cfg(test)]
@@ -20,15 +20,15 @@ pub struct Layout {
     pub(super) parts: [Part; 2],
     /// The code word's lowest bit is pushed out.
     pub(super) lost: bool,
-    /// Bits of a word behind the area.
+    /// Bits of a word after the area.
     pub(super) behind_area: u8,
-    /// Bits that are Gray as a whole, and how many lie behind them; none: 0 bits.
+    /// Number of bits that are Gray as a whole, and of those after them; none: 0 bits.
     pub(super) gray: (u8, u8),
     /// Bits of a word that are always 0.
     pub(super) zeros: u64,
     /// Each error bit in a word.
     pub(super) errors: Vec<u64>,
-    /// Error bits that speak when they are 0.
+    /// Error bits that are active at 0.
     pub(super) low: u64,
     /// The parity bit in a word and those before it; 0 without one.
     pub(super) parity: (u64, u64),
@@ -40,9 +40,9 @@ pub struct Layout {
 /// A run of bits of the code word.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Part {
-    /// Bits of the word behind it.
+    /// Bits of the word after it.
     pub(super) in_word: u8,
-    /// Bits of the code word behind it.
+    /// Bits of the code word after it.
     pub(super) in_code: u8,
     pub(super) mask: u64,
 }
@@ -50,7 +50,7 @@ pub(super) struct Part {
 /// A decoded frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameReading {
-    /// The position; 0 where [`Flags::CODE`] says that there is none.
+    /// The position; 0 if [`Flags::CODE`] is set, because there is none.
     pub position: u64,
     /// The flags besides the position.
     pub flags: Flags,
@@ -63,7 +63,7 @@ pub struct Flags(pub(super) u32);
 impl Flags {
     /// Nothing.
     pub const NONE: Flags = Flags(0);
-    /// The code word is none: digits above 9, or outside of gray excess.
+    /// The code word is invalid: digits above 9, or outside of gray excess.
     pub const CODE: Flags = Flags(1 << 16);
     /// A bit that is always 0 is 1: another layout, a wrong number of clocks, a disturbed line.
     pub const PADDING: Flags = Flags(1 << 17);
@@ -76,27 +76,27 @@ impl Flags {
     /// Every bit is 0.
     pub const ZEROS: Flags = Flags(1 << 21);
 
-    /// Error bit `index` of the descriptor speaks.
+    /// Returns the flag of error bit `index` of the descriptor.
     pub const fn error(index: usize) -> Flags {
         if index < 8 { Flags(1 << index) } else { Flags::NONE }
     }
 
-    /// The frame is pattern `index` of the descriptor.
+    /// Returns the flag of pattern `index` of the descriptor.
     pub const fn pattern(index: usize) -> Flags {
         if index < 4 { Flags(1 << (8 + index)) } else { Flags::NONE }
     }
 
-    /// All of `other` are set.
+    /// Returns whether all of `other` are set.
     pub const fn has(self, other: Flags) -> bool {
         other.0 != 0 && self.0 & other.0 == other.0
     }
 
-    /// Any of `other` is set.
+    /// Returns whether any of `other` is set.
     pub const fn any(self, other: Flags) -> bool {
         self.0 & other.0 != 0
     }
 
-    /// Both.
+    /// Returns the union of both.
     #[must_use]
     pub const fn with(self, other: Flags) -> Flags {
         Flags(self.0 | other.0)
@@ -109,7 +109,7 @@ impl Flags {
 }
 
 impl Default for Layout {
-    /// The least frame: one bit.
+    /// Returns the smallest frame: one bit.
     fn default() -> Self {
         Layout {
             descriptor: Descriptor::plain(0, 1),
@@ -137,33 +137,33 @@ impl Layout {
         check::layout(descriptor)
     }
 
-    /// The frame as it was designed.
+    /// Returns the frame as it was designed.
     pub const fn descriptor(&self) -> &Descriptor {
         &self.descriptor
     }
 
-    /// The code of the positions; binary where the Gray code goes over more than them.
+    /// Returns the code of the positions; binary if the Gray code covers more than them.
     pub const fn coding(&self) -> &Coding {
         &self.coding
     }
 
-    /// Bits in a burst, 1…64.
+    /// Returns the number of bits in a burst, 1…64.
     pub const fn clocks(&self) -> u8 {
         self.descriptor.clocks
     }
 
-    /// The position's lowest bit is not sent: shifting right has pushed it out.
+    /// Returns whether the position's lowest bit is not sent, because shifting right has removed it.
     pub const fn loses_lowest_bit(&self) -> bool {
         self.lost
     }
 
-    /// Flags that say that a position is not valid.
+    /// Returns the flags that make a position invalid.
     pub const fn invalid(&self) -> Flags {
         self.invalid
     }
 
-    /// The frame of a position, in which those error bits speak that `flags` has; right-justified, the first clock's
-    /// bit the highest. `None` behind the last position.
+    /// Returns the frame of a position, with the error bits active that `flags` has; right-justified, the first clock's bit
+    /// the highest. `None` after the last position.
     pub fn encode(&self, position: u64, flags: Flags) -> Option<u64> {
         let code = self.coding.encode(position)?;
         let mut word =

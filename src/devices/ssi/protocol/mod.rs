@@ -1,7 +1,7 @@
-//! SSI: frames of any layout, the families that the manual describes, and what their times allow.
+//! SSI: frames of any layout, the families that the manual describes, and the limits of their times.
 //!
 //! Source: SICK, *SSI Schnittstellenbeschreibung* ("the manual" below; the project's reference of it where a section is
-//! named so). The manual's pictures of bits are not to be had; layouts follow its text, which numbers the clocks from 1.
+//! named so). The manual's pictures of bits are not available; layouts follow its text, which numbers the clocks from 1.
 
 #![warn(missing_docs)]
 
@@ -19,7 +19,7 @@ mod spec;
 mod tally;
 mod timing;
 
-/// The word for this kind of device: on the command line, in profiles, and where something is kept of one.
+/// The word for this kind of device: on the command line, in profiles, and in stored data.
 pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, Coding, gray, ungray};

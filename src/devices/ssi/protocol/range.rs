@@ -16,14 +16,14 @@ pub enum Range {
         /// Bits within one, 0…32.
         singleturn: u8,
     },
-    /// Any number of steps a turn, and of turns.
+    /// Any number of steps per turn, and of turns.
     Steps {
         /// Steps within a turn, at least 2.
         per_turn: u32,
         /// Turns, at least 1.
         turns: u32,
     },
-    /// Steps spread evenly over a number of turns that is a fraction; then it begins again (endless shaft).
+    /// Steps spread evenly over a fractional number of turns; then the position starts again (endless shaft).
     RoundAxis {
         /// Steps altogether, at least 2.
         steps: u32,
@@ -48,17 +48,17 @@ pub struct Fraction {
     pub denominator: u32,
 }
 
-/// Direction of the shaft, seen on it, while positions grow; for a length: its own direction, or against it.
+/// Direction of the shaft, seen on it, in which positions increase; for a length: its own direction, or against it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Direction {
-    /// Clockwise: as delivered.
+    /// Clockwise: the factory setting.
     #[default]
     Clockwise,
     /// Counterclockwise.
     CounterClockwise,
 }
 
-/// Why a range is not possible.
+/// The reason why a range is not possible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RangeError {
     /// A field is wider than it can be.
@@ -71,7 +71,7 @@ pub enum RangeError {
         /// Most bits.
         limit: u8,
     },
-    /// Nothing to tell apart.
+    /// Only one position.
     #[error("the range has only a single position: specify bits or steps")]
     Empty,
     /// A fraction with a zero in it.
@@ -99,7 +99,7 @@ pub enum Location {
 }
 
 impl Range {
-    /// The last position.
+    /// Returns the last position.
     ///
     /// # Errors
     /// [`RangeError`]: this range cannot be.
@@ -133,7 +133,7 @@ impl Range {
         }
     }
 
-    /// Returns the location of a position. It may be beyond the last one: nothing wraps here.
+    /// Returns the location of a position. It may be beyond the last one: it is not wrapped.
     pub fn place(&self, position: u64) -> Location {
         match *self {
             Range::Bits { singleturn, .. } => {
@@ -163,7 +163,8 @@ impl Range {
         }
     }
 
-    /// The position of a turn and steps within it; `None` where the range has no such turn or step, or no turns at all.
+    /// Returns the position of a turn and steps within it; `None` if the range has no such turn or step, or no turns at
+    /// all.
     pub fn position(&self, turns: u64, steps: u64) -> Option<u64> {
         let last = self.last().ok()?;
         let position = match *self {
@@ -183,22 +184,22 @@ impl Range {
         (position <= last).then_some(position)
     }
 
-    /// The position of a shaft that has turned by `raw` steps from its zero, of which a turn has `per_turn`, at least 1;
-    /// it begins again behind its last one (reference section 5: "position = floor(…)"). A length counts the steps.
+    /// Returns the position of a shaft that has turned by `raw` steps from its zero, with `per_turn` steps per turn, at
+    /// least 1; it starts again after its last one (reference section 5: "position = floor(…)"). A length counts the steps.
     pub fn of_shaft(&self, raw: u64, per_turn: u64) -> u64 {
         self.counted(raw, per_turn, Direction::Clockwise)
     }
 
-    /// The same of an encoder that counts in a direction and stands at `preset` while the shaft is at its zero
-    /// (reference section 5: "Direction", "preset"). A preset behind the last position begins again likewise.
+    /// Returns the same for an encoder that counts in a direction and is at `preset` when the shaft is at its zero
+    /// (reference section 5: "Direction", "preset"). A preset after the last position starts again likewise.
     pub fn of_shaft_set(&self, raw: u64, per_turn: u64, direction: Direction, preset: u64) -> u64 {
         let last = self.last().unwrap_or(0);
         let position = u128::from(self.counted(raw, per_turn, direction)) + u128::from(preset);
         u64::try_from(position % (u128::from(last) + 1)).unwrap_or(last)
     }
 
-    /// Returns the count from 0 at the shaft's zero. Both directions count alike, so that each position is held equally
-    /// long in either.
+    /// Returns the count from 0 at the shaft's zero. Both directions count alike, so that each position lasts equally long
+    /// in either.
     fn counted(&self, raw: u64, per_turn: u64, direction: Direction) -> u64 {
         let (turned, per_turn) = (u128::from(raw), u128::from(per_turn.max(1)));
         let last = self.last().unwrap_or(0);
@@ -211,7 +212,7 @@ impl Range {
             Range::Length { .. } if direction == Direction::CounterClockwise => return raw.wrapping_neg() & last,
             Range::Length { .. } => return raw & last,
         };
-        // Steps of the shaft until it begins again, as a fraction with `denominator` below the line.
+        // Steps of the shaft until it starts again, as a fraction with `denominator` as the denominator.
         let round = (per_turn * numerator).max(1);
         let around = match direction {
             Direction::Clockwise => (turned * denominator) % round,
@@ -220,7 +221,7 @@ impl Range {
         u64::try_from(around * steps / round).unwrap_or(last)
     }
 
-    /// Bits of the revolutions, where they are bits of their own.
+    /// Returns the bits of the revolutions, if they are separate bits.
     pub const fn multiturn_bits(&self) -> u8 {
         match self {
             Range::Bits { multiturn, .. } => *multiturn,
@@ -228,7 +229,7 @@ impl Range {
         }
     }
 
-    /// Bits that the positions need in binary.
+    /// Returns the number of bits that the positions need in binary.
     ///
     /// # Errors
     /// [`RangeError`]: this range cannot be.
@@ -238,7 +239,7 @@ impl Range {
 }
 
 impl fmt::Display for Fraction {
-    /// `25/2`, or a whole number.
+    /// Writes `25/2`, or a whole number.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.denominator {
             1 => write!(f, "{}", self.numerator),
@@ -250,7 +251,7 @@ impl fmt::Display for Fraction {
 impl FromStr for Fraction {
     type Err = Expected;
 
-    /// The error says what may stand there.
+    /// Parses a direction; the error has the allowed values.
     fn from_str(text: &str) -> Result<Self, Expected> {
         let (above, below) = text.split_once('/').unwrap_or((text, "1"));
         let part = |text: &str| text.trim().parse().map_err(|_| Expected::Fraction);

@@ -1,11 +1,11 @@
-//! Layouts in one word, `KEY,name=value,…`: what a family's settings and a free frame have in common.
+//! Layouts in one word, `KEY,name=value,…`: the common parts of a family's settings and a free frame.
 
 use crate::expected::Expected;
 
-/// Why a text is not a layout.
+/// The reason why a text is not a layout.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
-    /// No `name=value`.
+    /// Not of the form `name=value`.
     #[error("\"{word}\" is not NAME=VALUE; names: {names}", names = names.join(", "))]
     Form {
         /// The word.
@@ -24,7 +24,7 @@ pub enum SpecError {
     /// A value that is none.
     #[error("{name} must be {expected}, not \"{value}\"")]
     Value {
-        /// Of which name.
+        /// The name with the wrong value.
         name: String,
         /// The expected value.
         expected: Expected,
@@ -45,7 +45,7 @@ pub(super) struct Setting<'t> {
 }
 
 impl<'t> Setting<'t> {
-    /// Reads words of `name=value`; empty ones do not count.
+    /// Parses words of `name=value`; empty ones are ignored.
     ///
     /// # Errors
     /// [`SpecError::Form`], [`SpecError::Twice`].
@@ -81,7 +81,7 @@ impl<'t> Setting<'t> {
         }
     }
 
-    /// The value is none of what may stand there.
+    /// Returns the error for a value that is not allowed.
     pub(super) fn wrong(self, expected: Expected) -> SpecError {
         SpecError::Value { name: self.name.to_owned(), expected, value: self.value.to_owned() }
     }

@@ -1,5 +1,5 @@
-//! Counts findings in frames: error bits that a transfer clears are gone with the next frame, and would be missed by
-//! looking at intervals.
+//! Counts findings in frames: error bits that a transfer clears are cleared with the next frame, and would be missed by
+//! checking at intervals.
 
 use super::explain::FrameFinding;
 use super::layout::{Flags, FrameReading, Layout};
@@ -13,7 +13,7 @@ pub struct Tally {
     before: (Flags, Vec<usize>),
 }
 
-/// Something there was to say.
+/// A finding with its count.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Noted {
     /// The finding.
@@ -30,8 +30,8 @@ pub struct Noted {
 }
 
 impl Tally {
-    /// Notes what a frame says; gives what the frame before did not have. `layout` is that of all frames since the last
-    /// [`reset`](Self::reset).
+    /// Counts the findings of a frame; returns those that the previous frame did not have. `layout` is that of all frames
+    /// since the last [`reset`](Self::reset).
     pub fn note(&mut self, layout: &Layout, reading: FrameReading, at: Time) -> Vec<FrameFinding> {
         let (flags, same) = &self.before;
         if *flags == reading.flags {
@@ -71,19 +71,19 @@ impl Tally {
         &self.noted
     }
 
-    /// Gives the findings other names: lasting ones are noted again with the next frame.
+    /// Renames the findings: lasting ones are counted again with the next frame.
     pub fn rename(&mut self) {
         self.noted.iter_mut().for_each(|noted| noted.stands = false);
         self.before = (Flags::NONE, Vec::new());
     }
 
-    /// Starts again; lasting findings are noted again with the next frame.
+    /// Starts again; lasting findings are counted again with the next frame.
     pub fn reset(&mut self) {
         *self = Tally::default();
     }
 }
 
-/// The next frame may have it again without its having stood in between.
+/// Returns whether the next frame may have the finding again although it ended in between.
 fn is_of_one_transfer(finding: &FrameFinding) -> bool {
     matches!(
         finding,
@@ -105,7 +105,7 @@ mod tests {
         Time::from_nanoseconds(milliseconds * 1_000_000)
     }
 
-    /// Name, count, first and last frame in milliseconds, whether it stands.
+    /// Returns name, count, first and last frame in milliseconds, and whether it lasts.
     fn rows(tally: &Tally) -> Vec<(String, u64, i64, i64, bool)> {
         let name = |finding: &FrameFinding| match finding {
             FrameFinding::Error { name, .. } | FrameFinding::Pattern { name, .. } => name.clone(),
@@ -118,7 +118,7 @@ mod tests {
         tally.noted().iter().map(row).collect()
     }
 
-    /// AFS60, frames of the reference, section 8: 18 bits of position and ERRDIG, ERRSI, ERRSYNC behind them.
+    /// AFS60, frames of the reference, section 8: 18 bits of position followed by ERRDIG, ERRSI, ERRSYNC.
     #[test]
     fn what_a_transfer_clears_counts_with_each_frame_and_what_stands_once() {
         let layout = layout("afs60");

@@ -12,17 +12,17 @@ use serde::Deserialize;
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Times {
-    /// tm: how long the data line stays low behind the last clock, least and most. As long, the value is kept.
+    /// tm: how long the data line stays low after the last clock, least and most. For this time the value is kept.
     pub monoflop: (f64, f64),
     /// Highest clock, in hertz.
     pub most_hz: u32,
-    /// Positions are made on their own; none: nothing is known of it.
+    /// Times of asynchronous operation, if positions are made independently of transfers; none: not known.
     #[serde(default)]
     pub asynchronous: Option<Asynchronous>,
     /// Positions are made when the host clocks.
     #[serde(default)]
     pub synchronous: Option<Synchronous>,
-    /// Both, where the number of steps is no power of two.
+    /// Both, if the number of steps is no power of two.
     #[serde(default)]
     pub any_steps: Option<AnySteps>,
 }
@@ -31,7 +31,7 @@ pub struct Times {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asynchronous {
-    /// From one position to the next.
+    /// Time from one position to the next.
     pub update: f64,
     /// Least age of a position when it is read.
     #[serde(default)]
@@ -48,7 +48,7 @@ pub struct Asynchronous {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Synchronous {
-    /// When a position is taken.
+    /// The moment at which a position is taken.
     pub taken: Taken,
     /// tm in this mode.
     #[serde(default)]
@@ -60,15 +60,15 @@ pub struct Synchronous {
     pub most_hz: Option<u32>,
 }
 
-/// When a position is taken in synchronous mode.
+/// The moment at which a position is taken in synchronous mode.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Taken {
     /// This long after the last clock, and ready this long after that.
     Behind {
-        /// From the last clock.
+        /// Time from the last clock.
         starts: f64,
-        /// From the start.
+        /// Time from the start.
         ready: f64,
     },
     /// With the first falling edge; it is sent with the burst after that.
@@ -79,20 +79,20 @@ pub enum Taken {
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AnySteps {
-    /// Asynchronous: from one position to the next.
+    /// Asynchronous: time from one position to the next.
     pub update: f64,
     /// Synchronous: tm and the shortest pause.
     pub monoflop: f64,
 }
 
-/// How frames are read.
+/// The timing of reading frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reads {
     /// Bits of a burst.
     pub clocks: u8,
     /// Clock in hertz.
     pub clock_hz: f64,
-    /// From the last clock of a burst to the first of the next.
+    /// Time from the last clock of a burst to the first of the next.
     pub pause: Duration,
     /// Cable in metres.
     pub cable_metres: Option<f64>,
@@ -107,9 +107,9 @@ pub struct Reads {
 pub struct Timing {
     /// A clock.
     pub period: Duration,
-    /// All clocks of a burst.
+    /// Duration of all clocks of a burst.
     pub burst: Duration,
-    /// From burst to burst.
+    /// Time from burst to burst.
     pub cycle: Duration,
     /// tm, least and most.
     pub monoflop: (Duration, Duration),
@@ -119,7 +119,7 @@ pub struct Timing {
     pub most_reads_hz: f64,
     /// Least and greatest age of a position when its last bit has arrived; `None` if not known.
     pub age: Option<(Duration, Duration)>,
-    /// The highest clock for this cable, in hertz; `None`: longer than any that the manual speaks of.
+    /// The highest clock for this cable, in hertz; `None`: longer than any cable in the manual.
     pub cable_hz: Option<u32>,
     /// The violated limits.
     pub warnings: Vec<Warning>,
@@ -138,14 +138,14 @@ pub enum Warning {
         /// Highest, in hertz.
         most_hz: u32,
     },
-    /// The manual speaks of no cable of this length.
+    /// The manual has no cable of this length.
     CableLong,
-    /// A clock stays at one level for longer than tm: the encoder takes that for the end of the burst.
+    /// A clock level lasts longer than tm: the encoder takes that for the end of the burst.
     ClockSlow {
         /// Lowest clock, in hertz.
         least_hz: f64,
     },
-    /// The pause is shorter than the encoder needs: bits of the old position go on, or it is not ready.
+    /// The pause is shorter than the encoder needs: bits of the old position continue, or it is not ready.
     PauseShort {
         /// Shortest.
         least: Duration,
@@ -155,16 +155,16 @@ pub enum Warning {
         /// Longest.
         most: Duration,
     },
-    /// One reads faster than positions are made: the same comes twice, and the host has to bear that.
+    /// Reading is faster than positions are made: the same position is repeated, and the host has to accept that.
     Repeats {
-        /// From one position to the next.
+        /// Time from one position to the next.
         update: Duration,
     },
     /// The family has no synchronous mode.
     NoSynchronous,
 }
 
-/// The manual's table of cables (2.7): shorter than so many metres, at most so many hertz.
+/// The manual's table of cables (2.7): length below this number of metres, highest clock in hertz.
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
@@ -240,7 +240,7 @@ impl Times {
 }
 
 impl Synchronous {
-    /// The age does not vary where the pause does not.
+    /// Returns the age, which varies only if the pause does.
     fn age(&self, burst: Duration, pause: Duration) -> (Duration, Duration) {
         let age = match self.taken {
             Taken::Behind { starts, .. } => pause.saturating_sub(micros(starts)) + burst,

@@ -1,4 +1,4 @@
-//! The SSI encoder behind a virtual adapter, as the query of a `sim:` link gives it.
+//! The SSI encoder behind a virtual adapter, as in the query of a `sim:` link.
 
 use super::encoder::{Encoder, Sending};
 use super::injected_fault::InjectedFault;
@@ -8,18 +8,19 @@ use crate::parameter::{ANY, Checked, Maybe, Parameters, Refused};
 use crate::parameters;
 use crate::sim::ConfigError;
 
-/// The SSI frame of an encoder that nothing else is said of: 12 bits of turns, 13 within one.
+/// The default SSI frame: 12 bits of turns, 13 within one.
 pub const DELIVERED: &str = "atm60,code=gray";
 
 parameters! {
-    /// The SSI encoder on the shaft at an adapter, and what is wrong with its frame.
+    /// SSI encoder on the shaft at an adapter, and its injected faults.
     pub struct Settings: ConfigError {
-        /// Family and settings of the encoder; a host that clocks otherwise gets its frame cut off, or zeros behind it.
+        /// Family and settings of the encoder; a host with another number of clocks gets a truncated frame, or zeros after
+        /// it.
         encoder: Option<Encoder> = None,
             "ssi" => Maybe(Checked(Expected::Family, Encoder::named)),
             "connect.ssi_layout" like "atm60,code=gray";
-        /// Error bits of its frame that speak and words that it sends instead (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`), each with
-        /// the seconds after which it happens again.
+        /// Active error bits of its frame and words that it sends instead (`ERRSYNC:0.5,ERRSI:4`, `safety-fault`), each
+        /// with the interval in seconds.
         troubles: String = String::new(), "ssi-error" => ANY;
     }
 }
@@ -32,10 +33,10 @@ pub struct AtAdapter {
 }
 
 impl AtAdapter {
-    /// The encoder as delivered, where the settings name no other.
+    /// Encoder as delivered, if the settings name no other.
     pub const DELIVERED: AtAdapter = AtAdapter { encoder: None };
 
-    /// This encoder, where the settings name no other.
+    /// Creates this encoder, if the settings name no other.
     pub const fn sending(encoder: Encoder) -> Self {
         AtAdapter { encoder: Some(encoder) }
     }

@@ -26,7 +26,7 @@ impl Encoder {
     }
 }
 
-/// An encoder that is read, with what goes wrong.
+/// Encoder being read, with its faults.
 #[derive(Clone)]
 pub(super) struct Sending {
     pub(super) encoder: Encoder,

@@ -6,11 +6,11 @@ use std::time::Duration;
 use crate::devices::ssi::protocol::{Flags, Layout, Word};
 use crate::units::Moment;
 
-/// An error bit or a word that stands for a fault, and when it comes.
+/// Error bit or word that reports a fault, and its times.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct InjectedFault {
     shows: FaultIndication,
-    /// From one time that it happens to the next; none: it stands from the beginning.
+    /// Interval of the fault; `None`: it is present from the start.
     period: Option<Duration>,
 }
 
@@ -19,7 +19,7 @@ enum FaultIndication {
     /// This error bit.
     Bit {
         index: usize,
-        /// It says what happened since the transfer before.
+        /// It reports what happened since the previous transfer.
         cleared: bool,
     },
     /// This word, right-justified.
@@ -30,8 +30,8 @@ impl InjectedFault {
     const LEAST_PERIOD: f64 = 1e-6;
     const MOST_PERIOD: f64 = 86_400.0;
 
-    /// `ERRSYNC:0.5,ERRSI`; `None` where that is not understood. A name is of a bit or a pattern of the layout, its letters
-    /// as they please, its spaces as hyphens.
+    /// Parses `ERRSYNC:0.5,ERRSI`; `None` if it is invalid. A name is that of a bit or a pattern of the layout, in upper or
+    /// lower case, with hyphens for spaces.
     pub(super) fn read(text: &str, layout: &Layout) -> Option<Vec<Self>> {
         let items = text.split(',').map(str::trim).filter(|item| !item.is_empty());
         items
@@ -45,15 +45,15 @@ impl InjectedFault {
             .collect()
     }
 
-    /// The names that there are.
+    /// Returns the names that there are.
     pub(super) fn names(layout: &Layout) -> Vec<String> {
         let descriptor = layout.descriptor();
         let bits = descriptor.errors.iter().map(|bit| &bit.name);
         bits.chain(descriptor.patterns.iter().map(|pattern| &pattern.name)).map(|name| name.replace(' ', "-")).collect()
     }
 
-    /// Returns whether the fault shows in a transfer, given the time of the previous one. A fault that a transfer
-    /// clears is about the time between the two; an intermittent one is present in the second half of its period.
+    /// Returns whether the fault shows in a transfer, given the time of the previous one. A fault that a transfer clears
+    /// covers the time between the two; an intermittent one is present in the second half of its period.
     pub(super) fn happens(&self, at: Moment, before: Option<Moment>) -> bool {
         let Some(period) = self.period else {
             return before.is_none() || !matches!(self.shows, FaultIndication::Bit { cleared: true, .. });
@@ -66,7 +66,7 @@ impl InjectedFault {
         }
     }
 
-    /// The word that is sent instead of the frame.
+    /// Returns the word that is sent instead of the frame.
     pub(super) const fn word(&self) -> Option<u64> {
         match self.shows {
             FaultIndication::Word(word) => Some(word),
@@ -74,7 +74,7 @@ impl InjectedFault {
         }
     }
 
-    /// The error bit that speaks.
+    /// Returns the active error bit.
     pub(super) const fn flag(&self) -> Flags {
         match self.shows {
             FaultIndication::Bit { index, .. } => Flags::error(index),

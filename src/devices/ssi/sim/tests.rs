@@ -1,4 +1,4 @@
-//! What a host sees of the virtual SSI encoder behind an adapter, and its settings.
+//! The virtual SSI encoder behind an adapter as seen by a host, and its settings.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::buses::bridge::sim::tests::{Dial, Host, SSI};
 use crate::sim::ConfigError;
 use crate::sim::setting::pairs;
 
-/// On the shaft of a test.
+/// Creates a host with the encoder on the shaft of a test.
 fn on_a_dial(query: &str) -> Host {
     Host::to(query, &[&AtAdapter::DELIVERED, &Dial::SETTINGS])
 }
@@ -20,7 +20,7 @@ fn read(query: &str) -> Result<(), ConfigError> {
     AtAdapter::DELIVERED.attached(&pairs(query)).map(|_| ())
 }
 
-/// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of the turn's.
+/// The shaft at 270.0° of turn 1234h: SSI has the lowest 12 bits of the turns and the highest 13 of those within a turn.
 #[test]
 fn ssi_words_in_gray_and_binary_and_with_another_zero() {
     let natural = 0x234 << 13 | 0x1800;
@@ -57,7 +57,7 @@ fn what_is_wrong_is_told_in_a_sentence() {
     let sentence = "`ssi-error=ERRDIG` is not valid (allowed: ERROR, separated by commas, each with :SECONDS for an \
                     error that recurs)";
     assert_eq!(read("ssi=ahm36&ssi-error=ERRDIG").unwrap_err().to_string(), sentence);
-    // The order of the two is no matter.
+    // The order of the two does not matter.
     assert_eq!(read("ssi-error=ERRDIG&ssi=ahm36").unwrap_err().to_string(), sentence);
     assert_eq!(read("ssi-error=error:2&ssi=ahm36,st=12"), Ok(()));
     let none = read("ssi-error=ERROR").unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! The user's actions on an encoder or its layout: changes take effect at once, everything else is a job on its line or
+//! The user's actions on an encoder or its layout: changes take effect at once, everything else is a job of the session or
 //! a task.
 
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ impl Encoder {
         match action {
             SsiAction::SendLayout => {
                 let Some(url) = self.link_to_send() else { return };
-                // The draft belongs to the encoder that the link before stands for.
+                // The draft belongs to the encoder of the previous link.
                 self.leave_draft(services);
                 self.take_link(&url);
                 self.session.source = Source::Link(url);
@@ -104,7 +104,7 @@ impl Encoder {
 
     fn try_with(&mut self, with: Try) {
         let layout = self.designer.layout();
-        // Trying starts from the word that was read, if one is shown.
+        // The trial starts from the word that was read, if one is shown.
         if self.is_following()
             && let Some(word) = self.record.last().map(|seen| seen.word)
         {
@@ -120,7 +120,7 @@ impl Encoder {
         }
     }
 
-    /// A name for a file with this ending.
+    /// Returns a name for a file with this ending.
     pub(super) fn suggested(&self, ending: &str) -> PathBuf {
         match &self.session.source {
             Source::File { path, .. } if ending == "ron" => path.clone(),
@@ -133,7 +133,7 @@ impl Encoder {
         }
     }
 
-    /// Looks for the layout of the words that were read last.
+    /// Searches for the layout of the words read last.
     fn find_live(&mut self, services: &mut Services) {
         let clocks = self.clocks();
         let frames = self.record.words(clocks);
@@ -149,7 +149,7 @@ impl Encoder {
         self.find(services, move || read_frames(&path, clocks));
     }
 
-    /// Looks on a thread: some thousand layouts are tried.
+    /// Searches on a thread: some thousand layouts are tried.
     fn find(&mut self, services: &mut Services, frames: impl FnOnce() -> Result<Frames, Text> + Send + 'static) {
         self.searches = self.searches.wrapping_add(1);
         let number = self.searches;
@@ -166,7 +166,7 @@ impl Encoder {
         });
     }
 
-    /// A layout that was found, as the layout on the drawing board.
+    /// Takes a layout that was found as the layout that is being designed.
     fn take_found(&mut self, class: usize, member: usize) {
         let SearchState::Found { search, .. } = &self.hunt else { return };
         let Some(proposal) = search.classes.get(class).and_then(|class| class.members.get(member)) else { return };

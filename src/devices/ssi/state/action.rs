@@ -1,4 +1,4 @@
-//! The actions of an SSI encoder that is shown, or of its layout.
+//! The actions of the selected SSI encoder, or of its layout.
 
 use std::path::PathBuf;
 
@@ -14,41 +14,41 @@ pub enum SsiAction {
     Check,
     /// Change the layout.
     Edit(Box<Edit>),
-    /// Put something into a row of its form.
+    /// Enter a value into a row of its form.
     Enter(Field, Input),
-    /// Move something in its frame to a clock, or as near to it as it can be.
+    /// Move a part of its frame to a clock, or as near to it as possible.
     Move(Handle, u8),
-    /// One more error bit.
+    /// Add an error bit.
     AddErrorBit,
-    /// No error bit of this number any more.
+    /// Remove the error bit of this number.
     RemoveErrorBit(usize),
     /// Try the layout with something.
     Try(Try),
-    /// Words have so many clocks while a layout is looked for; `None`: as many as the layout.
+    /// Set the clocks of the words during a search; `None`: those of the layout.
     SetClocks(Option<u8>),
-    /// Look for the layout of the words that were read last.
+    /// Search for the layout of the words read last.
     Find,
-    /// Ask for a file with frames, to look for their layout.
+    /// Ask for a file with frames, to search for their layout.
     AskFrames,
-    /// Look for the layout of the frames in a file.
+    /// Search for the layout of the frames in a file.
     FindIn(PathBuf),
-    /// Forget what was found.
+    /// Discard the result of the search.
     ForgetSearch,
-    /// Take a layout that was found: the number of its class, and its place in that.
+    /// Take a layout from the result: the number of its class, and its place in that.
     Take(usize, usize),
-    /// Forget what error bits have said.
+    /// Forget the error bits reported so far.
     ForgetErrors,
     /// Ask where to write the layout for other programs.
     AskExport(Format),
     /// Write the layout for other programs.
     Export(Format, PathBuf),
-    /// Ask where to write the words that are kept.
+    /// Ask where to write the stored words.
     AskSaveFrames,
     /// Write the words that are kept.
     SaveFrames(PathBuf),
     /// Let the virtual encoder send this layout.
     SendLayout,
-    /// Turn the virtual encoder's shaft, in revolutions a minute.
+    /// Turn the virtual encoder's shaft, in revolutions per minute.
     Turn(f64),
 }
 
@@ -59,7 +59,7 @@ pub enum Try {
     Position(u64),
     /// The frame of a turn and the steps within it.
     Place(u64, u64),
-    /// A frame as it is written down.
+    /// Frame as text.
     Bits(String),
     /// The other value for the bit on this clock, counted from 1.
     Toggle(u8),

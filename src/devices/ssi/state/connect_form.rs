@@ -13,10 +13,10 @@ use crate::kinds::at_adapter;
 use crate::link::{LinkUrl, Scheme};
 use crate::parameter::{Entry, Parameters as _};
 
-/// The way to the encoder.
+/// Kind of connection to the encoder.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SsiLinkKind {
-    /// The virtual encoder in this program, behind a virtual adapter.
+    /// Virtual encoder in this program, behind a virtual adapter.
     #[default]
     Virtual,
     /// An adapter at a serial port or in the network.
@@ -25,8 +25,8 @@ pub enum SsiLinkKind {
     Replay,
 }
 
-/// The entries of the connection form. Entries of another way are kept and left out of the link. An empty entry stands
-/// for what is usual.
+/// Entries of the connection form. Entries of another kind of connection are kept and left out of the link. An empty entry
+/// means the default.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SsiForm {
     pub kind: SsiLinkKind,
@@ -50,7 +50,7 @@ pub struct SsiForm {
 impl FormModel for SsiForm {
     type Finder = NoFinder<Self>;
 
-    // The virtual encoder as the window begins with it: slow enough for the bits to be seen.
+    // The virtual encoder initially offered by the window: slow enough to see the bits.
     fn usual() -> LinkUrl {
         let mut url = LinkUrl::sim();
         url.query.set("rpm", "6");
@@ -91,7 +91,7 @@ impl FormModel for SsiForm {
 }
 
 impl SsiForm {
-    /// The parameters that are typed: those of the virtual encoder, where it is one, and those of the link.
+    /// Returns the parameters to enter: those of the virtual encoder, if it is one, and those of the link.
     pub fn entries(&self) -> Vec<Entry> {
         let own = if self.kind == SsiLinkKind::Virtual { Self::of_the_virtual() } else { Vec::new() };
         [own, LinkParameters::entries()].concat()
@@ -107,7 +107,7 @@ impl SsiForm {
         LinkParameters::entries().into_iter().partition(|own| own.key == "voltage")
     }
 
-    /// Fills in the entry of a parameter; false where there is none.
+    /// Fills in the entry of a parameter; returns false if there is none.
     fn take(&mut self, name: &str, value: &str) -> bool {
         if name == SupplyAfter::LEFT_ON.0 {
             self.leave_supply = value == SupplyAfter::LEFT_ON.1;
@@ -139,7 +139,7 @@ impl SsiForm {
     }
 }
 
-/// A setting of the virtual encoder or of the virtual adapter before it.
+/// Returns whether it is a setting of the virtual encoder or of the virtual adapter before it.
 fn is_of_the_virtual(name: &str) -> bool {
     bridge::keys(at_adapter()).contains(&name)
 }
@@ -157,7 +157,7 @@ mod tests {
             "sim:?ssi=ahm36,code=gray&rpm=-60&fault=drop:0.01&clock=1000000",
             "bridge:/dev/ttyACM0",
             "bridge:/dev/ttyACM0?voltage=24&margin=200",
-            // Issue 22.16: another choice than the check box stays in the link.
+            // Issue 22.16: a value other than that of the check box stays in the link.
             "bridge:/dev/ttyACM0?voltage=24&leave-supply=on",
             "bridge:/dev/ttyACM0?voltage=24&leave-supply=off",
             "bridge:tcp:adapter:5000?clock=1500000&pause=30",
@@ -189,7 +189,7 @@ mod tests {
         let mut form = SsiForm::from_url(&"sim:?rpm=60&noise=0.1&margin=7&clock=1000000".parse().unwrap());
         (form.kind, form.port) = (SsiLinkKind::Adapter, "COM3".to_owned());
         assert_eq!(form.url().unwrap().to_string(), "bridge:COM3?margin=7&clock=1000000");
-        // What a typed link had and its way has no entry for.
+        // Parameters of an entered link without an entry in its form.
         let mut form = SsiForm::from_url(&"bridge:COM3?rpm=60".parse().unwrap());
         form.kind = SsiLinkKind::Virtual;
         form.typed.set("rpm", "6");

@@ -1,5 +1,5 @@
-//! A layout on the drawing board: every change is a step with a way back, and what cannot work is refused in words and
-//! changes nothing, so that there is a frame at any time.
+//! The design of a layout: every change can be undone, and an impossible one is refused with a message and changes nothing,
+//! so that the frame is always valid.
 
 mod reshape;
 
@@ -26,7 +26,8 @@ pub struct Design {
     pub profile: SsiProfile,
     /// Its frame, checked.
     pub layout: Layout,
-    /// The settings with which its family sends just this frame; `None`: it belongs to no family, or the family cannot.
+    /// The settings with which its family sends exactly this frame; `None`: it belongs to no family, or the family cannot
+    /// send it.
     pub settings: Option<Settings>,
     /// Accepted settings that the family's manual does not mention.
     pub advice: Vec<Advice>,
@@ -35,21 +36,21 @@ pub struct Design {
 /// A change of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Edit {
-    /// A family's layout as delivered, by its key.
+    /// Take a family's layout as delivered, by its key.
     Family(String),
-    /// No family: the frame stays, and everything about it can be set.
+    /// Leave the family: the frame stays, and everything about it can be set.
     Free,
     /// The family with other settings.
     Settings(Box<Settings>),
     /// Another frame.
     Frame(Box<Descriptor>),
-    /// Other positions or another code; the frame grows and shrinks with them.
+    /// Set other positions or another code; the frame grows and shrinks with them.
     Position(Range, Code),
     /// Direction of counting.
     Direction(Direction),
     /// The position at the shaft's zero.
     Preset(u64),
-    /// How frames are read.
+    /// Set how frames are read.
     Reading(ReadingSettings),
     /// The user's name for it.
     Name(String),
@@ -70,11 +71,11 @@ pub struct Designer {
 }
 
 impl Design {
-    /// A layout with what its family makes of it. Of several settings with the same frame it is those that were `wished`,
-    /// else the fewest.
+    /// Creates the design of a layout with its family. Of several settings with the same frame, the `wished` ones are
+    /// taken, else the fewest.
     ///
     /// # Errors
-    /// Why it cannot work.
+    /// Why the layout is impossible.
     fn of(profile: SsiProfile, families: &Families, requested: Option<&Settings>) -> Result<Self, Text> {
         let layout = Layout::new(profile.descriptor.clone()).map_err(|error| words::layout(&error))?;
         let family = profile.family.as_deref().and_then(|key| families.named(key));
@@ -92,7 +93,7 @@ impl Design {
 }
 
 impl Default for Design {
-    /// The least frame.
+    /// Creates the least frame.
     fn default() -> Self {
         let layout = Layout::default();
         let profile = SsiProfile::new(layout.descriptor().clone());
@@ -114,7 +115,7 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// Creates it with the layout that a virtual encoder sends; that of any other is not known.
+    /// Creates it with the layout that a virtual encoder sends; the layout of any other is not known.
     pub(super) fn at_link(url: &LinkUrl, families: Arc<Families>) -> Self {
         let sent = url.query.get("ssi").filter(|_| url.scheme == Scheme::Sim);
         let mut profile = of_text(sent.unwrap_or(DELIVERED), &families);
@@ -122,13 +123,13 @@ impl Designer {
         Designer::with(profile, families)
     }
 
-    /// Changes how frames are read for another link to the same wire: parameters that differ in the link apply, and
+    /// Returns how frames are read over another link to the same encoder: parameters that differ in the link apply, and
     /// those set here stay.
     pub(super) fn reading_over(&self, before: &LinkUrl, now: &LinkUrl) -> ReadingSettings {
         read_over(self.now.profile.reading, now, |name| before.query.get(name) != now.query.get(name))
     }
 
-    /// The frame that a virtual encoder at this link sends.
+    /// Returns the frame that a virtual encoder at this link sends.
     pub(super) fn sent_by(&self, url: &LinkUrl) -> Descriptor {
         of_text(url.query.get("ssi").unwrap_or(DELIVERED), &self.families).descriptor
     }
@@ -138,7 +139,7 @@ impl Designer {
         *self = Designer::with(profile, self.families.clone());
     }
 
-    /// The layout as it is designed.
+    /// Returns the present design of the layout.
     pub fn design(&self) -> &Design {
         &self.now
     }
@@ -148,12 +149,12 @@ impl Designer {
         &self.now.layout
     }
 
-    /// All families known.
+    /// Returns all known families.
     pub fn families(&self) -> &Families {
         &self.families
     }
 
-    /// The family whose limits and times count.
+    /// Returns the family whose limits and times apply.
     pub fn family(&self) -> Option<&Family> {
         self.families.named(self.now.profile.family.as_deref()?)
     }
@@ -163,7 +164,7 @@ impl Designer {
         self.family().map(|family| &family.times)
     }
 
-    /// Error and parity bits go with the position's end: as the family is set, else as the frame looks.
+    /// Returns whether error and parity bits move with the position's end: by the setting of the family, else by the frame.
     pub fn errors_follow(&self) -> bool {
         let settings = self.family().zip(self.now.settings.as_ref());
         match settings.and_then(|(family, settings)| settings.resolve(family).ok()) {
@@ -190,7 +191,7 @@ impl Designer {
         }
     }
 
-    /// Changes the layout, as one step that can be undone. False where it stays as it is.
+    /// Changes the layout, as one step that can be undone. Returns false if nothing changed.
     pub(super) fn edit(&mut self, edit: Edit) -> bool {
         let requested = match &edit {
             Edit::Settings(settings) => Some((**settings).clone()),
@@ -220,7 +221,7 @@ impl Designer {
         self.problem = Some(why);
     }
 
-    /// The layout after a change.
+    /// Returns the layout after a change.
     fn edited(&self, edit: Edit) -> Result<SsiProfile, Text> {
         let mut profile = self.now.profile.clone();
         match edit {
@@ -228,7 +229,7 @@ impl Designer {
                 let Some(family) = self.families.named(&key) else {
                     return Err(TEXTS.text("ssi.no_family").with("key", key));
                 };
-                // A preset of the one before stands for another place.
+                // A preset of the previous layout means another place.
                 profile.preset = 0;
                 return resolved(profile, family, Settings::default());
             }
@@ -253,7 +254,7 @@ impl Designer {
                 profile.descriptor = layout.descriptor().clone();
             }
         }
-        // A preset beyond the positions that there are now stands for none of them.
+        // A preset beyond the new range is invalid.
         let last = profile.descriptor.range.last().unwrap_or(0);
         if profile.preset > last {
             return Err(TEXTS.text("ssi.preset_range").with("preset", profile.preset).with("most", last));
@@ -267,7 +268,7 @@ impl Designer {
             return false;
         }
         self.problem = None;
-        // It could work when the step was made.
+        // It was possible when the step was made.
         let Ok(design) = Design::of(profile, &self.families, self.now.settings.as_ref()) else { return false };
         self.now = design;
         true
@@ -324,7 +325,7 @@ fn read_over(reading: ReadingSettings, url: &LinkUrl, counts: impl Fn(&str) -> b
     }
 }
 
-/// The layout that a text stands for; the least one where it stands for none.
+/// Returns the layout of a text; a minimal one if the text is none.
 fn of_text(text: &str, families: &Families) -> SsiProfile {
     let resolved = Settings::parse(text).ok().and_then(|(key, settings)| {
         let family = families.named(&key)?;

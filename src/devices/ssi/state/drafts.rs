@@ -1,4 +1,4 @@
-//! Changes of a layout, kept over a crash: entry by entry, so that what others change in the file meanwhile stays.
+//! Changes of a layout, kept after a crash: entry by entry, so that others' changes of the file meanwhile stay.
 
 use super::design::Edit;
 use super::encoder::Encoder;
@@ -10,8 +10,8 @@ use crate::devices::ssi::state::TEXTS;
 use crate::profile::{Body, Change, Document, Profile};
 use crate::store::DeviceKey;
 
-/// The changes, an entry each; empty if the layout is as saved. Earlier versions kept the whole layout, as the text of
-/// a profile.
+/// The changes, one per entry; empty if the layout is as saved. Earlier versions stored the whole layout, as the text of a
+/// profile.
 pub(crate) type Drafts = Vec<String>;
 
 impl HasSession for Encoder {
@@ -27,13 +27,13 @@ impl HasSession for Encoder {
 }
 
 impl Drafted for Encoder {
-    /// An SSI encoder does not say who it is.
+    /// An SSI encoder does not report its identity.
     fn key(&self) -> Option<DeviceKey> {
         None
     }
 
-    /// SSI encoders do not say who they are: a layout belongs to the wire at which it was used; a virtual encoder is the one
-    /// that its link describes.
+    /// SSI encoders do not report their identity: a layout belongs to the link at which it was used; a virtual encoder is
+    /// described by its link.
     fn type_and_serial(&self) -> Option<(String, String)> {
         let Source::Link(url) = &self.session.source else { return None };
         let wire = if self.session.is_virtual() {
@@ -82,7 +82,7 @@ impl Drafted for Encoder {
     fn take_document(&mut self, file: ProfileFile, document: Document) {
         let Some(profile) = document.body.get::<SsiProfile>() else { return };
         let before = self.designer.layout().clone();
-        // Undo steps are kept unless the file has changed: then the edits stay edited.
+        // Undo steps are kept unless the file has changed: then the edits remain edits.
         if self.designer.design().profile == *profile {
             self.designer.saved_as(profile.clone());
         } else {
@@ -101,7 +101,7 @@ impl Drafted for Encoder {
     }
 }
 
-/// A layout as a profile of no file.
+/// Returns a layout as a profile of no file.
 fn document_of(profile: &SsiProfile) -> Document {
     Document { saved: None, ..Document::new(String::new(), Body::new(profile.clone())) }
 }

@@ -1,5 +1,5 @@
-//! An SSI encoder on the desk, or a layout of one: the layout on the drawing board, a frame to try it with, what was read,
-//! and what was found about it. The encoder has no memory; nothing is ever written into it.
+//! An open SSI encoder, or a layout of one: the layout being designed, a trial frame, the words read, and the result of a
+//! search. The encoder has no memory; nothing is ever written to it.
 
 use std::sync::Arc;
 
@@ -22,32 +22,32 @@ pub struct Encoder {
     pub session: Session<Ssi>,
     /// The layout.
     pub designer: Designer,
-    /// The frame that it is tried with.
+    /// The trial frame.
     pub trial: Trial,
-    /// The frame that it is tried with is the word that was read last.
+    /// Set if the trial frame follows the word read last.
     pub(super) follows: bool,
-    /// The recording of what was read.
+    /// The recording of the words.
     pub record: Record,
     /// The search for the layout.
     pub hunt: SearchState,
     /// Searches that were begun.
     pub(super) searches: u32,
-    /// The adapter and how it reads words, once known.
+    /// The adapter and its settings for reading words, once known.
     pub identity: Option<Identity>,
     /// The last device check.
     pub check: Option<Vec<CheckLine>>,
     /// Motor of the virtual encoder.
     pub motor: Option<Motor>,
-    /// Words have so many clocks while a layout is looked for.
+    /// Clocks of the words during a search.
     pub(super) clocks: Option<u8>,
-    /// How the adapter was last asked to read words.
+    /// The settings last sent to the adapter for reading words.
     pub(super) requested: Option<Asking>,
 }
 
 impl Encoder {
     pub(super) fn with(session: Session<Ssi>, designer: Designer) -> Self {
         let mut trial = Trial::default();
-        // A position whose bits can be told apart.
+        // A position whose bits can be distinguished.
         trial.set_position(designer.layout(), designer.layout().coding().last() / 3);
         Encoder {
             record: Record::new(designer.layout().clone()),
@@ -65,12 +65,12 @@ impl Encoder {
         }
     }
 
-    /// The layout as it is designed.
+    /// Returns the present design of the layout.
     pub fn design(&self) -> &Design {
         self.designer.design()
     }
 
-    /// The frame that is shown: the word that was read last where that is wished and there is one, else the one to try with.
+    /// Returns the displayed frame: the word read last if this is selected and there is one, else the trial frame.
     pub fn displayed_frame(&self) -> Decoded {
         let live = || self.record.last().and_then(|seen| seen.decoded.clone());
         self.is_following().then(live).flatten().unwrap_or_else(|| self.trial.decoded(self.designer.layout()))
@@ -81,7 +81,7 @@ impl Encoder {
         self.follows && self.record.last().is_some_and(|seen| seen.decoded.is_some())
     }
 
-    /// The word that was read last; `None`: none was.
+    /// Returns the word read last; `None` if there is none.
     pub fn last(&self) -> Option<&ReadWord> {
         self.record.last()
     }
@@ -91,7 +91,7 @@ impl Encoder {
         self.record.streamed().filter(|_| self.session.is_polling())
     }
 
-    /// Clocks of the words that are read: those of the layout, unless others are tried.
+    /// Returns the clocks of the words being read: those of the layout, unless others are tried.
     pub fn clocks(&self) -> u8 {
         self.clocks.unwrap_or_else(|| self.designer.layout().clocks())
     }
@@ -107,22 +107,22 @@ impl Encoder {
         Asking { clocks: self.clocks(), clock_hz: reading.clock_hz, pause_us: reading.pause_us }
     }
 
-    /// The layout is not as it was saved.
+    /// Returns whether the layout is not as it was saved.
     pub fn is_dirty(&self) -> bool {
         self.designer.is_dirty()
     }
 
-    /// The layout as it would be saved.
+    /// Returns the layout as it would be saved.
     pub(crate) fn wanted_profile(&self) -> SsiProfile {
         self.design().profile.clone()
     }
 
-    /// The user's own families were read.
+    /// Takes the user's own families that were read.
     pub(crate) fn take_families(&mut self, families: Arc<Families>) {
         self.designer.take_families(families);
     }
 
-    /// Changes the layout; everything that stands on it follows.
+    /// Changes the layout and everything that depends on it.
     pub(super) fn edit(&mut self, edit: Edit) {
         let before = self.designer.layout().clone();
         if self.designer.edit(edit) {
@@ -130,7 +130,7 @@ impl Encoder {
         }
     }
 
-    /// The layout was changed: what stands on it is changed too.
+    /// Updates everything that depends on a changed layout.
     pub(super) fn follow_layout(&mut self, before: &Layout) {
         if self.identity.is_some() {
             self.name_after_family();
@@ -143,14 +143,14 @@ impl Encoder {
         self.record.read_as(now);
     }
 
-    /// The name of the device beside the link: that of its family.
+    /// Names the device of the link after its family.
     pub(super) fn name_after_family(&mut self) {
         let family = self.designer.family().map(|family| family.name.clone());
         self.session.title = family.or_else(|| Some("SSI".to_owned())).filter(|_| self.session.phase != Phase::Offline);
     }
 
-    /// The link to a virtual encoder that sends this layout, where it is connected to one that sends another; only what a
-    /// family sends can be said in a link.
+    /// Returns the link to a virtual encoder that sends this layout, if it is connected to one that sends another; a link
+    /// can only describe frames of a family.
     pub fn link_to_send(&self) -> Option<LinkUrl> {
         let Source::Link(url) = &self.session.source else { return None };
         let (family, settings) = (self.designer.family()?, self.design().settings.as_ref()?);

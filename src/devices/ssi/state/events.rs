@@ -57,10 +57,10 @@ impl Kind for Ssi {
 }
 
 impl Encoder {
-    /// The layout has other clocks, or is read otherwise, than the adapter was told.
+    /// Sends the settings to the adapter if the layout has other clocks, or is read differently, than last sent.
     fn tell_asking(&mut self, services: &mut Services) {
         let asking = self.asking();
-        // Once it has said who it is, and nothing else runs; what it refused is not asked again.
+        // Once it is identified, and nothing else runs; a refused setting is not sent again.
         if self.identity.is_some() && self.session.is_ready() && self.requested != Some(asking) {
             self.requested = Some(asking);
             self.submit(SsiJob::Set(asking), services);
@@ -123,7 +123,7 @@ impl SessionEvents for Encoder {
         }
     }
 
-    /// The adapter does not answer.
+    /// Returns whether the adapter does not answer.
     fn is_silence(&self, error: &JobError) -> bool {
         matches!(error, JobError::Adapter(AdapterError::Silent | AdapterError::Mute))
     }

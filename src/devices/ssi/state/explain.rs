@@ -1,4 +1,4 @@
-//! SSI in words: what a frame gives cause to say, what was set that the manual does not speak of, and why no words come.
+//! Texts of SSI: findings about a frame, settings that the manual does not mention, and why no words arrive.
 
 mod check;
 mod family;
@@ -19,7 +19,7 @@ pub use check::check;
 pub use family::{note, store};
 pub use refused::{entry, format, frame_text, layout, settings};
 
-/// A job that ended early: one sentence or more, each of which may stand on a line of its own.
+/// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
     vec![match error {
         JobError::Link(error) => link(error),
@@ -28,7 +28,7 @@ pub fn job(error: &JobError) -> Vec<Text> {
     }]
 }
 
-/// The wire itself failed, so that nothing more can be asked over it: why.
+/// Returns why the connection failed, if nothing more can be requested over it.
 pub fn loss(error: &JobError) -> Option<Text> {
     match error {
         JobError::Link(error) => Some(link(error)),
@@ -70,7 +70,7 @@ pub fn advice(advice: &Advice) -> Text {
     }
 }
 
-/// A time of a transfer that does not fit.
+/// Returns the text for a time of a transfer that does not fit.
 pub fn timing(warning: &Warning) -> Text {
     let micros = |time: &std::time::Duration| time.as_secs_f64() * 1e6;
     let kilohertz = |hz: f64| hz / 1000.0;
@@ -90,7 +90,7 @@ pub fn timing(warning: &Warning) -> Text {
     }
 }
 
-/// A frame in a line: its clocks, its positions, its code, its error bits.
+/// Returns a frame in one line: its clocks, its positions, its code, its error bits.
 pub fn frame(layout: &Layout) -> Text {
     let descriptor = layout.descriptor();
     let range = match descriptor.range {
@@ -108,7 +108,7 @@ pub fn frame(layout: &Layout) -> Text {
             TEXTS.text("ssi_range.length").with("bits", bits).with("nanometres", step_nanometres)
         }
     };
-    // A name that ends with its clock says it.
+    // A name that ends with its clock already contains it.
     let named = |name: &str, clock: u8| match name.ends_with(&clock.to_string()) {
         true => name.to_owned(),
         false => format!("{name} {clock}"),
@@ -140,7 +140,7 @@ fn unusual(layout: &Layout) -> Vec<Text> {
     [between, over, parity, repeat, inverted].into_iter().flatten().collect()
 }
 
-/// A code by its name.
+/// Returns the name of a code.
 pub fn code(code: Code) -> Text {
     TEXTS.text(match code {
         Code::Binary => "ssi_form.binary",
@@ -179,7 +179,7 @@ pub fn doubt(doubt: Option<Uncertainty>) -> Text {
     })
 }
 
-/// Returns the evidence for a layout in words.
+/// Returns the evidence for a layout as text.
 pub fn evidence(evidence: &Evidence) -> Text {
     TEXTS
         .text("ssi_find.evidence")

@@ -28,7 +28,7 @@ pub enum Format {
 }
 
 impl Format {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Format; 7] = [
         Format::C,
         Format::StructuredText,
@@ -83,10 +83,10 @@ impl Format {
 }
 
 impl Designer {
-    /// The layout as text.
+    /// Returns the layout as text.
     ///
     /// # Errors
-    /// What the format has no place for; a picture in time needs a family, whose times count.
+    /// What the format cannot express; a timing diagram needs a family, whose times apply.
     pub fn export(&self, format: Format) -> Result<String, Text> {
         let layout = self.layout();
         let title = self.title();

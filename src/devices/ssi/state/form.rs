@@ -1,5 +1,5 @@
-//! Everything about a layout that can be typed or chosen, row by row, as plain data; and what an entry changes. A family
-//! with its settings has the rows that its encoders can be set to; any other frame has all.
+//! The form of a layout as plain data, row by row, and the effect of an entry. A family with its settings has the rows that
+//! its encoders can be set to; any other frame has all.
 
 mod family;
 mod free;
@@ -28,7 +28,7 @@ pub enum Entry {
     Number { value: u64, unit: Option<Text> },
     /// One of several.
     Choice {
-        /// All of them.
+        /// All options.
         options: Vec<Text>,
         /// Index of the choice.
         chosen: usize,
@@ -63,7 +63,7 @@ pub enum Field {
     Singleturn,
     /// Steps in a turn, or altogether.
     Steps,
-    /// Turns with so many steps each.
+    /// Turns with this number of steps each.
     Turns,
     /// Turns of a round axis, above the line.
     RevolutionsAbove,
@@ -96,7 +96,7 @@ pub enum Field {
     Parity,
     /// The clock of the parity bit.
     ParityClock,
-    /// The frame comes twice.
+    /// The frame is sent twice.
     Repeat,
     /// Zeros between both.
     Gap,
@@ -110,7 +110,7 @@ pub enum Field {
     ErrorClock(usize),
     /// Meaning of an error bit for the position.
     ErrorMeaning(usize),
-    /// It speaks when it is 0.
+    /// It is active when it is 0.
     ErrorLow(usize),
     /// A transfer clears it.
     ErrorCleared(usize),
@@ -118,7 +118,7 @@ pub enum Field {
     ClockRate,
     /// Microseconds between two bursts.
     Pause,
-    /// Cable in metres; 0: it is not looked at.
+    /// Cable in metres; 0: not checked.
     Cable,
     /// Positions are made when the host clocks.
     Synchronous,
@@ -133,7 +133,7 @@ pub struct Group {
 }
 
 impl Group {
-    /// The error bit that it is about.
+    /// Returns the error bit that it belongs to.
     pub fn error(&self) -> Option<usize> {
         match self.rows.first()?.field {
             Field::ErrorName(index) => Some(index),
@@ -141,14 +141,14 @@ impl Group {
         }
     }
 
-    /// Error bits can be added to what it is about: a frame that no family prescribes.
+    /// Returns whether error bits can be added: to a frame without a family.
     pub fn takes_error_bits(&self) -> bool {
         self.rows.iter().any(|row| row.field == Field::Lead)
     }
 }
 
 impl Row {
-    /// `unit` is its symbol; empty for none.
+    /// Creates a number; `unit` is its symbol, empty for none.
     fn number(field: Field, name: &'static str, value: impl Into<u64>, unit: &'static str) -> Self {
         let unit = match unit {
             "" => None,
@@ -162,7 +162,7 @@ impl Row {
         Row { field, name: TEXTS.text(name), entry: Entry::Switch(is_on), hint: None }
     }
 
-    /// A choice; the options stand in `all` with their words.
+    /// Creates a choice; the options are in `all` with their texts.
     fn choice<T: PartialEq>(field: Field, name: &'static str, all: &[(T, Text)], own: &T) -> Self {
         let chosen = all.iter().position(|(one, _)| one == own).unwrap_or(usize::MAX);
         let options = all.iter().map(|(_, words)| words.clone()).collect();
@@ -175,7 +175,7 @@ impl Row {
 }
 
 impl Designer {
-    /// The form of the layout as it is.
+    /// Returns the form of the present layout.
     pub fn form(&self) -> Vec<Group> {
         let mut groups = match (self.family(), &self.design().settings) {
             (Some(family), Some(settings)) => family::groups(self, family, settings),
@@ -206,7 +206,7 @@ impl Designer {
     /// Applies an entry.
     ///
     /// # Errors
-    /// It cannot be: why.
+    /// Why it is not possible.
     pub(super) fn entered(&self, field: Field, input: &Input) -> Result<Edit, Text> {
         let wrong = || TEXTS.text("ssi_form.wrong");
         match (field, input) {
@@ -244,7 +244,7 @@ impl Designer {
     }
 }
 
-/// Direction and preset.
+/// Returns the direction and preset.
 fn counting(designer: &Designer) -> Group {
     let profile = &designer.design().profile;
     let is_length = matches!(profile.descriptor.range, Range::Length { .. });
@@ -357,10 +357,10 @@ fn range_row(kinds: &[RangeKind], range: &Range) -> Row {
     Row::choice(Field::Range, "ssi_form.range", &all, &RangeKind::of(range))
 }
 
-/// A whole number as people write one: 3600, 3 600, 0x0E10.
+/// Parses a whole number in usual notations: 3600, 3 600, 0x0E10.
 ///
 /// # Errors
-/// In words.
+/// Why the entry is invalid.
 pub fn whole(text: &str) -> Result<u64, Text> {
     let plain: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '_' | '’' | '\'')).collect();
     let number = match plain.strip_prefix("0x").or_else(|| plain.strip_prefix("0X")) {
@@ -371,7 +371,7 @@ pub fn whole(text: &str) -> Result<u64, Text> {
     number.ok().filter(|_| !signed).ok_or_else(|| TEXTS.text("ssi_form.whole").with("text", text.trim()))
 }
 
-/// A number that a byte holds.
+/// Returns a number that a byte holds.
 fn byte(number: u64) -> Option<u8> {
     u8::try_from(number).ok()
 }

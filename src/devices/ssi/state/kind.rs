@@ -45,7 +45,7 @@ impl DeviceType for Encoder {
         Encoder::with(session, designer)
     }
 
-    /// A layout as it is delivered of the first family, with the first name that no other such layout has.
+    /// Creates a layout as delivered of the first family, with the first name that no other such layout has.
     fn new_profile(id: SessionId, is_taken: &dyn Fn(&Path) -> bool, services: &mut Services) -> Option<Self> {
         let further = (2..).map(|number: u32| PathBuf::from(format!("layout-{number}.ron")));
         let mut names = std::iter::once(PathBuf::from("layout.ron")).chain(further);

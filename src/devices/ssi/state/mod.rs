@@ -1,5 +1,5 @@
-//! The SSI tab: layouts on the drawing board, encoders behind an adapter, and the search for a layout. Complete without a
-//! window; nothing is ever written into an encoder.
+//! The SSI tab: layouts being designed, encoders behind an adapter, and the search for a layout. Complete without a window;
+//! nothing is ever written to an encoder.
 
 mod act;
 mod action;

@@ -1,5 +1,5 @@
-//! The recording of an SSI encoder: its words as they came, decoded by the layout into lines over time, and the
-//! findings of its error bits. Another layout decodes the same words again.
+//! The recording of an SSI encoder: its words as received, decoded by the layout into lines over time, and the findings of
+//! its error bits. Another layout decodes the same words again.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
@@ -16,10 +16,10 @@ use crate::devices::ssi::procedures::Words;
 use crate::devices::ssi::protocol::{Descriptor, Flags, Layout, Meaning as Says, Range, Tally};
 use crate::units::Moment;
 
-/// Words that are kept as they came, to be read with another layout and to be searched.
+/// Number of words stored as received, to be read with another layout and to be searched.
 const KEPT: usize = 40_000;
 
-/// The words of an encoder, and what the layout makes of them.
+/// Words of an encoder, decoded by the layout.
 pub struct Record {
     track: Track<Infallible>,
     layout: Layout,
@@ -35,20 +35,20 @@ pub struct Record {
     lost: u64,
 }
 
-/// A word with what it says.
+/// Word with its meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadWord {
-    /// When it was taken.
+    /// Time of reading.
     pub at: Moment,
-    /// Its bits.
+    /// Its number of bits.
     pub clocks: u8,
     /// The decoded word; `None` if the layout has another number of clocks.
     pub decoded: Option<Decoded>,
-    /// The word as it came, right-justified.
+    /// The word as received, right-justified.
     pub word: u64,
 }
 
-/// The stream that came last.
+/// The latest stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
     next: u64,
@@ -57,7 +57,7 @@ pub struct Streamed {
 }
 
 impl Streamed {
-    /// Words a second.
+    /// Returns the words per second.
     pub fn hz(&self) -> f64 {
         1e9 / self.period_ns.max(1) as f64
     }
@@ -84,7 +84,7 @@ impl Record {
         }
     }
 
-    /// A session has begun.
+    /// Begins a session.
     pub(super) fn begin(&mut self, began: &Zoned) {
         self.track.begin(began);
         self.kept.clear();
@@ -94,7 +94,7 @@ impl Record {
     /// Takes new words; `dropped` were not taken in time.
     pub(super) fn add(&mut self, runs: Vec<Words>, dropped: u64) {
         match self.stream {
-            // Whatever was dropped, the numbers of the words show how many there were.
+            // Even if words were dropped, their numbers show how many there were.
             Some(_) if dropped > 0 => self.track.gap(),
             _ => self.track.note_dropped(dropped),
         }
@@ -133,7 +133,7 @@ impl Record {
             let is_bad = !self.layout.is_valid(reading);
             let warned = || self.layout.findings(reading).iter().any(|finding| finding.meaning() == Says::Warning);
             let position = i64::try_from(reading.position).ok();
-            // Nothing is said in most words, and then nothing has to be looked for.
+            // Most words have no findings, and then the search is skipped.
             let is_warned = reading.flags != Flags::NONE && warned();
             sightings.push(PositionSample { at, position, is_bad, is_warned });
         }
@@ -178,7 +178,7 @@ impl Record {
         (self.kept, self.lost, self.stream) = (kept, lost, stream);
     }
 
-    /// The words that are kept with so many clocks, the newest run of them without a gap.
+    /// Returns the stored words with this number of clocks: the newest run without a gap.
     pub(super) fn words(&self, clocks: u8) -> Vec<u64> {
         let mut runs: Vec<&Words> = self.runs(clocks).collect();
         runs.reverse();
@@ -190,7 +190,7 @@ impl Record {
         self.runs(clocks).map(|run| run.words.len()).sum()
     }
 
-    /// The newest run first; each goes on where the one before it ends.
+    /// Returns the newest run first; each continues where the one before it ends.
     fn runs(&self, clocks: u8) -> impl Iterator<Item = &Words> {
         let mut later: Option<&Words> = None;
         self.kept.iter().rev().take_while(move |run| {
@@ -214,17 +214,17 @@ impl Record {
         self.forgotten = self.last.as_ref().map(|last| last.at);
     }
 
-    /// The last word.
+    /// Returns the last word.
     pub fn last(&self) -> Option<&ReadWord> {
         self.last.as_ref()
     }
 
-    /// The stream that came last; `None` where words came one by one since.
+    /// Returns the latest stream; `None` if words arrived one by one since.
     pub(super) fn streamed(&self) -> Option<&Streamed> {
         self.stream.as_ref()
     }
 
-    /// Words that are recorded.
+    /// Returns the number of recorded words.
     pub fn positions(&self) -> u64 {
         self.track.positions()
     }
@@ -239,7 +239,7 @@ impl Recording for Record {
         &mut self.track.recorder
     }
 
-    // Words that an adapter could not send count as well.
+    // Words that an adapter could not send are included.
     fn dropped(&self) -> u64 {
         self.track.dropped().saturating_add(self.lost)
     }

@@ -1,4 +1,4 @@
-//! The search for the layout of frames: those that were read last, or those in a file.
+//! The search for the layout of frames: those read last, or those in a file.
 
 use std::path::Path;
 
@@ -9,15 +9,15 @@ use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 use crate::store::read_file;
 
-/// Frames that are searched at most: the newest.
+/// Maximum number of frames searched: the newest.
 pub(super) const MOST: usize = 8_000;
 
 /// The origin of the frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// They were read from the encoder.
+    /// Read from the encoder.
     Live,
-    /// They stand in a file, which is called this.
+    /// From a file of this name.
     File(String),
 }
 
@@ -34,10 +34,10 @@ pub struct Frames {
 /// The state of the search.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum SearchState {
-    /// Nothing was looked for.
+    /// No search.
     #[default]
     Nothing,
-    /// It goes on; which one it is.
+    /// Running, with its number.
     Running(u32),
     /// A result.
     Found {
@@ -46,26 +46,26 @@ pub enum SearchState {
         clocks: u8,
         search: Box<Search>,
     },
-    /// There was nothing to look at: why, and what to do.
+    /// There were no frames: why, and what to do.
     Failed(Text),
 }
 
-/// A number of clocks as people write one.
+/// Returns a number of clocks as people write one.
 ///
 /// # Errors
-/// No whole number, or none that a frame can have; in words.
+/// Not a whole number, or one that a frame cannot have.
 pub fn read_clocks(text: &str) -> Result<u8, Text> {
     let number = whole(text)?;
     let clocks = u8::try_from(number).ok().filter(|clocks| (1..=64).contains(clocks));
     clocks.ok_or_else(|| TEXTS.text("ssi_find.clocks_range").with("clocks", number))
 }
 
-/// Reads frames from a file, one a line: bits in the order of the clocks or 0x and hex digits, in the first column that
-/// looks like a frame; others are not looked at. Empty lines, a heading and what begins with # are passed over. Hexadecimal
+/// Reads frames from a file, one per line: bits in the order of the clocks or 0x and hex digits, in the first column that
+/// looks like a frame; others are ignored. Empty lines, a heading and lines that begin with # are skipped. Hexadecimal
 /// frames have `clocks` bits.
 ///
 /// # Errors
-/// The file cannot be read, or a line is no frame: which, and why.
+/// The file cannot be read, or a line is not a frame: which, and why.
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
     let text = read_file(path).map_err(|error| explain::file(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
@@ -73,7 +73,7 @@ pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
 }
 
 fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
-    // The column of the frames and their bits, once a line has told.
+    // The column of the frames and their bits, once a line has shown it.
     let mut own: Option<(usize, u8)> = None;
     let mut frames = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
@@ -107,7 +107,8 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
     }
 }
 
-/// Columns are parted by commas, semicolons, tabs, or blanks; but bits may be written in groups of a byte at most.
+/// Splits a line into columns: separated by commas, semicolons, tabs, or blanks; but bits may be written in groups of at
+/// most a byte.
 fn columns(line: &str) -> Vec<&str> {
     let first = line.split_whitespace().next().unwrap_or_default();
     let parted = line.contains([',', ';', '\t']);
@@ -120,7 +121,7 @@ fn columns(line: &str) -> Vec<&str> {
     columns.into_iter().map(|column| column.trim().trim_matches('"')).collect()
 }
 
-/// Bits of more than a nibble, or hex digits behind 0x: it looks like a frame, and not like a number of something else.
+/// Returns whether a column looks like a frame: bits of more than a nibble, or hex digits after 0x.
 fn is_frame(column: &str) -> bool {
     let hex = column.strip_prefix("0x").or(column.strip_prefix("0X"));
     hex.is_some() || bits_of(column).is_some_and(|bits| bits >= 4)
@@ -144,7 +145,7 @@ mod tests {
         assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
         assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
         assert_eq!(parse_frames("\u{feff}t,\"frame\"\n1,\"0x0B\"\n", 8), Ok((8, vec![0x0B])));
-        // Further columns are not looked at.
+        // Further columns are ignored.
         assert_eq!(parse_frames("frame,position\n10101,5\n10111,1010\n", 8), Ok((5, vec![0b10101, 0b10111])));
         assert_eq!(parse_frames("10101 17\n11111 -\n", 8), Ok((5, vec![0b10101, 0b11111])));
         assert_eq!(parse_frames("1010101010 11\n", 8), Ok((10, vec![0b10_1010_1010])));

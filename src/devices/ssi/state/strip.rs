@@ -1,5 +1,5 @@
-//! A frame as a row of cells, one a clock, and what can be taken hold of in it: the boundaries between its fields, and
-//! the bits that stand alone. It says what a frame becomes when something is moved; it changes none.
+//! A frame as a row of cells, one per clock, with its movable parts: the boundaries between its fields, and single bits. It
+//! computes the frame after a move; it changes none.
 
 mod moving;
 #[cfg(test)]
@@ -49,17 +49,17 @@ pub enum Kind {
     Before,
     /// Nothing, between turns and steps.
     Between,
-    /// Nothing, behind the position.
+    /// Zeros after the position.
     Behind,
-    /// Nothing, between the frame and its repetition.
+    /// Zeros between the frame and its repetition.
     Gap,
-    /// Nothing, behind the repetition.
+    /// Zeros after the repetition.
     After,
     /// Bits of the turns.
     Turns,
     /// Bits of the steps within a turn.
     Steps,
-    /// Bits of a position that has none for turns and steps.
+    /// Bits of a position without separate turns and steps.
     Position,
     /// This error bit.
     Error(usize),
@@ -74,7 +74,7 @@ pub enum Kind {
 pub enum Handle {
     /// The start of the position: moving it exchanges bits of the turns with the zeros before it.
     LeadEnd,
-    /// Between turns and steps: bits go from one to the other. There are no zeros between.
+    /// Between turns and steps: bits move from one to the other. There are no zeros between.
     Split,
     /// The end of the turns, followed by zeros before the steps.
     TurnsEnd,
@@ -106,7 +106,7 @@ pub struct CellState {
 }
 
 impl Strip {
-    /// A frame in cells.
+    /// Creates a frame in cells.
     pub fn of(layout: &Layout) -> Self {
         let descriptor = layout.descriptor();
         let roles = layout.roles();
@@ -151,17 +151,17 @@ impl Strip {
         Strip { layout: layout.clone(), cells, fields, handles }
     }
 
-    /// The frame.
+    /// Returns the frame.
     pub const fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// Its clocks, the first at the beginning.
+    /// Returns its clocks, first to last.
     pub fn cells(&self) -> &[Cell] {
         &self.cells
     }
 
-    /// Its fields in the same order.
+    /// Returns its fields in the same order.
     pub fn fields(&self) -> &[Field] {
         &self.fields
     }
@@ -176,18 +176,18 @@ impl Strip {
         moving::clock(&self.layout, handle)
     }
 
-    /// The frame when something is moved there, as far as it can go; see [`moved`].
+    /// Returns the frame after a move to this clock, as far as possible; see [`moved`].
     pub fn moved(&self, handle: Handle, to: u8, following: bool) -> Strip {
         Strip::of(&moved(&self.layout, handle, to, following))
     }
 
-    /// The first and the last clock to which something can be moved.
+    /// Returns the first and the last clock to which something can be moved.
     pub fn limits(&self, handle: Handle, following: bool) -> (u8, u8) {
         let end = |to| moving::clock(&moved(&self.layout, handle, to, following), handle).unwrap_or(to);
         (end(0), end(u8::MAX))
     }
 
-    /// Clocks of the position, from its first to its last.
+    /// Returns the clocks of the position, from its first to its last.
     pub fn position(&self) -> Option<(u8, u8)> {
         let own = |field: &&Field| matches!(field.kind, Kind::Turns | Kind::Steps | Kind::Position);
         let first = self.fields.iter().find(own)?;
@@ -206,7 +206,7 @@ impl Strip {
                     Role::Error(index) if flags.has(Flags::error(index)) => {
                         descriptor.errors.get(index).map(|bit| bit.meaning)
                     }
-                    // Elsewhere a zero may carry what the Gray code of its neighbours makes of it.
+                    // Elsewhere a zero may carry the Gray code of its neighbours.
                     Role::Zero if descriptor.coded == Coded::Position && cell.bit != descriptor.inverted => {
                         Some(Meaning::Warning)
                     }
@@ -249,12 +249,12 @@ impl Handle {
     }
 }
 
-/// Error and parity bits directly behind the position follow it: as the frame is, not as anybody has said.
+/// Returns whether error and parity bits directly after the position follow it, judged by the frame.
 pub fn follows(layout: &Layout) -> bool {
     !moving::chain(layout).is_empty()
 }
 
-/// The words of a frame's patterns are bits of it, which another length would make others.
+/// Returns whether the frame has patterns, whose words are bits of the frame and would change with its length.
 fn has_words(layout: &Layout) -> bool {
     layout.descriptor().patterns.iter().any(|pattern| matches!(pattern.word, Word::Bits(_)))
 }
@@ -266,7 +266,7 @@ enum Parts {
     Both(u8, u8),
     /// Bits of one kind, as many as one likes.
     One(u8),
-    /// As many bits as its number of steps needs.
+    /// The number of bits required for its steps.
     Whole(u8),
 }
 

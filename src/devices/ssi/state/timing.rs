@@ -1,5 +1,5 @@
-//! A burst in time, to scale: what the lines do, which times there are, and where the axis of time is broken because
-//! nothing happens. Seconds count from the first falling edge (SICK SSI description 2.2; reference sections 1 and 5).
+//! A burst in time, to scale: the lines, the times, and the breaks of the time axis where nothing happens. Seconds count
+//! from the first falling edge (SICK SSI description 2.2; reference sections 1 and 5).
 
 #[cfg(test)]
 mod tests;
@@ -9,7 +9,7 @@ use crate::app::Text;
 use crate::devices::ssi::protocol::{Layout, Reads, Taken, Times, Timing};
 use crate::devices::ssi::state::TEXTS;
 
-/// A burst and what comes behind it, until the next one has begun.
+/// Burst and the time after it, until the next one has begun.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
     strip: Strip,
@@ -19,7 +19,7 @@ pub struct Diagram {
     marks: Vec<TimingMark>,
 }
 
-/// A stretch of time that is drawn. Between two of them the axis is broken.
+/// Section of time that is drawn. Between two of them the axis is broken.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
     /// Start in seconds.
@@ -28,7 +28,7 @@ pub struct Piece {
     pub to: f64,
 }
 
-/// A time with its beginning and end.
+/// Time with its beginning and end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// The activity that lasts.
@@ -76,7 +76,7 @@ pub enum TimingEvent {
     Taken,
     /// A position begins to be made.
     Started,
-    /// It can be fetched.
+    /// The position can be read.
     Ready,
     /// The next burst begins.
     Next,
@@ -87,21 +87,21 @@ pub enum TimingEvent {
 pub struct Bit {
     /// The clock that brings it, counted from 1.
     pub clock: u8,
-    /// From here, in seconds.
+    /// Start, in seconds.
     pub from: f64,
-    /// To here, in seconds.
+    /// End, in seconds.
     pub to: f64,
 }
 
-/// Nothing happens for longer than so many bursts: the axis is broken there,
+/// Number of bursts without an event after which the axis is broken,
 const LONG: f64 = 1.5;
-/// and so much of a burst is left on either side.
+/// and the part of a burst that is kept on either side.
 const KEPT: f64 = 0.4;
 /// Clocks of the next burst that are drawn.
 const NEXT: f64 = 2.5;
 
 impl Diagram {
-    /// A burst of a frame, read like this.
+    /// Creates a burst of a frame, read like this.
     pub fn of(layout: &Layout, times: &Times, reads: &Reads) -> Self {
         let reads = Reads { clocks: layout.clocks(), ..*reads };
         let timing = times.reckon(&reads);
@@ -137,7 +137,7 @@ impl Diagram {
         Diagram { strip: Strip::of(layout), timing, pieces, spans, marks }
     }
 
-    /// The frame in cells and fields.
+    /// Returns the frame in cells and fields.
     pub const fn strip(&self) -> &Strip {
         &self.strip
     }
@@ -158,7 +158,7 @@ impl Diagram {
         &self.spans
     }
 
-    /// Moments, the first of them first.
+    /// Returns the moments in order.
     pub fn marks(&self) -> &[TimingMark] {
         &self.marks
     }
@@ -171,7 +171,7 @@ impl Diagram {
         own.chain(next).collect()
     }
 
-    /// The bits on the data line: each comes with a rising edge.
+    /// Returns the bits on the data line: each starts with a rising edge.
     pub fn bits(&self) -> Vec<Bit> {
         let period = self.timing.period.as_secs_f64();
         let comes = |clock: u8| (f64::from(clock) - 0.5) * period;
@@ -199,7 +199,7 @@ impl Diagram {
         self.timing.cycle.as_secs_f64() + self.timing.period.as_secs_f64() / 2.0
     }
 
-    /// The end of the axis, in seconds.
+    /// Returns the end of the axis, in seconds.
     pub fn end(&self) -> f64 {
         self.pieces.last().map_or(0.0, |piece| piece.to)
     }
@@ -217,7 +217,7 @@ impl Diagram {
         texts
     }
 
-    /// A span in words, with how long it is.
+    /// Returns the text of a span, with its duration.
     pub fn words(&self, span: &Span) -> Text {
         let long = time(span.to - span.from);
         let text = match span.activity {
@@ -256,11 +256,11 @@ pub fn left_out(seconds: f64) -> Text {
     TEXTS.text("ssi.timing_break").with_text("time", time(seconds))
 }
 
-/// A time with four figures at most, in the unit that suits it.
+/// Returns a time with four figures at most, in the unit that suits it.
 pub fn time(seconds: f64) -> Text {
     const UNITS: [(&str, f64); 4] =
         [("ssi.time_ns", 1e-9), ("ssi.time_us", 1e-6), ("ssi.time_ms", 1e-3), ("ssi.time_s", 1.0)];
-    // A value that rounds to a thousand of a unit is one of the next.
+    // A value that rounds to a thousand of a unit is shown in the next one.
     let fits = UNITS.into_iter().rfind(|(_, unit)| seconds.abs() >= unit * 0.99995);
     let (id, unit) = fits.unwrap_or(if seconds == 0.0 { ("ssi.time_us", 1e-6) } else { ("ssi.time_ns", 1e-9) });
     let value = seconds / unit;
@@ -271,7 +271,7 @@ pub fn time(seconds: f64) -> Text {
     TEXTS.text(id).with_number("value", value, decimals)
 }
 
-/// The axis of time: the burst whole, and behind it all that is near to something that happens.
+/// Returns the sections of the time axis: the whole burst, and after it everything near an event.
 fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Piece> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();

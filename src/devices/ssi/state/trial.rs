@@ -1,4 +1,4 @@
-//! A frame to try a layout with: a position and its bits, from the one to the other and back.
+//! A frame for trying a layout: a position and its bits, converted in both directions.
 
 use crate::app::Text;
 use crate::devices::ssi::protocol::{Cell, Flags, FrameFinding, FrameReading, Layout, Location, parse_frame};
@@ -12,14 +12,14 @@ pub struct Trial {
     problem: Option<Text>,
 }
 
-/// A frame with what it says.
+/// Frame with its meaning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decoded {
     /// The frame, right-justified.
     pub frame: u64,
     /// Its position and flags.
     pub reading: FrameReading,
-    /// The position, if the bits are one, and what it is on the shaft or scale.
+    /// The position, if the bits are one, and its location on the shaft or scale.
     pub place: Option<(u64, Location)>,
     pub findings: Vec<FrameFinding>,
     /// The position may be used.
@@ -35,14 +35,14 @@ impl Decoded {
         Decoded { frame, reading, place, findings: layout.findings(reading), is_valid: layout.is_valid(reading) }
     }
 
-    /// Its bits with what each carries.
+    /// Returns its bits with the content of each.
     pub fn cells(&self, layout: &Layout) -> Vec<Cell> {
         layout.cells(self.frame)
     }
 }
 
 impl Trial {
-    /// The frame, right-justified.
+    /// Returns the frame, right-justified.
     pub fn frame(&self) -> u64 {
         self.frame
     }
@@ -57,7 +57,7 @@ impl Trial {
         Decoded::of(layout, self.frame)
     }
 
-    /// The frame of a position; error bits stay as they are.
+    /// Sets the frame of a position; error bits stay as they are.
     pub(super) fn set_position(&mut self, layout: &Layout, position: u64) {
         let errors = error_bits(layout, layout.decode(self.frame).flags);
         match layout.encode(position, errors) {
@@ -69,7 +69,7 @@ impl Trial {
         }
     }
 
-    /// The frame of a turn and the steps within it.
+    /// Sets the frame of a turn and the steps within it.
     pub(super) fn set_place(&mut self, layout: &Layout, turns: u64, steps: u64) {
         match layout.descriptor().range.position(turns, steps) {
             Some(position) => self.set_position(layout, position),
@@ -77,7 +77,7 @@ impl Trial {
         }
     }
 
-    /// A frame as it was written down.
+    /// Sets a frame from its text.
     pub(super) fn set_text(&mut self, layout: &Layout, text: &str) {
         match parse_frame(text, layout.clocks()) {
             Ok(frame) => self.set(frame),
@@ -85,19 +85,19 @@ impl Trial {
         }
     }
 
-    /// The other value for a bit; clocks count from 1.
+    /// Inverts a bit; clocks count from 1.
     pub(super) fn toggle(&mut self, layout: &Layout, clock: u8) {
         if (1..=layout.clocks()).contains(&clock) {
             self.set(self.frame ^ 1 << (layout.clocks() - clock));
         }
     }
 
-    /// A frame that was read.
+    /// Sets a frame that was read.
     pub(super) fn set(&mut self, frame: u64) {
         *self = Trial { frame, problem: None };
     }
 
-    /// The layout is another: the position stays, where it has one there.
+    /// Changes to another layout: the position stays, if it exists there.
     pub(super) fn follow(&mut self, before: &Layout, now: &Layout) {
         let reading = before.decode(self.frame);
         let position = reading.position.min(now.coding().last());
@@ -106,7 +106,7 @@ impl Trial {
     }
 }
 
-/// The flags of error bits alone: only they can be encoded.
+/// Returns only the flags of error bits, which can be encoded.
 fn error_bits(layout: &Layout, flags: Flags) -> Flags {
     let all = (0..layout.descriptor().errors.len()).map(Flags::error);
     all.filter(|error| flags.has(*error)).fold(Flags::NONE, Flags::with)

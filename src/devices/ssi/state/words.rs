@@ -1,4 +1,4 @@
-//! The jobs on the line in words.
+//! Texts of the jobs on the line.
 
 use crate::app::Text;
 use crate::devices::ssi::jobs::SsiJob;

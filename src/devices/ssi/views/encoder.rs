@@ -1,4 +1,4 @@
-//! The encoder behind its adapter, what its error bits have said, and how it is wired.
+//! The encoder behind its adapter, its reported error bits, and its wiring.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The layout for other programs: as text to be read, copied and saved.
+//! The layout for other programs: as text to read, copy and save.
 
 use egui::{ScrollArea, Ui};
 

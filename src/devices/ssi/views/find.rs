@@ -1,5 +1,5 @@
-//! The search for the layout of frames: those that were read last, or those in a file. What fits is ranked with what
-//! speaks for it; what these frames cannot tell apart is one class, with what would decide.
+//! The search for the layout of frames: those read last, or those in a file. Results are ranked with their reasons; layouts
+//! that these frames cannot distinguish are one class, with what would distinguish them.
 
 use egui::{RichText, Ui};
 
@@ -21,7 +21,7 @@ pub(super) struct FindUiState {
     unfolded: Option<usize>,
 }
 
-/// Classes that are shown; what is further down fits worse still.
+/// Maximum number of classes shown; the others fit even worse.
 const CLASSES: usize = 6;
 /// Members of a class that are shown at first.
 const MEMBERS: usize = 4;
@@ -133,7 +133,7 @@ fn found(
     }
 }
 
-/// Layouts that these frames cannot tell apart.
+/// Draws layouts that these frames cannot distinguish.
 fn class_ui(
     ui: &mut Ui,
     theme: &Theme,
@@ -182,14 +182,14 @@ fn class_ui(
     });
 }
 
-/// The family, and how it is set.
+/// Draws the family and its settings.
 fn title(ui: &mut Ui, theme: &Theme, encoder: &Encoder, proposal: &Proposal) {
     let Some((key, settings)) = &proposal.family else {
         ui.label(say(theme, "ssi_find.any"));
         return;
     };
     let family = encoder.designer.families().named(key);
-    // As few settings as there can be; exchanged wires are none of them.
+    // With the fewest settings; exchanged wires are not one of them.
     let frame = Descriptor { inverted: false, ..proposal.layout.descriptor().clone() };
     let fewest = family.and_then(|family| family.settings_of(&frame));
     let name = family.map_or(key.as_str(), |family| family.name.as_str());

@@ -1,4 +1,4 @@
-//! The rows of a form: a number, a choice, a switch, a name. What they mean is said by the state.
+//! The rows of a form: a number, a choice, a switch, a name. The state defines their meaning.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The frame on the drawing board: its family, the strip of its bits, everything that can be set, and a frame to try it with.
+//! The design of a frame: its family, the strip of its bits, all settings, and a trial frame.
 
 use egui::{RichText, Ui};
 
@@ -21,7 +21,7 @@ use crate::ui::{Theme, icons};
 /// The state of the page between frames.
 #[derive(Default)]
 pub(super) struct FrameUiState {
-    /// The cell that is looked at, by its clock.
+    /// The selected cell, by its clock.
     selected: Option<u8>,
     format: String,
     named: Option<(String, Option<Text>)>,
@@ -68,7 +68,7 @@ fn columns(form: &[Group]) -> (&[Group], &[Group]) {
     form.split_at(form.len().min(2))
 }
 
-/// Family, strip, and what there is to say of both.
+/// Draws the family, the strip, and the findings about both.
 fn layout(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiState, actions: &mut Vec<Action>) {
     let designer = &encoder.designer;
     let id = encoder.session.id;
@@ -194,7 +194,7 @@ fn strip_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FrameUiSta
             view.selected = Some(clock);
             actions.push(Action::device(id, Ssi::Try(Try::Toggle(clock))));
         }
-        // It shows by itself what the frame would be.
+        // The strip shows the resulting frame by itself.
         Some(StripEvent::Preview(..)) | None => {}
     }
     let words = match selected {
@@ -261,7 +261,7 @@ fn buttons_ui(
     });
 }
 
-/// The layout for an encoder that is connected: which one is chosen here.
+/// Draws the choice of the layout for a connected encoder.
 fn take_for(ui: &mut Ui, theme: &Theme, studio: &Studio, device: &AnyDevice, actions: &mut Vec<Action>) {
     let own = |other: &&AnyDevice| other.tab() == device.tab() && other.is_connected() && other.id() != device.id();
     let targets: Vec<&AnyDevice> = studio.devices().iter().map(Box::as_ref).filter(own).collect();

@@ -1,4 +1,4 @@
-//! The SSI tab: its pages, each about one thing that a person wants of a frame or of an encoder that sends it.
+//! The SSI tab: its pages, one per task.
 
 mod connect_form;
 mod encoder;
@@ -32,7 +32,7 @@ pub(crate) enum Page {
     Find,
     /// The layout for other programs.
     Export,
-    /// The encoder behind its adapter, what its error bits said, its wiring.
+    /// The encoder behind its adapter, its reported error bits, its wiring.
     Encoder,
 }
 
@@ -46,7 +46,7 @@ impl TabPage for Page {
     ];
 }
 
-/// The state of the tab for one session between frames: text buffers and selections.
+/// State of the tab for one session between frames: text buffers and selections.
 #[derive(Default)]
 pub(crate) struct SsiUiState {
     form: form::LayoutFormUiState,
@@ -110,7 +110,7 @@ impl TypedDeviceView for SsiView {
     }
 }
 
-/// A text of this folder's catalogue, or a common one, in the window's language.
+/// Returns a text of this folder's catalogue, or a common one, in the window's language.
 pub(crate) fn say(theme: &Theme, id: &'static str) -> String {
     theme.words(&TEXTS.text(id))
 }

@@ -1,5 +1,4 @@
-//! A frame to try the layout with: type a position and see its bits, paste bits and see the position; or the word that was
-//! read last.
+//! A trial frame: enter a position and see its bits, paste bits and see the position; or the word read last.
 
 use egui::{RichText, Ui};
 
@@ -112,7 +111,7 @@ fn refused(ui: &mut Ui, theme: &Theme, draft: Option<&(String, Option<Text>)>) {
     problem(ui, theme, draft.and_then(|(_, problem)| problem.as_ref()));
 }
 
-/// The bits as text: to be copied, and to be pasted over.
+/// Draws the bits as text, to be copied and replaced by pasting.
 fn bits(
     ui: &mut Ui,
     theme: &Theme,
@@ -135,7 +134,7 @@ fn bits(
         });
     });
     let mut text = view.bits.take().unwrap_or_else(|| own.clone());
-    // The frame around what is typed comes to it.
+    // The width of the frame around the entry is added.
     let width = (ui.available_width() - 18.0).max(0.0);
     let response = mono_entry(ui, theme, &mut text, width, &word, "");
     if response.has_focus() {

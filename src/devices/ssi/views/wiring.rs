@@ -1,4 +1,4 @@
-//! The wiring card: the wires of SSI, its supply and cable, and what else the family's encoders give.
+//! The wiring card: the wires of SSI, its supply and cable, and the other outputs of the family's encoders.
 
 use egui::Ui;
 
@@ -13,7 +13,7 @@ use crate::ui::wiring::wires_ui;
 /// Width of the column of wires.
 const WIRE: f32 = 84.0;
 
-/// The wires and what is on them (SICK SSI description 2.1, 2.2).
+/// Names of the wires and their signals (SICK SSI description 2.1, 2.2).
 const WIRES: [(&str, &str); 6] = [
     ("CLOCK+", "ssi_wiring.clock_plus"),
     ("CLOCK−", "ssi_wiring.clock_minus"),
@@ -51,7 +51,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, family: Option<&Family>) {
     });
 }
 
-/// Returns the limits of a signal in words.
+/// Returns the limits of a signal as text.
 fn limits(theme: &Theme, signal: &Signal) -> String {
     let volts = |(least, most): (f64, f64)| {
         if (most - least).abs() < 1e-9 {

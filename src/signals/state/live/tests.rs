@@ -1,4 +1,4 @@
-//! What comes late, breaks off or was asked for otherwise: on the state itself, where a window could only hope for it.
+//! Late results, aborted tasks and changed settings: tested on the state itself, where a window could not force them.
 
 use std::time::{Duration, Instant};
 
@@ -32,7 +32,7 @@ fn measurement(judge: Judge) -> Measurement {
     Measurement::of(Origin::Virtual, Arc::new(capture), judge)
 }
 
-/// Lets tasks come back until it is so.
+/// Takes in tasks until the condition is true.
 #[track_caller]
 fn until(signals: &mut Signals, services: &mut Services, condition: impl Fn(&Signals) -> bool) {
     let began = Instant::now();
@@ -66,7 +66,7 @@ fn what_was_measured_by_other_limits_is_judged_again() {
     let mut signals = started(&mut services);
     let before = signals.judge();
     signals.act(SignalsAction::SetFamily(Family::AfsAfm60), &mut services);
-    // 0.84 V are too little for HIPERFACE alone.
+    // 0.84 V are too little for HIPERFACE only.
     signals.measured(signals.source.runs, measurement(before), &mut services);
     assert!(!signals.findings().is_empty());
     signals.act(SignalsAction::Source(SourceAction::Stop), &mut services);

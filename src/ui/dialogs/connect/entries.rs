@@ -50,7 +50,7 @@ pub(crate) fn network(ui: &mut Ui, theme: &Theme, host: &mut String, port: &mut 
     ui.label(theme.caption(theme.say("connect.tcp_words")));
 }
 
-/// Host and port, each with what it may look like.
+/// Draws host and port, each with an example.
 pub(crate) fn place(
     ui: &mut Ui,
     theme: &Theme,
@@ -74,7 +74,7 @@ pub(crate) fn recording(ui: &mut Ui, theme: &Theme, file: &mut String, actions: 
     });
 }
 
-/// The parity, beside the speed.
+/// Draws the parity beside the speed.
 pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     let parities = [Parity::Even, Parity::Odd, Parity::None];
     let parities = parities.map(|parity| (parity, theme.words(&explain::parity(parity))));
@@ -82,7 +82,7 @@ pub(crate) fn parity(ui: &mut Ui, theme: &Theme, own: &mut Parity) {
     choice(ui, &theme.say("settings_card.parity"), own, parities);
 }
 
-/// The heading over what is rarely needed; whether it is unfolded.
+/// Draws the heading of the rarely needed entries; returns whether they are unfolded.
 pub(crate) fn unfolded(ui: &mut Ui, theme: &Theme, open: &mut bool) -> bool {
     let icon = if *open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
     let word = theme.say("connect.more");
@@ -109,7 +109,7 @@ pub(crate) fn margin(ui: &mut Ui, theme: &Theme, margin: &mut String) {
     });
 }
 
-/// Entries of parameters; `say` is the device's.
+/// Draws entries of parameters; `say` gives the device's texts.
 pub(crate) fn typed(
     ui: &mut Ui,
     theme: &Theme,
@@ -119,7 +119,7 @@ pub(crate) fn typed(
 ) {
     for own in entries {
         let (word, mut text) = (say(theme, own.label), typed.get(own.key).to_owned());
-        // A number needs less room than a list of faults.
+        // A number needs less space than a list of faults.
         let width = if own.hint.parse::<f64>().is_ok() { 96.0 } else { 200.0 };
         entry(ui, theme, &word, |ui| {
             if text_entry(ui, &mut text, width, &word, &own.hint).changed() {
@@ -138,7 +138,7 @@ pub(crate) fn leave_supply(ui: &mut Ui, theme: &Theme, leave_on: &mut bool) {
     paragraph(ui, theme.caption(theme.say("connect.leave_supply_words")));
 }
 
-/// One of a few, side by side.
+/// Draws one of a few choices, side by side.
 pub(crate) fn segments<T: PartialEq + Copy, const N: usize>(
     ui: &mut Ui,
     theme: &Theme,

@@ -1,5 +1,5 @@
 //! The form of a kind of device in the connection dialog: typed in the device's folder, object-safe for the dialog. One
-//! adapter stands between the two.
+//! adapter connects the two.
 
 use egui::Ui;
 
@@ -15,7 +15,7 @@ pub trait TypedConnectForm: 'static {
     /// The selections that are no part of the link.
     type Memory: Default;
 
-    /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
+    /// Draws the form. `more` tells whether the rarely needed entries are unfolded, for all kinds.
     fn form_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -26,9 +26,9 @@ pub trait TypedConnectForm: 'static {
     );
 }
 
-/// The form of a kind of device, as the dialog uses it, with its selections.
+/// Form of a kind of device, as used by the dialog, with its selections.
 pub trait ConnectForm {
-    /// Draws the form. `more` is whether the rarely needed entries are unfolded, for all kinds.
+    /// Draws the form. `more` tells whether the rarely needed entries are unfolded, for all kinds.
     fn form_ui(&mut self, ui: &mut Ui, theme: &Theme, dialog: &Dialog, more: &mut bool, actions: &mut Vec<Action>);
 }
 
@@ -46,7 +46,7 @@ impl<F: TypedConnectForm> ConnectForm for FormAdapter<F> {
         let mut form = own.clone();
         F::form_ui(ui, theme, dialog, &mut form, (&mut self.0, more), actions);
         if form != *own {
-            // Before whatever else was clicked: that is to see it.
+            // Before the other clicked actions, which must see it.
             actions.insert(0, Action::Connect(Connect::edit(form)));
         }
     }

@@ -15,7 +15,8 @@ pub(super) struct State {
     pub(super) hovered: bool,
 }
 
-/// The shape of a run: half a gap free at the ends of the field, round there, square where it goes on in another line.
+/// Returns the shape of a run: half a gap free and rounded at the ends of the field, square where it continues on another
+/// line.
 fn shape(theme: &Theme, runs: &[Rect], number: usize) -> (Rect, CornerRadius) {
     let Some(run) = runs.get(number) else { return (Rect::NOTHING, CornerRadius::ZERO) };
     let (begins, ends) = (number == 0, number + 1 == runs.len());
@@ -44,7 +45,7 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
         let run = runs.get(number).copied().unwrap_or(rect);
         let mut x = run.left() + strip.block.x;
         while x < run.right() - 1.0 {
-            // Only at the edges: the field's words stand between.
+            // Only at the edges: the field's texts are between.
             let (top, bottom) = (rect.top(), rect.bottom());
             let stroke = Stroke::new(1.0, colour.gamma_multiply(0.7));
             painter.vline(x - 0.5, top..=top + theme.space.inside, stroke);
@@ -62,7 +63,8 @@ pub(super) fn field(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], field:
     }
 }
 
-/// Number and icons above, the caption below, as far as they fit. In a narrow field the icons take the caption's place.
+/// Draws number and icons above, the caption below, as far as they fit. In a narrow field the icons take the caption's
+/// place.
 fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     let palette = theme.palette;
     let inside = run.shrink2(Vec2::new(theme.space.between, theme.space.inside + 2.0));
@@ -86,7 +88,7 @@ fn inscribe(ui: &Ui, theme: &Theme, run: Rect, field: &MapField) {
     if number.size().x <= run.width() - 2.0 {
         painter.galley(egui::pos2(left, y - number.size().y / 2.0), number, palette.text.into());
     }
-    // As many as there is room for; the tooltip has all.
+    // As many as fit; the tooltip has all.
     let room = if beside { shown.len() } else { (((run.width() - 2.0) / pitch) as usize).max(1) };
     let count = shown.len().min(room);
     let width = count as f32 * pitch;
@@ -137,7 +139,7 @@ pub(super) fn free(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], state: 
     }
 }
 
-/// Two short lines at the end of the last field.
+/// Draws two short lines at the end of the last field.
 pub(super) fn handle(ui: &Ui, theme: &Theme, run: Rect, active: bool) {
     let colour = if active { theme.palette.accent } else { theme.palette.text };
     let (x, y) = (run.right() - theme.space.between, run.center().y);
@@ -159,7 +161,7 @@ pub(super) fn ghost(ui: &Ui, theme: &Theme, strip: &Strip, runs: &[Rect], words:
         painter.extend(Shape::dashed_line(&path, Stroke::new(1.5, accent), theme.space.inside, theme.space.inside));
     }
     let Some(last) = runs.last() else { return };
-    // A label on the accent, inside the end of the ghost and never outside the map.
+    // A label on the accent, inside the end of the preview and never outside the map.
     let font = FontId::monospace(theme.sizes.caption);
     let galley = painter.layout_no_wrap(words.to_owned(), font, theme.palette.on_accent.into());
     let size = galley.size() + Vec2::new(theme.space.between, theme.space.inside);

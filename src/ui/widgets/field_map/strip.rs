@@ -7,12 +7,12 @@ use crate::ui::Theme;
 /// Blocks from left to right and from line to line.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Strip {
-    /// Upper left corner of what was given to the map.
+    /// Upper left corner of the map.
     pub(super) origin: Pos2,
     /// The size of the map.
     pub(super) size: Vec2,
     pub(super) block: Vec2,
-    /// Above and below: room for the ring of the keyboard.
+    /// Above and below: space for the focus ring.
     margin: f32,
     gap: f32,
     columns: usize,
@@ -22,7 +22,7 @@ impl Strip {
     /// Widths of a block in steps of the grid, largest first.
     const STEPS: [f32; 6] = [12.0, 10.0, 8.0, 6.0, 5.0, 4.0];
 
-    /// The largest blocks with which `count` of them fit two lines; the smallest where none do.
+    /// Creates the largest blocks with which `count` of them fit on two lines; the smallest if none do.
     pub(super) fn new(theme: &Theme, room: f32, count: usize) -> Self {
         let (margin, gap) = (theme.space.inside, theme.space.between);
         let columns_of = |width: f32| ((room / width).floor() as usize).max(1);
@@ -38,12 +38,12 @@ impl Strip {
         Strip { origin: Pos2::ZERO, size, block, margin, gap, columns }
     }
 
-    /// The same with its upper left corner there.
+    /// Returns the same with its upper left corner there.
     pub(super) fn at(self, origin: Pos2) -> Self {
         Strip { origin, ..self }
     }
 
-    /// The rectangles of the blocks from `first` to before `end`, one a line.
+    /// Returns the rectangles of the blocks from `first` to before `end`, one a line.
     pub(super) fn runs(&self, first: usize, end: usize) -> Vec<Rect> {
         let mut runs = Vec::new();
         let mut at = first;
@@ -59,7 +59,7 @@ impl Strip {
         runs
     }
 
-    /// The boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
+    /// Returns the boundary between blocks that is nearest to the pointer, as a number of blocks from the beginning.
     pub(super) fn boundary(&self, pos: Pos2) -> usize {
         let inside = pos - self.origin - Vec2::new(0.0, self.margin);
         // Positions above or left of the strip become zero.
@@ -69,7 +69,7 @@ impl Strip {
     }
 }
 
-/// The widest of a field's runs, the first of them where several are.
+/// Returns the widest of a field's runs, the first one of several.
 pub(super) fn widest(runs: &[Rect]) -> usize {
     let widths = runs.iter().enumerate().rev();
     widths.max_by(|(_, a), (_, b)| a.width().total_cmp(&b.width())).map_or(0, |(number, _)| number)

@@ -1,4 +1,4 @@
-//! The layout of the fields of a frame: on as few lines as fit, with all bits in cells of one width.
+//! The layout of the fields of a frame: on as few lines as possible, with all bits in cells of one width.
 
 /// The space that a field needs.
 #[derive(Clone, Copy, Debug)]
@@ -8,7 +8,7 @@ pub(super) struct SpaceNeeded {
     pub(super) words: f32,
 }
 
-/// A field, or what lies of it on a line.
+/// Field, or its part on a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Placed {
     pub(super) field: usize,
@@ -20,20 +20,20 @@ pub(super) struct Placed {
     pub(super) width: f32,
 }
 
-/// All of them.
+/// All pieces of a frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Placing {
     pub(super) pieces: Vec<Placed>,
     pub(super) lines: usize,
-    /// The widest of them.
+    /// Width of the widest line.
     pub(super) width: f32,
-    /// Width of a cell with the gap behind it.
+    /// Width of a cell with the gap after it.
     pub(super) cell: f32,
 }
 
 /// Widths that a cell may have.
 const CELLS: [f32; 10] = [20.0, 19.0, 18.0, 17.0, 16.0, 15.0, 14.0, 13.0, 12.0, 11.0];
-/// Behind each four bits.
+/// Gap after every four bits.
 const GROUP: f32 = 3.0;
 
 impl Placed {
@@ -49,7 +49,7 @@ fn groups(from: usize, to: usize, field_bits: usize) -> usize {
     behind(from).saturating_sub(behind(to))
 }
 
-/// The fields within a width, `gap` between them. A field that is longer than a line is parted.
+/// Places the fields within a width, `gap` between them. A field that is longer than a line is split.
 pub(super) fn place(wants: &[SpaceNeeded], width: f32, gap: f32) -> Placing {
     let fewest = CELLS.last().map_or(1, |least| with_cell(wants, width, gap, *least).lines);
     let fits = CELLS.iter().map(|cell| with_cell(wants, width, gap, *cell)).find(|placing| placing.lines <= fewest);
@@ -68,7 +68,7 @@ fn with_cell(wants: &[SpaceNeeded], width: f32, gap: f32, cell: f32) -> Placing 
             if left > 0.0 && left + whole > width {
                 (left, line) = (0.0, line + 1);
             }
-            // Whole bytes, as many as fit; one of them in any case.
+            // Whole bytes, as many as fit, at least one.
             let fit = (1..=rest).rev().find(|bits| cells(first, *bits, want.bits, cell) <= width).unwrap_or(1);
             let bits = if fit == rest { rest } else { (fit - fit % 8).clamp(8.min(rest), rest) };
             let own = cells(first, bits, want.bits, cell).max(words);
@@ -93,7 +93,7 @@ mod tests {
 
     const GAP: f32 = 8.0;
 
-    /// The kit encoder's frame with its acknowledge, start and control bit.
+    /// Returns the kit encoder's frame with its acknowledge, start and control bit.
     fn kit() -> Vec<SpaceNeeded> {
         let want = |(bits, words)| SpaceNeeded { bits, words };
         [(3, 26.0), (1, 27.0), (1, 26.0), (16, 32.0), (17, 48.0), (1, 30.0), (1, 40.0), (6, 24.0)]
@@ -110,8 +110,8 @@ mod tests {
 
     #[test]
     fn a_frame_lies_on_one_line_where_there_is_room() {
-        // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their words, which are
-        // 123 together, and seven gaps between fields.
+        // 42 bits in groups of four with 3 + 4 + 1 gaps between them, four single bits as wide as their texts, 123
+        // together, and seven gaps between fields.
         let placing = place(&kit(), 1100.0, GAP);
         assert_eq!((placing.lines, placing.cell), (1, 20.0));
         let expected = 42.0 * 20.0 + 8.0 * 3.0 + 123.0 + 7.0 * 8.0;
@@ -132,7 +132,7 @@ mod tests {
         let placing = place(&kit(), 420.0, GAP);
         assert_eq!(lines(&placing), [vec![0, 1, 2, 3], vec![4, 5, 6, 7]]);
         assert!(placing.pieces.iter().all(|own| own.left + own.width <= 420.0));
-        // With one point less a cell this would be as many lines: they are as wide as they can be.
+        // With cells one point narrower the lines would be as many: they are as wide as possible.
         let wider = with_cell(&kit(), 420.0, GAP, placing.cell + 1.0);
         assert!(wider.lines > placing.lines);
     }

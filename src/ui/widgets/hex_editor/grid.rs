@@ -5,7 +5,7 @@ use egui::{FontId, Pos2, Rect, Ui, Vec2};
 use super::view::Column;
 use crate::ui::Theme;
 
-/// Bytes a line.
+/// Bytes per line.
 pub(super) const WIDTH: usize = 16;
 
 /// Distances in points; the origin is the upper left corner of the first line.
@@ -26,7 +26,7 @@ pub(super) struct Grid {
     len: usize,
 }
 
-/// The next multiple of four points.
+/// Returns the next multiple of four points.
 fn on_grid(length: f32) -> f32 {
     (length / 4.0).ceil() * 4.0
 }
@@ -42,7 +42,7 @@ impl Grid {
             let text_left = hex_left + byte * WIDTH as f32 + gap * 3.0;
             (gap, hex_left, text_left, text_left + letter * WIDTH as f32 + theme.space.inside)
         };
-        // In a small window the columns move together rather than the last letters be cut off.
+        // In a small window the columns are closer together so that no characters are truncated.
         let wide = places(theme.space.between);
         let fits = wide.3 + theme.space.between * 2.0 <= ui.available_width();
         let (gap, hex_left, text_left, width) = if fits { wide } else { places(theme.space.inside) };
@@ -54,12 +54,12 @@ impl Grid {
         self.len.div_ceil(WIDTH)
     }
 
-    /// Height of so many lines.
+    /// Returns the height of this many lines.
     pub(super) fn height_of(&self, lines: usize) -> f32 {
         self.row * lines as f32
     }
 
-    /// The cell of a byte in a column.
+    /// Returns the cell of a byte in a column.
     pub(super) fn cell(&self, origin: Pos2, column: Column, at: usize) -> Rect {
         let (line, place) = (at / WIDTH, at % WIDTH);
         let (left, width) = match column {
@@ -70,13 +70,13 @@ impl Grid {
         Rect::from_min_size(origin + Vec2::new(left, self.row * line as f32), Vec2::new(width, self.row))
     }
 
-    /// The byte under the pointer.
+    /// Returns the byte under the pointer.
     pub(super) fn hit(&self, origin: Pos2, pos: Pos2) -> Option<(Column, usize)> {
         let (column, at) = self.nearest(origin, pos, Column::Hex, true);
         (at < self.len && self.cell(origin, column, at).contains(pos)).then_some((column, at))
     }
 
-    /// The byte nearest to the pointer, in the column under it or in one that is given.
+    /// Returns the byte nearest to the pointer, in the column under it or a given one.
     pub(super) fn nearest(&self, origin: Pos2, pos: Pos2, column: Column, free: bool) -> (Column, usize) {
         let right = pos.x >= origin.x + self.text_left - self.gap;
         let column = match (free, right) {

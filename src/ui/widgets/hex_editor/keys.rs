@@ -15,7 +15,7 @@ struct Reaction {
     leave: Option<FocusDirection>,
 }
 
-/// Hears the keys of this frame. Before the widget itself is announced: only then can Tab still leave it.
+/// Handles the keys of this frame. Called before the widget itself is announced: only then can Tab still leave it.
 pub(super) fn listen(ui: &Ui, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let mut reaction = Reaction::default();
     ui.input_mut(|input| input.events.retain(|event| !hear(event, model, view, &mut reaction)));
@@ -59,7 +59,7 @@ fn hear(event: &Event, model: &HexModel<'_>, view: &mut HexView, reaction: &mut 
     }
 }
 
-/// Hex, then text, then what follows the editor; and back.
+/// Handles Tab: from hex to text to the next widget; and back.
 fn tab(modifiers: Modifiers, view: &mut HexView, reaction: &mut Reaction) -> bool {
     if modifiers.command || modifiers.alt {
         return false;
@@ -134,7 +134,7 @@ fn act(key: Key, modifiers: Modifiers, model: &HexModel<'_>, view: &mut HexView,
     true
 }
 
-/// Does what changes something, or says why it cannot be.
+/// Makes a change, or returns why it is not possible.
 fn change(
     model: &HexModel<'_>,
     view: &mut HexView,
@@ -202,7 +202,7 @@ fn ascii_bytes(text: &str) -> Result<Vec<u8>, Text> {
     text.chars().map(byte).collect()
 }
 
-/// Puts bytes where the selection begins; afterwards they are selected, or the cursor stands behind them.
+/// Puts bytes where the selection begins; afterwards they are selected, or the cursor is after them.
 fn put(bytes: Vec<u8>, model: &HexModel<'_>, view: &mut HexView, reaction: &mut Reaction, select: bool) {
     let address = view.selection().start;
     let room = model.wanted.len().saturating_sub(address);

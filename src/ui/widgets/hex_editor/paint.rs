@@ -8,7 +8,7 @@ use super::{HexMark, HexModel};
 use crate::bits;
 use crate::ui::Theme;
 
-/// The line above: places in a line.
+/// Draws the line above: places in a line.
 pub(super) fn header(ui: &Ui, theme: &Theme, grid: &Grid, rect: Rect, model: &HexModel<'_>, view: &HexView) {
     let font = FontId::monospace(theme.sizes.caption);
     let painter = ui.painter();
@@ -38,7 +38,7 @@ struct Brush<'a> {
     hovered: Option<usize>,
 }
 
-/// The lines in sight.
+/// Draws the visible lines.
 #[allow(clippy::too_many_arguments, reason = "drawing is told where, what and how")]
 pub(super) fn lines(
     ui: &Ui,
@@ -134,7 +134,7 @@ impl Brush<'_> {
         }
     }
 
-    /// A bracket below the bytes; it is open where the range goes on in another line.
+    /// Draws a bracket below the bytes; it is open where the range continues on another line.
     fn mark(&self, mark: &HexMark<'_>, start: usize, end: usize) {
         let (first, last) = (mark.range.start.max(start), mark.range.end.min(end));
         if first >= last {

@@ -7,7 +7,7 @@ use super::{HexModel, address_text};
 use crate::bits;
 use crate::ui::{Theme, icons};
 
-/// The byte in every reading, what the device has there, and what it belongs to.
+/// Draws the byte in every representation, the device's byte, and the mark that it belongs to.
 pub(super) fn byte(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>, at: usize) {
     let Some(byte) = model.wanted.get(at).copied() else { return };
     ui.spacing_mut().item_spacing = egui::vec2(theme.space.groups, theme.space.inside);
@@ -23,7 +23,7 @@ pub(super) fn byte(ui: &mut Ui, theme: &Theme, grid: &Grid, model: &HexModel<'_>
         row(ui, theme.say("widget.hex_tip_decimal"), theme.mono(byte.to_string()));
         row(ui, theme.say("widget.hex_tip_binary"), theme.mono(bits::binary(byte)));
         if let Some(character) = bits::ascii(byte) {
-            // In quotes: a blank is one too.
+            // In quotes: it may be a blank.
             row(ui, theme.say("widget.hex_tip_character"), theme.mono(format!("'{character}'")));
         }
         if let Some(own) = model.device.get(at).filter(|own| **own != byte) {

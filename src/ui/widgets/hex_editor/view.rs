@@ -1,4 +1,4 @@
-//! The cursor and the selection of a hex editor. It knows the number of bytes, not the bytes.
+//! The cursor and the selection of a hex editor. It knows the number of bytes, not their values.
 
 use std::ops::Range;
 
@@ -37,13 +37,13 @@ impl HexView {
         self.cursor
     }
 
-    /// Addresses selected: at least the cursor's, unless there is no byte at all.
+    /// Returns the selected addresses: at least the cursor's, unless there are no bytes.
     pub fn selection(&self) -> Range<usize> {
         let (first, last) = (self.anchor.min(self.cursor), self.anchor.max(self.cursor));
         first..(last + 1).min(self.len.max(first))
     }
 
-    /// Selects a range and brings its end into sight; an empty range sets the cursor.
+    /// Selects a range and scrolls to its end; an empty range sets the cursor.
     pub fn select(&mut self, range: Range<usize>) {
         self.pending = None;
         self.anchor = range.start;
@@ -52,15 +52,14 @@ impl HexView {
         self.reveal = true;
     }
 
-    /// The bytes to read as numbers: the selection, or everything from the cursor on where only one byte is selected.
+    /// Returns the bytes to show as numbers: the selection, or everything from the cursor on if only one byte is selected.
     pub fn to_read<'a>(&self, bytes: &'a [u8]) -> &'a [u8] {
         let selected = self.selection();
         let range = if selected.len() > 1 { selected } else { self.cursor..bytes.len() };
         bytes.get(range).unwrap_or_default()
     }
 
-    /// A step is undone, or done again: from these bytes to those that are shown next. The cursor goes to what that
-    /// changes.
+    /// Follows an undo or redo, from these bytes to the next ones: the cursor moves to the change.
     pub fn follow(&mut self, before: &[u8]) {
         self.pending = None;
         self.before = Some(before.to_vec());

@@ -1,5 +1,4 @@
-//! The columns of a table: the least important ones are hidden where there is no room, and two share the rest of the
-//! width.
+//! The columns of a table: the least important ones are hidden if they do not fit, and two share the rest of the width.
 
 use egui::Rangef;
 
@@ -18,7 +17,7 @@ pub(super) enum Column {
     Default,
 }
 
-/// Columns of bytes with their least widths, in their order; that of the value follows from what it is.
+/// Columns of bytes with their minimum widths, in order; that of the value follows from its kind.
 const BYTES: [(Column, f32); 8] = [
     (Column::Marks, 38.0),
     (Column::Address, 80.0),
@@ -41,7 +40,7 @@ const NUMBERS: [(Column, f32); 7] = [
 ];
 /// The columns that are hidden, in this order. Their values move to the tooltip.
 const LEAST: [Column; 4] = [Column::Decimal, Column::Default, Column::Access, Column::Range];
-/// The share of what is left that the name gets; the meaning gets the rest.
+/// Share of the remaining width for the name; the meaning gets the rest.
 const NAME: f32 = 0.45;
 
 /// The columns that are there, from left to right.
@@ -49,7 +48,7 @@ const NAME: f32 = 0.45;
 pub(super) struct Columns(Vec<(Column, Rangef)>);
 
 impl Columns {
-    /// The columns in so much room, with so much for the value.
+    /// Lays out the columns in this width, with this width for the value.
     pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
         let mut shown = match kind {
             RegisterKind::Bytes { .. } => BYTES.to_vec(),

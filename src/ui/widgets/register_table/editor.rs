@@ -61,7 +61,7 @@ pub(super) fn editor_ui(
     }
 }
 
-/// All of the value, so that it is typed over; behind what was typed already.
+/// Selects the whole value, so that typing replaces it; after a first typed character, puts the cursor behind it.
 fn select(ui: &Ui, response: &egui::Response, text: &str, typed: bool) {
     use egui::text::{CCursor, CCursorRange};
     let end = CCursor::new(text.chars().count());

@@ -6,13 +6,13 @@ use super::lines::Lines;
 use super::view::{Edit, Selected};
 use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 
-/// Keeps the arrows for the table while it has the keyboard.
+/// Reserves the arrows for the table while it has the keyboard focus.
 pub(super) fn hold(ui: &Ui, id: Id) {
     let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
 }
 
-/// Hears the keys of this frame.
+/// Handles the keys of this frame.
 pub(super) fn listen(
     ui: &Ui,
     table: &RegisterTable<'_>,
@@ -123,7 +123,7 @@ fn edit(
     true
 }
 
-/// Begins to type over the value of what is selected, where that is allowed.
+/// Begins to replace the selected value by typing, if that is allowed.
 pub(super) fn begin(table: &RegisterTable<'_>, view: &mut RegisterView, typed: Option<&str>) -> bool {
     let Some(place) = view.selected() else { return false };
     begin_at(table, view, place, typed)

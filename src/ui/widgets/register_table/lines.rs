@@ -24,7 +24,7 @@ struct Section {
     start: usize,
     /// Registers that are shown.
     rows: usize,
-    /// Those of them that are unfolded, with how many bit fields they have.
+    /// The unfolded ones, with their numbers of bit fields.
     open: Vec<(usize, usize)>,
 }
 
@@ -65,7 +65,7 @@ impl Lines {
         Some(LineKind::Row(RegisterLocation { group, row: rest }))
     }
 
-    /// The group that a line belongs to.
+    /// Returns the group that a line belongs to.
     pub(super) fn group_at(&self, line: usize) -> Option<usize> {
         if line >= self.total {
             return None;

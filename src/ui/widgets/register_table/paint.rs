@@ -55,7 +55,7 @@ const fn title(kind: RegisterKind, column: Column) -> &'static str {
     }
 }
 
-/// The names of the columns.
+/// Draws the names of the columns.
 pub(super) fn header(ui: &mut Ui, theme: &Theme, kind: RegisterKind, columns: &Columns) {
     let (rect, _) = ui.allocate_exact_size(Vec2::new(columns.width(), HEADER), Sense::hover());
     let middle = rect.top() + HEADER / 2.0 - 2.0;
@@ -82,7 +82,7 @@ pub(super) fn heading(ui: &Ui, theme: &Theme, rect: Rect, group: &RegisterGroup,
     inscribe(ui, theme, rect, middle, room, theme.caption(&group.note), false);
 }
 
-/// A register. Its value is not drawn while it is typed over.
+/// Draws a register. Its value is not drawn while it is being edited.
 pub(super) fn row(
     ui: &Ui,
     theme: &Theme,
@@ -111,7 +111,7 @@ pub(super) fn row(
             Column::Value if row.value.is_empty() => (theme.mono("–"), palette.muted),
             Column::Value => (theme.mono(&row.value), value),
             Column::Decimal => (theme.mono(&row.decimal), value),
-            // The number stands for what it means where its own column has fallen away.
+            // The number replaces the meaning if its own column is hidden.
             Column::Meaning if row.meaning.is_empty() && columns.range(Column::Decimal).is_none() => {
                 (theme.mono(&row.decimal), value)
             }
@@ -144,7 +144,7 @@ pub(super) fn box_of(theme: &Theme, rect: Rect, value: Rangef) -> Rect {
     Rect::from_x_y_ranges(x, rect.top() + 0.5..=rect.bottom() - 0.5)
 }
 
-/// A caret for bit fields, a dot for what changed, a pencil for what was edited, a flash for what costs, a disk for what is kept.
+/// Draws a caret for bit fields, a dot for a change, a pencil for an edit, a flash for a cost, a disk for storage.
 fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     let palette = theme.palette;
     let caret = if open { icons::CARET_DOWN } else { icons::CARET_RIGHT };
@@ -167,7 +167,7 @@ fn marks(ui: &Ui, theme: &Theme, left: Pos2, row: &RegisterRow, open: bool) {
     }
 }
 
-/// A bit field, below its register.
+/// Draws a bit field, below its register.
 pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: &RegisterBits) {
     let palette = theme.palette;
     let ink = if bits.lit { palette.warn } else { palette.muted };
@@ -186,7 +186,7 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
 }
 
-/// Words within a column, cut off where they are too long; how wide they are.
+/// Draws text within a column, truncated if it is too long; returns its width.
 fn inscribe(
     ui: &Ui,
     theme: &Theme,

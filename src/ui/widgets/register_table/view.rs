@@ -12,7 +12,7 @@ pub struct RegisterView {
     pub(super) selected: Option<Selected>,
     /// Groups of which only the heading is shown.
     pub(super) folded: BTreeSet<usize>,
-    /// Registers whose bit fields are shown.
+    /// Registers with visible bit fields.
     pub(super) open: BTreeSet<RegisterLocation>,
     pub(super) edit: Option<Edit>,
     /// The register that was pressed to be edited.
@@ -39,7 +39,7 @@ pub(super) struct Edit {
     pub(super) text: String,
     /// Why it was refused.
     pub(super) problem: Option<Text>,
-    /// It shall have the keyboard now.
+    /// It must get the keyboard focus now.
     pub(super) begins: bool,
     /// It began with a character instead of the value.
     pub(super) typed: bool,
@@ -53,7 +53,7 @@ impl RegisterView {
         }
     }
 
-    /// The group that is selected, or whose register is.
+    /// Returns the selected group, or the one of the selected register.
     pub fn group(&self) -> Option<usize> {
         match self.selected? {
             Selected::Row(place) => Some(place.group),
@@ -67,7 +67,7 @@ impl RegisterView {
         typed.or_else(|| self.refused.clone())
     }
 
-    /// The register whose value is being typed, or was refused.
+    /// Returns the register whose value is being entered, or was refused.
     pub fn typed(&self) -> Option<RegisterLocation> {
         self.edit.as_ref().map(|edit| edit.place)
     }
@@ -77,7 +77,7 @@ impl RegisterView {
         self.edit.as_ref().is_some_and(|edit| edit.problem.is_some())
     }
 
-    /// Selects a register, unfolds its group and brings it in sight.
+    /// Selects a register, unfolds its group and scrolls to it.
     pub fn select(&mut self, place: RegisterLocation) {
         self.folded.remove(&place.group);
         self.go(Selected::Row(place));
@@ -97,8 +97,8 @@ impl RegisterView {
         self.folded.contains(&group)
     }
 
-    /// The registers of the table are other ones: what is selected or typed goes along with its own, and ends where that
-    /// has gone.
+    /// Follows a change of the registers in the table: selection and entry stay with their register, and end if it no longer
+    /// exists.
     pub fn follow(&mut self, now: impl Fn(RegisterLocation) -> Option<RegisterLocation>) {
         self.selected = match self.selected {
             Some(Selected::Row(place)) => now(place).map(Selected::Row),

@@ -6,14 +6,14 @@ use egui::{Color32, FontId, Rect, RichText, Sense, Shape, Stroke, Ui, Vec2, Widg
 use super::Gauge;
 use crate::ui::{Theme, icons};
 
-/// Least width of the scale, and widths of what stands before it.
+/// Minimum width of the scale, and widths of the parts before it.
 const SCALE: f32 = 96.0;
 const ICON: f32 = 16.0;
 const NAME: f32 = 112.0;
 const VALUE: f32 = 96.0;
 const HEIGHT: f32 = 20.0;
 
-/// Draws name, value, scale and limits of each on one line; the limits below where there is no room.
+/// Draws name, value, scale and limits of each on one line; the limits below if they do not fit.
 pub(super) fn gauges_ui(ui: &mut Ui, theme: &Theme, gauges: &[Gauge]) {
     let width = |gauge: &Gauge| {
         let font = FontId::proportional(theme.sizes.caption);
@@ -65,7 +65,7 @@ fn column(ui: &mut Ui, width: f32, words: RichText) {
     });
 }
 
-/// The band that is allowed, and a hand where the value is; beyond the scale an arrow at its end.
+/// Draws the allowed band, and a hand at the value; beyond the scale an arrow at its end.
 fn scale(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(width, HEIGHT), Sense::hover());
     response.widget_info(|| {
@@ -85,7 +85,7 @@ fn scale(ui: &mut Ui, theme: &Theme, gauge: &Gauge, width: f32, ink: Color32) {
     painter.rect_filled(track, 3.0, theme.palette.sunken);
     painter.rect_stroke(track, 3.0, Stroke::new(1.0, theme.palette.line), egui::StrokeKind::Inside);
     let band = |range: &std::ops::RangeInclusive<f64>, strength: f32| {
-        // A narrow band is still to be seen.
+        // A narrow band stays visible.
         let (from, to) = (x(share(*range.start())), x(share(*range.end())));
         let half = ((to - from) / 2.0).max(1.5);
         let middle = (from + to) / 2.0;

@@ -1,4 +1,4 @@
-//! A frame by what a screen reader hears of it.
+//! A frame by its accessible values.
 
 use egui_kittest::kittest::Queryable;
 

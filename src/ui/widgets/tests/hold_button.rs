@@ -1,4 +1,4 @@
-//! A button that counts while it is held.
+//! A button that is active while it is held.
 
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, ViewportId};
 use egui_kittest::Harness;
@@ -41,7 +41,7 @@ fn key(pressed: bool, repeat: bool) -> Event {
     Event::Key { key: Key::Space, physical_key: None, pressed, repeat, modifiers: Modifiers::NONE }
 }
 
-/// One picture after these events, and what was told in it.
+/// Draws one frame after these events, and returns what was reported in it.
 fn step(harness: &mut Harness<'_, Jog>, events: impl IntoIterator<Item = Event>) -> Vec<HoldEvent> {
     harness.state_mut().events.clear();
     for event in events {
@@ -90,7 +90,7 @@ fn a_press_that_began_elsewhere_is_none() {
 
 #[test]
 fn what_takes_the_button_away_ends_it() {
-    // Locked by an error, and the window without the keyboard.
+    // Locked by an error, and the window without the keyboard focus.
     for cause in [0, 1] {
         let mut harness = jog();
         let at = middle(&harness);
@@ -104,10 +104,10 @@ fn what_takes_the_button_away_ends_it() {
         assert_eq!(step(&mut harness, []), [], "{cause}");
         harness.state_mut().locked = false;
         harness.input_mut().focused = true;
-        // The finger is still there, and has to be lifted first.
+        // The finger is still there, and must be lifted first.
         assert_eq!(step(&mut harness, []), [], "{cause}");
     }
-    // What is not drawn says nothing: whoever waits for it hears that.
+    // A button that is not drawn reports nothing, which ends the hold.
     let mut harness = jog();
     let at = middle(&harness);
     step(&mut harness, [Event::PointerMoved(at)]);
@@ -117,14 +117,14 @@ fn what_takes_the_button_away_ends_it() {
     assert_eq!(step(&mut harness, []), []);
 }
 
-/// So that a release lies as far behind as a finger needs.
+/// Waits, so that a release is as long ago as a finger needs.
 fn wait(harness: &mut Harness<'_, Jog>) {
     for _ in 0..4 {
         assert_eq!(step(harness, []), []);
     }
 }
 
-/// With the keyboard, and after Space was seen up.
+/// Creates a button with the keyboard focus, after Space was seen up.
 fn armed() -> Harness<'static, Jog> {
     let mut harness = jog();
     focus(&mut harness, "Jog up");
@@ -140,7 +140,7 @@ fn a_key_holds_it_and_its_repetitions_are_nothing() {
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
     assert_eq!(step(&mut harness, [key(true, true)]), [Hold]);
     assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
-    // Down before the button had the keyboard.
+    // Pressed before the button had the keyboard focus.
     focus(&mut harness, "before");
     step(&mut harness, [key(true, false)]);
     harness.get_by_label("Jog up").focus();
@@ -151,7 +151,7 @@ fn a_key_holds_it_and_its_repetitions_are_nothing() {
     assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
 }
 
-/// A picture so many seconds after the one before.
+/// Draws a frame this many seconds after the previous one.
 fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) -> Vec<HoldEvent> {
     let before = harness.ctx.input(|input| input.time);
     harness.input_mut().time = Some(before + apart);
@@ -160,7 +160,7 @@ fn step_after(harness: &mut Harness<'_, Jog>, apart: f64, event: Option<Event>) 
     events
 }
 
-/// Issue 21.2: a key that repeats itself by a release and a press at once, which come in two pictures of any distance.
+/// Issue 21.2: a key that repeats by a release and an immediate press, which arrive in two frames of any distance.
 #[test]
 fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
     for apart in [0.016, 0.05, 0.08, 0.25] {
@@ -174,7 +174,7 @@ fn a_repetition_that_is_split_over_two_pictures_holds_nothing() {
     }
 }
 
-/// Issue 21.2: a person's press a tenth of a second after the release, with no other event in between.
+/// Issue 21.2: a user's press a tenth of a second after the release, with no other event in between.
 #[test]
 fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
     let mut harness = armed();
@@ -184,7 +184,7 @@ fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
         assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
         assert_eq!(step(&mut harness, [key(false, false)]), [Release]);
         let mut waited = 0.0;
-        // The harness's own clock is not asked: a picture comes when it was asked for.
+        // Independent of the harness's own clock: a frame is drawn when it was requested.
         while next(&harness) < 1.0 && waited < 0.09 {
             let apart = next(&harness).max(0.001);
             waited += apart;
@@ -197,8 +197,8 @@ fn a_release_asks_for_the_picture_by_which_the_next_press_counts() {
     }
 }
 
-/// Issue 21.2: as the window system delivers it where Space is held over a change of the window. What egui calls a first press
-/// is none.
+/// Issue 21.2: the events of the window system when Space is held over a change of the window. What egui reports as a first
+/// press is none.
 #[test]
 fn a_key_that_is_held_over_a_change_of_the_window_holds_nothing() {
     for held_before in [false, true] {
@@ -207,7 +207,7 @@ fn a_key_that_is_held_over_a_change_of_the_window_holds_nothing() {
             assert_eq!(step(&mut harness, [key(true, false)]), [Press]);
         }
         harness.input_mut().focused = false;
-        // Where it is down, the release is made up.
+        // If it is down, the release is artificial.
         let made_up = held_before.then(|| key(false, false));
         let expected: &[HoldEvent] = if held_before { &[Release] } else { &[] };
         assert_eq!(step(&mut harness, made_up.into_iter().chain([Event::WindowFocused(false)])), expected);
@@ -221,14 +221,14 @@ fn a_key_that_is_held_over_a_change_of_the_window_holds_nothing() {
         step(&mut harness, [key(false, false)]);
         wait(&mut harness);
         assert_eq!(step(&mut harness, [key(true, false)]), [Press], "{held_before}");
-        // All of it between two pictures.
+        // All of it between two frames.
         let blink = [key(false, false), Event::WindowFocused(false), Event::WindowFocused(true), key(true, false)];
         assert_eq!(step(&mut harness, blink), [Release], "{held_before}");
         assert_eq!(step(&mut harness, [key(true, true)]), [], "{held_before}");
     }
 }
 
-/// Issue 21.2: a button that was not drawn, was locked, or had a dialog over it has seen no key up.
+/// Issue 21.2: a button that was not drawn, was locked, or was covered by a dialog has seen no key up.
 #[test]
 fn a_key_that_was_down_before_the_button_could_be_pressed_holds_nothing() {
     type Change = fn(&mut Jog, bool);
@@ -239,7 +239,7 @@ fn a_key_that_was_down_before_the_button_could_be_pressed_holds_nothing() {
         change(harness.state_mut(), true);
         assert_eq!(step(&mut harness, [key(true, false)]), [], "{what}");
         change(harness.state_mut(), false);
-        // What is locked loses the keyboard.
+        // A locked button loses the keyboard focus.
         harness.step();
         focus(&mut harness, "Jog up");
         assert_eq!(step(&mut harness, [key(true, true)]), [], "{what}");
@@ -259,7 +259,7 @@ fn a_key_that_was_down_before_the_button_could_be_pressed_holds_nothing() {
     assert_eq!(step(&mut harness, [key(true, true)]), []);
 }
 
-/// Issue 21.2: under a dialog the pointer holds nothing either, nor does a press that began there once it is closed.
+/// Issue 21.2: under a dialog the pointer holds nothing either, nor does a press that began there after it is closed.
 #[test]
 fn a_press_under_a_dialog_holds_nothing() {
     let mut harness = jog();
@@ -274,7 +274,7 @@ fn a_press_under_a_dialog_holds_nothing() {
     assert_eq!(step(&mut harness, [button(at, true)]), [Press]);
 }
 
-/// Issue 21.2: any key, any modifier, another button and a second finger end what the pointer holds.
+/// Issue 21.2: any key, any modifier, another button and a second finger end a hold by the pointer.
 #[test]
 fn whatever_comes_beside_the_pointer_ends_it() {
     let other = |key| Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };

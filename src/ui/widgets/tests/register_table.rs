@@ -1,4 +1,4 @@
-//! A register table of the size of the kit encoder's, by its keys, its pointer and its accessible labels.
+//! A register table of the size of the kit encoder's, operated by keys, pointer and accessible labels.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -88,11 +88,11 @@ fn place(group: usize, row: usize) -> RegisterLocation {
     RegisterLocation { group, row }
 }
 
-/// Presses at a row, at so many points from its left.
+/// Presses at a row, this many points from its left.
 fn click(harness: &mut Harness<'_, Registers>, label: &str, from_left: f32, times: usize) {
     let rect = harness.get_by_label(label).rect();
     let pos = Pos2::new(rect.left() + from_left, rect.center().y);
-    // No double click together with one before.
+    // Not a double click with an earlier one.
     harness.run_steps(20);
     for _ in 0..times {
         harness.event(Event::PointerMoved(pos));
@@ -112,7 +112,7 @@ fn only_what_is_in_sight_is_asked_for_wherever_it_is() {
         press(&mut harness, &[(NONE, key)]);
         assert_eq!(harness.state().output.groups, groups);
         harness.get_by_label(label);
-        // 400 points hold 23 lines; some are asked for again by what is selected.
+        // 400 points hold 23 lines; some are requested again by the selection.
         assert!(harness.state().asked < 30, "{}", harness.state().asked);
     }
 }
@@ -160,7 +160,7 @@ fn a_value_is_typed_over_refused_and_taken() {
     assert_eq!(harness.state().edits, BTreeMap::from([(place(5, 7), 0x2A)]));
     assert!(harness.get_by_label(TABLE).is_focused());
     assert_eq!(selected(&harness), "05:07 register 7: 2A, 42, edited, not written");
-    // A character begins; Escape gives up.
+    // A character begins; Escape cancels.
     harness.event(Event::Text("f".to_owned()));
     harness.run();
     assert_eq!(entry(&harness), Some("f".to_owned()));
@@ -196,7 +196,7 @@ fn the_pointer_selects_folds_and_edits() {
     harness.get_by_label("b2 flag 2");
     click(&mut harness, "00:02 register 2", 200.0, 2);
     harness.get_by_role(egui::accesskit::Role::TextInput);
-    // What is left without being changed is taken as it is.
+    // A value left unchanged is accepted as it is.
     click(&mut harness, "Bank 00", 100.0, 1);
     assert_eq!(harness.state().edits.get(&place(0, 2)), Some(&2));
     assert!(harness.state().view.is_folded(0) && harness.query_by_label("00:03 register 3").is_none());
@@ -222,8 +222,8 @@ fn the_box_of_a_number_is_pressed_once() {
         [(RegisterKind::Numbers, Some("00:00 register 0")), (RegisterKind::Bytes { widest: 1 }, None)]
     {
         let mut harness = table_of(kind);
-        // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 behind it
-        // 689.6. The name has 45 % of what is left.
+        // Twelve characters of 7.8 points and 8 between columns are 101.6; with 42 + 40 + 150 before it and 356 after it
+        // 689.6. The name has 45 % of the rest.
         let spare = (harness.get_by_label("00:00 register 0").rect().width() - 689.6).max(0.0);
         let value = 232.0 + (spare * 0.45).floor() + 30.0;
         click(&mut harness, "00:00 register 0", value, 1);
@@ -249,7 +249,7 @@ fn what_is_typed_counts_when_another_box_is_pressed() {
     click(&mut harness, "00:08 register 8", value, 1);
     assert_eq!(harness.state().edits.get(&place(0, 5)), Some(&0x7A));
     assert_eq!(entry(&harness).as_deref(), Some("00:08 register 8"));
-    // What is refused stays with its reason, and gives way only to a further press.
+    // A refused value stays with its reason, and is discarded only by a further press.
     harness.event(Event::Text("xy".to_owned()));
     harness.run();
     click(&mut harness, "00:10 register 16", value, 1);

@@ -1,4 +1,4 @@
-//! A guided procedure by its buttons and what a screen reader hears of it.
+//! A guided procedure by its buttons and accessible values.
 
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};

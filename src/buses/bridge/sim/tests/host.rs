@@ -9,7 +9,7 @@ use crate::sim::setting::pairs;
 use crate::sim::{ByteDevice, ConfigError, Faults, Motor, RPM};
 use crate::units::Moment;
 
-/// Who asks the adapter.
+/// Host of the adapter.
 pub(crate) struct Host {
     pub(crate) adapter: Adapter,
     pub(crate) receiver: Receiver,
@@ -23,12 +23,12 @@ pub(crate) const SSI: Request =
     Request::SsiConfig { clocks: 25, clock_hz: 500_000, pause_us: 30, flags: SsiFlags::FALLING_EDGE };
 
 impl Host {
-    /// With an adapter before the invented devices.
+    /// Creates a host with an adapter for the test devices.
     pub(crate) fn with(query: &str) -> Self {
         Self::to(query, &[&WordGiver, &Dial::SETTINGS])
     }
 
-    /// With an adapter before these.
+    /// Creates a host with an adapter for these devices.
     pub(crate) fn to(query: &str, devices: &[&dyn Attachable]) -> Self {
         let adapter = Adapter::from_pairs(&pairs(query), devices).unwrap();
         Host { adapter, receiver: Receiver::default(), seq: 0, now: Moment::START }
@@ -39,7 +39,7 @@ impl Host {
         self.adapter.on_bytes(self.now, &request.emit(self.seq).emit());
     }
 
-    /// What has arrived until a moment.
+    /// Returns the messages received until a moment.
     pub(crate) fn receive(&mut self, until: Moment) -> Vec<(u8, Message)> {
         while let Some(at) = self.adapter.poll_at().filter(|at| *at <= until) {
             self.now = self.now.max(at);
@@ -51,7 +51,7 @@ impl Host {
         packets.map(|packet| (packet.seq, Message::parse(&packet).unwrap())).collect()
     }
 
-    /// The reply to a request, of which there is no more than one within 100 ms.
+    /// Returns the reply to a request, of which there is no more than one within 100 ms.
     pub(crate) fn ask(&mut self, request: Request) -> Option<Message> {
         self.send(&request);
         let mut messages = self.receive(self.now + Duration::from_millis(100));
@@ -89,8 +89,8 @@ impl Host {
     }
 }
 
-/// A shaft with 35 bits of position, 17 of them within a revolution, and six bits behind them; and with registers that
-/// keep what is written into them. It stands at 270° of turn 1234h, and needs half a second to start.
+/// Shaft with 35 bits of position, 17 of them within a revolution, and six bits after them; its registers keep the values
+/// written. It is at 270° of turn 1234h, and needs half a second to start.
 pub(crate) struct Dial {
     motor: Motor,
     revolutions: f64,
@@ -100,10 +100,10 @@ pub(crate) struct Dial {
     registers: [u8; 0x80],
 }
 
-/// How a dial is set.
+/// Settings of a dial.
 pub(crate) struct DialSettings;
 
-/// An SSI device that gives the place of the shaft: 12 bits of turns and 13 within one.
+/// SSI device that sends the position of the shaft: 12 bits of turns and 13 within one.
 pub(crate) struct WordGiver;
 
 impl Dial {

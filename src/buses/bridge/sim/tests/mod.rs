@@ -1,4 +1,4 @@
-//! What a host sees of the virtual adapter, in virtual time.
+//! The virtual adapter as seen by a host, in virtual time.
 
 mod host;
 mod line;
@@ -22,7 +22,7 @@ fn the_adapter_says_what_it_is() {
     assert_eq!((hello.max_clock_hz, hello.max_sample_hz), (10_000_000, 1_000_000));
     host.refuses(Request::Supply { on: true, millivolt: 8000 }, ErrorCode::NOT_SUPPORTED);
     host.refuses(Request::UartConfig { baud: 9600, parity: 2, turnaround_us: 0 }, ErrorCode::NOT_SUPPORTED);
-    // An operation that there is not.
+    // An unknown operation.
     host.adapter.on_bytes(host.now, &Packet { seq: 9, op: 0x55, body: vec![] }.emit());
     let messages = host.receive(host.now + Duration::from_millis(1));
     let text = "this adapter has no such thing".to_owned();
@@ -58,7 +58,7 @@ fn damaged_wires_are_told() {
     }
 }
 
-/// 47 cycles of 47 µs (7 of acknowledge, 22 of clocks, 18 of time-out), and the way of the bytes.
+/// 47 cycles of 47 µs (7 of acknowledge, 22 of clocks, 18 of time-out), and the transmission of the bytes.
 #[test]
 fn a_register_takes_its_time() {
     let mut host = Host::with("");
@@ -98,7 +98,7 @@ fn a_stream_keeps_its_bus_busy() {
     assert_eq!(host.stream(100), []);
 }
 
-/// 1024 periods in a revolution, 60 revolutions a minute, 0.5 V of amplitude, 1.25 V of full scale.
+/// 1024 periods in a revolution, 60 revolutions per minute, 0.5 V of amplitude, 1.25 V of full scale.
 #[test]
 fn analogue_samples_are_the_virtual_encoders() {
     let mut host = Host::with("rpm=60");
@@ -129,7 +129,7 @@ fn analogue_samples_are_the_virtual_encoders() {
     host.refuses(Request::AnalogConfig { sample_hz: 1_000_001 }, ErrorCode::BAD_ARGUMENT);
 }
 
-/// The word of the invented encoder has 13 bits a revolution: a quarter of one is 2048.
+/// The word of the test encoder has 13 bits per revolution: a quarter of one is 2048.
 #[test]
 fn without_anything_on_biss_the_shaft_is_the_adapters() {
     let mut host = Host::to("rpm=60&supply=switched", &[&WordGiver]);
@@ -199,7 +199,7 @@ fn the_supply_can_be_switched() {
     assert_eq!(status(&mut host), BissStatus::NO_ACKNOWLEDGE, "it starts");
     host.now = host.now + Duration::from_millis(500);
     assert_eq!(status(&mut host), BissStatus::OK);
-    // Issue 22.16: another host says HELLO, which leaves the supply as it is and tells it.
+    // Issue 22.16: another host sends HELLO, which does not change the supply and reports it.
     let Some(Message::Reply(Reply::Hello(hello))) = host.ask(Request::Hello) else { panic!() };
     assert!(hello.capabilities.has(Capabilities::SUPPLIED));
     assert_eq!(status(&mut host), BissStatus::OK);
@@ -209,7 +209,7 @@ fn the_supply_can_be_switched() {
     assert_eq!(status(&mut host), BissStatus::NO_ACKNOWLEDGE);
 }
 
-/// Issue 22.18: requests that come faster than they can be answered are lost, and the adapter answers the next one.
+/// Issue 22.18: requests that arrive faster than they can be answered are lost, and the adapter answers the next one.
 #[test]
 fn a_flood_of_requests_does_not_make_it_deaf() {
     let mut host = Host::with("");
@@ -224,7 +224,7 @@ fn a_flood_of_requests_does_not_make_it_deaf() {
     host.expect(read, Reply::BissRegisterRead { value: 0x61 });
 }
 
-/// A host that sleeps for ten seconds loses what the adapter cannot keep, and is told.
+/// A host that sleeps for ten seconds loses the samples that the adapter cannot store, which is reported.
 #[test]
 fn what_is_not_fetched_is_lost_and_told() {
     let mut host = Host::with("");

@@ -1,4 +1,4 @@
-//! Anything: packets of any content survive, and no bytes make a parser panic.
+//! Arbitrary input: packets of any content are preserved, and no bytes make a parser panic.
 
 use proptest::prelude::*;
 

@@ -10,7 +10,7 @@ use crate::buses::bridge::protocol::{
 };
 use crate::cli::decode::Explained;
 
-/// Decodes packets. Nothing between two 00 is not a packet.
+/// Decodes packets. An empty one between two 00 is skipped.
 pub(super) fn explain(bytes: &[u8]) -> Vec<Explained> {
     if bytes.iter().all(|byte| *byte == 0) {
         let why = "no bridge packet: only zeros, which end one".to_owned();
@@ -149,7 +149,7 @@ fn hello_words(hello: &Hello) -> Vec<String> {
     ]
 }
 
-/// A frame that an adapter has read: the host checks its CRC.
+/// Explains a frame read by an adapter: the host checks its CRC.
 fn frame(t_s: f64, status: BissStatus, raw: u64) -> Result<Vec<String>, String> {
     let bad = match status {
         BissStatus::OK => {

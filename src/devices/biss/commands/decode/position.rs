@@ -1,5 +1,5 @@
-//! A position frame of the kit encoder: 16 bits of turns, 17 of steps, error, warning, CRC-6. A position word is its turns
-//! and steps alone.
+//! A position frame of the kit encoder: 16 bits of turns, 17 of steps, error, warning, CRC-6. A position word consists of
+//! turns and steps only.
 
 use serde_json::{Map, Value as Json, json};
 
@@ -12,7 +12,7 @@ use crate::devices::biss::protocol::{FrameError, Layout, PositionData};
 /// Bytes that hold a frame, right-justified.
 pub(super) const BYTES: usize = 6;
 
-/// Hexadecimal digits of a position word as `position` and the window write it: 33 bits.
+/// Hexadecimal digits of a position word as written by `position` and the window: 33 bits.
 pub(super) const WORD_DIGITS: usize = 9;
 
 /// Explains the bytes of one frame; `None` if their number does not fit, or other bits are set.
@@ -41,7 +41,7 @@ pub(super) fn explain_word(raw: u64, shown: String) -> Explained {
     Explained { compact: shown.clone(), shown, meaning, more }
 }
 
-/// Turns, steps and angle, for a person and for a script.
+/// Returns turns, steps and angle as text, and adds them to the JSON.
 fn place(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<String, Json>) -> String {
     let (turns, steps, degrees) = (reading.multiturn, reading.singleturn, layout.degrees(reading));
     let pairs = [("raw", json!(raw)), ("turns", json!(turns)), ("steps", json!(steps)), ("degrees", json!(degrees))];
@@ -49,7 +49,7 @@ fn place(layout: &Layout, reading: &PositionData, raw: u64, more: &mut Map<Strin
     format!("turn {turns}, step {steps} of {}, {degrees:.6}°", 1u64 << layout.singleturn_bits())
 }
 
-/// A line each; or why they are no frame.
+/// Returns one line per field, or why the bits are not a frame.
 pub(super) fn meaning(raw: u64, more: &mut Map<String, Json>) -> Result<Vec<String>, String> {
     let layout = Layout::default();
     match layout.parse(raw) {

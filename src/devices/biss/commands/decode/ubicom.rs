@@ -1,4 +1,4 @@
-//! Frames of UBICOM, one behind the other. Register numbers are taken low byte first.
+//! Consecutive UBICOM frames. Register numbers are taken low byte first.
 
 use super::form;
 use crate::bits::{ByteOrder, hex, hex_compact};
@@ -70,7 +70,7 @@ fn meaning(frame: &Frame<'_>, request: &mut Option<Request>) -> Result<Vec<Strin
     Ok(lines)
 }
 
-/// The place, and its name where the kit encoder has one there.
+/// Returns the number of a register, and its name if the kit encoder has one.
 fn register_words(register: u16) -> String {
     match RegisterAddress::from_global(register) {
         None => format!("0x{register:04X}, which is behind the last"),

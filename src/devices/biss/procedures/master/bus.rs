@@ -1,5 +1,5 @@
-//! One exchange over an adapter on the bus: a frame, or a register by bank and address. The bank is remembered as long as
-//! the encoder cannot have restarted unseen, and forgotten with everything that fails.
+//! One exchange over an adapter on the bus: a frame, or a register by bank and address. The selected bank is remembered as
+//! long as the encoder cannot have restarted unnoticed, and forgotten after every failure.
 
 use std::time::Duration;
 
@@ -15,7 +15,7 @@ use crate::units::Moment;
 
 /// The encoder's number on a line with no other.
 const SLAVE: u8 = 0;
-/// An encoder that restarts is silent for longer (EDS 02:0Eh, 500 ms): who answered within this has not restarted.
+/// An encoder that restarts is silent for longer (EDS 02:0Eh, 500 ms): one that replied within this time has not restarted.
 const BANK_TRUST: Duration = Duration::from_millis(200);
 /// Pause between two attempts: the adapter reports a missing encoder at once.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -41,7 +41,7 @@ impl<'a> Master<'a> {
         self.be_ready_for(layout.data_bits(), layout.crc_bits())
     }
 
-    /// Asks who the adapter is, switches the encoder's supply on where that is wished, and sets the bus.
+    /// Identifies the adapter, switches the encoder's supply on if requested, and configures the bus.
     pub(super) fn be_ready_for(&mut self, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         self.end_frames()?;
         self.adapter().hello()?;
@@ -50,13 +50,13 @@ impl<'a> Master<'a> {
             return Err(AdapterError::NoBiss { name: hello.name.clone() }.into());
         }
         let fastest = hello.max_clock_hz;
-        // The bus first: a frame tells whether the encoder has power already.
+        // The bus first: a frame shows whether the encoder already has power.
         self.set_bus(fastest, data_bits, crc_bits)?;
         self.switch_on()?;
         self.set_bus(fastest, data_bits, crc_bits)
     }
 
-    /// Sets clock and widths, where they are others than before.
+    /// Sets clock and widths if they differ from the present ones.
     fn set_bus(&mut self, fastest: u32, data_bits: u8, crc_bits: u8) -> Result<(), Error> {
         let bus = Bus { clock_hz: self.station.clock_hz.min(fastest), data_bits, crc_bits };
         if self.station.bus == Some(bus) {
@@ -73,7 +73,7 @@ impl<'a> Master<'a> {
         Ok(())
     }
 
-    /// Selects the bank of a register, where it is not known to be selected.
+    /// Selects the bank of a register, unless it is known to be selected.
     pub(super) fn select_bank(&mut self, address: RegisterAddress) -> Result<(), Error> {
         let Some(bank) = address.bank() else { return Ok(()) };
         self.ask(RequestedItem::Write(RegisterAddress::BANK_SELECT, bank), |master| master.select_once(address))
@@ -114,14 +114,14 @@ impl<'a> Master<'a> {
     pub(super) fn bus_write_once(&mut self, address: RegisterAddress, value: u8) -> Attempt<WriteReaction> {
         Ok(match self.register_write(address, value)? {
             Ok(reads) if reads == value => Ok(WriteReaction::Yes),
-            // A command may be gone as soon as it is carried out (`U`); the status tells.
+            // A command register may be cleared as soon as the command is carried out (`U`); the status shows the result.
             Ok(0) if self.station.is_command(address) => Ok(WriteReaction::Yes),
             Ok(reads) => Ok(WriteReaction::No(Some(reads))),
             Err(trouble) => Err(trouble),
         })
     }
 
-    /// Writes, and gives what the register gives back. It is not repeated.
+    /// Writes, and returns the value that the register gives back. Not repeated.
     fn register_write(&mut self, address: RegisterAddress, value: u8) -> Attempt<u8> {
         let request = Request::BissRegisterWrite { slave: SLAVE, address: address.address(), value };
         let answered = self.adapter().ask_once(&request);
@@ -160,7 +160,7 @@ impl<'a> Master<'a> {
         Ok(Err(trouble))
     }
 
-    /// An adapter that was reset has to be set again. A wish to end says nothing of it.
+    /// Notes that the adapter may have been reset and must be configured again. Cancellation is no sign of that.
     fn may_be_reset(&mut self, failure: &Failure) {
         if matches!(failure, Failure::Line(LineError::Cancelled)) {
             (self.station.bank, self.station.bus) = (None, None);
@@ -191,7 +191,7 @@ impl<'a> Master<'a> {
         })
     }
 
-    /// A frame as it comes, unchecked, and when it was taken.
+    /// Reads a frame unchecked, with its time.
     pub(super) fn frame_once(&mut self) -> Attempt<(u64, Moment)> {
         let answered = self.adapter().ask(&Request::BissRead);
         let answered = answered.inspect_err(|failure| self.may_be_reset(failure))?;
@@ -212,7 +212,7 @@ impl<'a> Master<'a> {
         Ok(Err(ExchangeError::NoFrame(no_frame)))
     }
 
-    /// Five frames had wrong checksums. Where none has been right yet, more are looked at: noise lets some through,
+    /// Five frames had wrong checksums. If none was ever right, more frames are examined: with noise some are right, with
     /// wrong widths none.
     pub(super) fn look_at_more_frames(&mut self, failed: Error) -> Result<PositionReading, Error> {
         if self.station.good_frames {
@@ -257,7 +257,7 @@ impl<'a> Master<'a> {
         self.wait(PAUSE)
     }
 
-    /// The time that an exchange takes at most: asked twice.
+    /// Returns the longest time of an exchange: two attempts.
     pub(super) fn longest_bus_exchange(&self) -> Duration {
         2 * (REPEAT_AFTER + self.station.line.margin)
     }

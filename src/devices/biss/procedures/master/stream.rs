@@ -1,5 +1,4 @@
-//! Frames without being asked: while a stream runs, the adapter has no time for anything else, so that whatever comes next
-//! ends it first.
+//! Frames without requests. While a stream runs, the adapter cannot do anything else, so any other request ends it first.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -12,23 +11,23 @@ use crate::devices::biss::procedures::frames::{FrameRun, frames};
 use crate::devices::biss::procedures::station::Transport;
 use crate::devices::biss::procedures::{Error, Station};
 
-/// A wish to end is heard so often.
+/// Interval of checking for cancellation.
 const SLICE: Duration = Duration::from_millis(20);
 
 impl Master<'_> {
-    /// The next frames of a stream whose frames are so many microseconds apart, or as close as the adapter can; begins it
-    /// where it does not run. `None` over the configuration pin, which has no streams.
+    /// Returns the next frames of a stream with this interval in microseconds, or the shortest that the adapter supports;
+    /// starts the stream if necessary. `None` over the configuration pin, which has no streams.
     ///
     /// # Errors
-    /// As for a [`position`](Self::position) when it begins; then the adapter's, or the user's wish, with which the stream
-    /// goes on.
+    /// At the start as for a [`position`](Self::position); then errors of the adapter, or cancellation, after which the
+    /// stream continues.
     pub fn frames(&mut self, period_us: u32) -> Result<Option<FrameRun>, Error> {
         if self.station.transport != Transport::Adapter {
             return Ok(None);
         }
         let streamed = Streamed::Biss { period_us };
         if self.station.flow.as_ref().is_none_or(|flow| flow.streamed() != streamed) {
-            // It also tells whether the wires and the widths are right.
+            // This also checks the wiring and the widths.
             self.position()?;
             let after = self.station.streamed_until;
             self.station.flow = Some(Flow::begin(&mut self.adapter(), streamed, after)?);
@@ -54,16 +53,16 @@ impl Master<'_> {
         }
     }
 
-    /// Ends the stream that runs, also where an end is wished.
+    /// Ends a running stream, even after cancellation.
     ///
     /// # Errors
-    /// The adapter's; then it is tried again before whatever comes next.
+    /// Errors of the adapter; ending is then tried again before the next request.
     pub fn end_frames(&mut self) -> Result<(), Error> {
         let Some(flow) = self.station.flow.take() else { return Ok(()) };
         self.station.streamed_until = flow.last().or(self.station.streamed_until);
         match self.shielded(|master| flow.end(&mut master.adapter())) {
             Ok(()) => Ok(()),
-            // It knows of no stream: it was reset, and has to be set again.
+            // The adapter knows of no stream: it was reset, and must be configured again.
             Err(Failure::Adapter(AdapterError::Refused { .. })) => {
                 self.station.forget_settings();
                 Ok(())
@@ -75,10 +74,10 @@ impl Master<'_> {
         }
     }
 
-    /// A stream that failed is over, at the adapter too where that can be told.
+    /// Notes that a stream has failed and is over, at the adapter as well if that can be told.
     fn stream_failed(&mut self, error: Error) -> Error {
         if !matches!(error, Error::Cancelled) && self.end_frames().is_err() {
-            // Restarting sends HELLO, which ends all streams.
+            // Identifying the adapter again sends HELLO, which ends all streams.
             self.station.forget_adapter();
         }
         error

@@ -1,4 +1,4 @@
-//! The encoder's supply over an adapter: on where that is wished, and at the end of the session as it was found.
+//! The encoder's supply over an adapter: switched on if requested, and restored at the end of the session.
 
 use std::time::Duration;
 
@@ -7,11 +7,11 @@ use crate::devices::biss::procedures::Error;
 use crate::devices::biss::procedures::station::{Supply, Transport};
 use crate::devices::biss::protocol::DeviceMode;
 
-/// A register that was written may begin a store that no status tells of; how long one takes is not published (`U`).
+/// A write to a register may start a store that no status shows; its duration is not published (`U`).
 const SETTLES: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Switches the supply on where that is wished and was not done yet.
+    /// Switches the supply on if requested and not done yet.
     pub(super) fn switch_on(&mut self) -> Result<(), Error> {
         let Some(Supply { millivolt, measured: None }) = self.station.supply else { return Ok(()) };
         if self.station.adapter.found_supplied().is_none() {
@@ -20,7 +20,7 @@ impl Master<'_> {
         }
         let measured = self.adapter().supply(Supply::voltage(millivolt))?;
         self.station.supply = Some(Supply { millivolt, measured: Some(measured) });
-        // Data sheet, 02:0Eh: 500 ms until registers can be asked.
+        // Data sheet, 02:0Eh: 500 ms until registers can be read.
         self.wait(Supply::POWER_UP)
     }
 
@@ -31,11 +31,11 @@ impl Master<'_> {
         matches!(self.frame_once(), Ok(Ok((raw, _))) if raw != 0 && raw != ones)
     }
 
-    /// Switches the supply off at the end of a session, unless it was on before or is to stay on. It stays on as well where
-    /// a store, a calibration or a restart may be under way: to cut the power then loses what the encoder holds.
+    /// Switches the supply off at the end of a session, unless it was on before or is to stay on. It also stays on if a
+    /// store, a calibration or a restart may be running: cutting the power then would lose the encoder's data.
     ///
     /// # Errors
-    /// The adapter's.
+    /// Errors of the adapter.
     pub fn leave_supply(&mut self) -> Result<(), Error> {
         if self.station.transport != Transport::Adapter || !self.station.adapter.supply_goes_off() {
             return Ok(());
@@ -55,12 +55,13 @@ impl Master<'_> {
         if self.station.unfinished {
             return Ok(true);
         }
-        // In this session nothing was written; one that says nothing at all may be at what an earlier one has begun.
+        // Nothing was written in this session, but an encoder that does not reply may be busy with an operation started
+        // earlier.
         let Some(written_at) = self.station.written_at else { return Ok(!self.has_power()) };
         let since = self.now().since(written_at);
         self.wait(SETTLES.saturating_sub(since))?;
         let Some(lock) = self.station.description.as_ref().and_then(|own| own.lock()) else { return Ok(false) };
-        // One that is silent calibrates or restarts.
+        // One that is silent is calibrating or restarting.
         Ok(self.read(lock.mode_at).map(DeviceMode::new) != Ok(DeviceMode::OPERATION))
     }
 }

@@ -1,6 +1,6 @@
-//! One exchange over the configuration pin (reference UBICOM 1 and 2): request, and what comes until the reply is whole or
-//! its time is up. What is no frame is skipped, a frame that pauses for 20 ms is over; our own bytes are known by what
-//! they are, since no reply has the length of its request.
+//! One exchange over the configuration pin (reference UBICOM 1 and 2): the request, and the bytes received until the reply
+//! is complete or its time is up. Bytes that are not a frame are skipped, and a frame that pauses for 20 ms is over. The
+//! echo is recognised by its length, which no reply has.
 
 use std::time::Duration;
 
@@ -18,10 +18,10 @@ use crate::units::Moment;
 
 /// Bytes of the longest frame: the reply to 03h.
 const LONGEST_FRAME: usize = PositionWord::BYTES + Frame::OVERHEAD;
-/// Noise that goes on for so long behind the time of a reply is no reply under way.
+/// Noise that continues for this time after the time limit of a reply is not a reply in progress.
 const NOISE: Duration = Duration::from_secs(1);
 
-/// A reply and when its first byte began.
+/// Reply, with the time of its first byte.
 struct Timed {
     reply: Reply,
     at: Moment,
@@ -31,7 +31,7 @@ struct Timed {
 struct ReceivedBytes {
     receiver: Receiver,
     sent: Vec<u8>,
-    /// The first of all that came, for the trace.
+    /// The first bytes received, for the trace.
     raw: Vec<u8>,
     /// Number of bytes received.
     bytes: usize,
@@ -45,7 +45,7 @@ impl Master<'_> {
         self.register_once(address.global(), order)
     }
 
-    /// Asks once for what tells the order of a register number's bytes.
+    /// Sends one request that detects the byte order of register numbers.
     pub(super) fn probe_once(&mut self) -> Attempt<u8> {
         self.register_once(Request::PROBE_REGISTER, ByteOrder::LowFirst)
     }
@@ -85,12 +85,12 @@ impl Master<'_> {
         Ok(Ok(PositionReading { is_split_known, ..PositionReading::new(at, &reading, &layout) }))
     }
 
-    /// The time that an exchange takes at most.
+    /// Returns the time that an exchange takes at most.
     pub(super) fn longest_pin_exchange(&self) -> Duration {
         self.characters(2 * LONGEST_FRAME) + self.station.timeout + self.station.line.margin
     }
 
-    /// The time of so many characters on the line.
+    /// Returns the duration of this many characters on the line.
     fn characters(&self, count: usize) -> Duration {
         let format = self.station.format;
         format.baud.time_of_bits(character_bits(format) * count as u64)
@@ -120,7 +120,7 @@ impl Master<'_> {
         let mut portion = Vec::new();
         loop {
             let under_way = heard.receiver.is_waiting();
-            // A frame that has begun in time may end behind it.
+            // A frame that started in time may end later.
             let until = if under_way { self.now() + gap } else { deadline };
             portion.clear();
             self.line.receive(until, &mut portion)?;
@@ -148,16 +148,16 @@ impl Master<'_> {
         }
     }
 
-    /// The reply in a frame, where it is one.
+    /// Returns the reply in a frame, if it is one.
     fn judge(&self, request: Request, frame: &[u8], heard: &mut ReceivedBytes) -> Option<Reply> {
         if frame == heard.sent {
             heard.echo_heard = true;
             return None;
         }
-        // The receiver gives whole frames only.
+        // The receiver returns whole frames only.
         let parsed = Reply::parse(&Frame::parse(frame).ok()?, request.command());
         match parsed {
-            // Bytes before our own answer an earlier request.
+            // Bytes before the echo belong to the reply to an earlier request.
             Ok(_) if self.station.line.echo == Echo::On && !heard.echo_heard => heard.damage = Some(Damage::Echo),
             Ok(reply) => return Some(reply),
             Err(error) => heard.damage = Some(Damage::Reply(error)),
@@ -171,7 +171,7 @@ impl Master<'_> {
         state.answer_began(at);
         state.echo.learn(heard.echo_heard);
         if heard.receiver.skipped() > 0 || heard.damage.is_some() {
-            // This reply is right as far as its sum tells; the line is not.
+            // The checksum of this reply is right, but the line has damaged other bytes.
             state.damaged += 1;
             state.quality.damaged += 1;
             self.station.noisy = true;

@@ -1,5 +1,5 @@
-//! The calibration of the singleturn (manual 6.4): counterclockwise, then clockwise, each about five seconds in which the
-//! encoder may say nothing.
+//! The calibration of the singleturn (manual 6.4): counterclockwise, then clockwise, about five seconds each, during which
+//! the encoder may not reply.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ const LIMIT: Duration = Duration::from_secs(20);
 /// A calibration that is done.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationReport {
-    /// The encoder's temperature before it, where it tells.
+    /// The encoder's temperature before it, if known.
     pub celsius: Option<i16>,
     /// Motion of the motor before the first run.
     pub counterclockwise: Option<Motion>,
@@ -34,7 +34,7 @@ impl Guide<'_, '_> {
             self.role(Role::Filter).filter(|_| self.description.procedure(ProcedureKind::FilterSelection).is_some())
         {
             let code = self.master.read(filter)?;
-            // An old firmware has one filter and says 0.
+            // An old firmware has one filter and reports 0.
             if code == Filter::Dynamic.byte() {
                 return Err(Failure::NotBalanced { code });
             }
@@ -57,7 +57,7 @@ impl Guide<'_, '_> {
         Ok(Outcome::Calibrated(CalibrationReport { celsius, counterclockwise, clockwise }))
     }
 
-    /// Calibrates in one run. A request to end does not stop the second one half-way: that would lose the table.
+    /// Calibrates in one run. Cancellation does not stop the second run midway: that would lose the table.
     fn calibrate_in(&mut self, run: Run, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Run(run));
         let was = self.master.read(procedure.status)?;
@@ -85,7 +85,7 @@ impl Guide<'_, '_> {
             return self.run(&course, procedure, explain);
         }
         let ended = self.shielded(|guide| guide.run(&course, procedure, explain));
-        // Its success is saved by itself, and its failure loses the table; only one that was never begun changes nothing.
+        // Success saves the table by itself, and failure loses it; only a run that was never started changes nothing.
         if !matches!(ended, Err(Failure::Device(Error::Cancelled | Error::Refused { .. }))) {
             self.spend();
         }

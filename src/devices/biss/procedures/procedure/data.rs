@@ -29,7 +29,7 @@ impl Guide<'_, '_> {
         self.await_status(&procedure, DataStatus::Open.byte())?;
         self.step(ProcedureStep::Save);
         self.save(&procedure, DataCommand::Save.byte())?;
-        // From here on what is stored has to be told, also when the user wishes an end.
+        // From here on the result of the store must be reported, even after cancellation.
         self.shielded(|guide| guide.finish_data(&procedure, registers))
     }
 

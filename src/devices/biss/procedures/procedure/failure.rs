@@ -1,31 +1,31 @@
-//! Why a procedure did not reach its end.
+//! Why a procedure failed.
 
 use super::{Blocker, Run, Task};
 use crate::devices::biss::procedures::Error;
 use crate::devices::biss::protocol::{CalibrationStatus, DeviceMode, ProcedureKind, WiegandStatus};
 use crate::profile::OperationError;
 
-/// Why a procedure did not reach its end.
+/// Why a procedure failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The line, the encoder's refusal, or the user's wish.
+    /// An error of the exchange, the encoder's refusal, or cancellation.
     #[error(transparent)]
     Device(#[from] Error),
-    /// The calibration says why.
+    /// Failure reported by the calibration.
     #[error("the calibration ended with {status}")]
     Calibration {
-        /// In the clockwise run the table is lost with it.
+        /// In the clockwise run the table is lost as well.
         run: Run,
         /// The encoder's status.
         status: CalibrationStatus,
     },
-    /// The Wiegand test says why.
+    /// Failure reported by the Wiegand test.
     #[error("the Wiegand test ended with {status}, error code 0x{code:02X}")]
     Wiegand {
         run: Run,
         /// The encoder's status.
         status: WiegandStatus,
-        /// Its error code; what it means is not published.
+        /// Its error code, whose meaning is not published.
         code: u8,
     },
     /// The filter in force is not the balanced one.
@@ -41,7 +41,7 @@ pub enum Failure {
         /// The mode read back.
         found: DeviceMode,
     },
-    /// A status register never said what it has to.
+    /// A status register never reached the required value.
     #[error("the status of the procedure is 0x{found:02X} where 0x{expected:02X} is needed")]
     Status {
         kind: ProcedureKind,
@@ -68,11 +68,11 @@ pub enum Failure {
     #[error("{item} reads {got} after writing {expected}")]
     NotVerified {
         item: String,
-        /// As it should be.
+        /// Expected value.
         expected: String,
         got: String,
     },
-    /// The description of this encoder does not have what the plan needs.
+    /// The description of this encoder lacks what the plan needs.
     #[error("no description of this procedure for this encoder")]
     NotDescribed { kind: ProcedureKind },
 }
@@ -93,12 +93,12 @@ impl OperationError for Failure {
 }
 
 impl Failure {
-    /// The user wished it.
+    /// Returns whether the user cancelled it.
     pub fn is_cancelled(&self) -> bool {
         *self == Failure::Device(Error::Cancelled)
     }
 
-    /// The encoder can no longer be reached.
+    /// Returns whether the encoder can no longer be reached.
     pub fn is_lost(&self) -> bool {
         matches!(self, Failure::Device(error) if error.is_lost())
     }

@@ -1,6 +1,5 @@
-//! Shared parts of all procedures: device modes, commands, statuses, the person at the motor, restarts, and the way
-//! back to operation. The possible states of the encoder are tracked meanwhile, so that they can be reported after a
-//! lost link.
+//! Shared parts of all procedures: device modes, commands, statuses, the operator at the motor, restarts, and the return to
+//! operation. The possible states of the encoder are tracked meanwhile, so that they can be reported after a lost link.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -15,26 +14,26 @@ use crate::devices::biss::protocol::{
     Description, DeviceMode, Lock, Procedure, ProcedureKind, RegisterAddress, Role, Temperature,
 };
 
-/// Data sheet, 02:0Eh: until then an encoder that restarts hears nothing.
+/// Data sheet, 02:0Eh: until then a restarting encoder receives nothing.
 const RESTART: Duration = Duration::from_millis(500);
 /// A restart that takes longer has failed.
 const RESTART_PATIENCE: Duration = Duration::from_secs(5);
 /// Manual 6.4: a calibrating encoder may not respond, for about five seconds.
 pub(super) const SILENCE: Duration = Duration::from_secs(10);
-/// Between two looks at a status register.
+/// Interval of reading a status register.
 const GLANCE: Duration = Duration::from_millis(100);
-/// Between two positions: at 2000 rpm without counted revolutions, the half of one takes 15 ms.
+/// Interval of positions: at 2000 rpm without counted turns, half a turn takes 15 ms.
 const SAMPLING: Duration = Duration::from_millis(10);
-/// Between two questions to a person.
+/// Interval of measurements while the operator is asked.
 const ASKING: Duration = Duration::from_millis(200);
 /// Duration of measuring the speed of a motor, and of checking whether a shaft stands still.
 const TURNING: Duration = Duration::from_secs(1);
 const STANDING: Duration = Duration::from_millis(250);
 /// A device mode that is not there by then was not taken.
 const MODE: Duration = Duration::from_millis(500);
-/// A status that has not come about by then does not come.
+/// Time after which a status is no longer expected.
 const STATUS: Duration = Duration::from_secs(5);
-/// A calibrating encoder that says nothing for so long has begun (`U`): a damaged reply takes less.
+/// A calibrating encoder that does not reply for this time has started (`U`): a damaged reply takes less.
 const BEGUN: Duration = Duration::from_secs(1);
 
 /// Leads an encoder through the operations of a plan.
@@ -54,20 +53,20 @@ pub(super) struct RunCourse {
     pub(super) run: Run,
     /// The command that starts it.
     pub(super) command: u8,
-    /// The status that was there before the command: another run may have left it.
+    /// The status before the command, which may be from an earlier run.
     pub(super) was: u8,
-    /// The status before it, while it goes on, and when it is done.
+    /// The status before the run, during it, and after it.
     pub(super) before: u8,
     pub(super) active: u8,
     pub(super) done: u8,
-    /// Between two looks at its status.
+    /// Interval of reading its status.
     pub(super) every: Duration,
-    /// Its duration, and the limit for it.
+    /// Its expected duration, and the limit.
     pub(super) expected: Duration,
     pub(super) limit: Duration,
 }
 
-/// The person's answer, with the measurement at that time.
+/// The operator's answer, with the measurement at that time.
 pub(super) enum Attended {
     Go(Option<Motion>),
     /// Leave it out.
@@ -85,12 +84,12 @@ impl<'g, 'm> Guide<'g, 'm> {
         Guide { master, description, operator, tell, standing, op: 0, step: ProcedureStep::LeadBack, cycles: 0 }
     }
 
-    /// The host's side of the line.
+    /// Returns the host's side of the line.
     pub(in crate::devices::biss::procedures) fn master(&mut self) -> &mut Master<'m> {
         self.master
     }
 
-    /// Records that the encoder was found in operation; the password may have been left set.
+    /// Records that the encoder was found in operation; the password may still be set.
     pub(in crate::devices::biss::procedures) fn found(&mut self, password: bool) {
         self.standing = LeftState::in_operation(password);
     }
@@ -100,7 +99,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         &self.standing
     }
 
-    /// Persistent writes that were spent, or may have been.
+    /// Returns the persistent writes that were spent, or may have been.
     pub(in crate::devices::biss::procedures) fn cycles(&self) -> u64 {
         self.cycles
     }
@@ -109,7 +108,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         self.step
     }
 
-    /// The operation of that number begins.
+    /// Begins the operation of that number.
     pub(in crate::devices::biss::procedures) fn begin(&mut self, op: usize) {
         self.op = op;
     }
@@ -175,8 +174,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Gives a command. Where nothing tells whether it was heard, what comes next has to: the status, or what was
-    /// written.
+    /// Gives a command. If it is not known whether it was received, the next exchange must show it: the status, or the
+    /// values written.
     pub(super) fn command(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         match self.master.write(procedure.command, command) {
             Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
@@ -184,7 +183,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Gives the command that writes the flash: from then on that counts as done, until something tells that it was not.
+    /// Gives the command that writes the flash: from then on it counts as written, until the contrary is known.
     pub(super) fn save(&mut self, procedure: &Procedure, command: u8) -> Result<(), Error> {
         let before = self.standing.activity;
         self.does(Activity::Saving);
@@ -207,7 +206,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Err(Failure::NotVerified { item: address.to_string(), expected: hex(expected), got: hex(got) })
     }
 
-    /// Waits until a status register says what it has to.
+    /// Waits until a status register has the expected value.
     pub(super) fn await_status(&mut self, procedure: &Procedure, expected: u8) -> Result<(), Failure> {
         let end = self.master.now() + STATUS;
         loop {
@@ -222,7 +221,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Runs `work`; a request to end is ignored meanwhile.
+    /// Runs `work`; cancellation is ignored meanwhile.
     pub(super) fn shielded<T>(&mut self, work: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.master.shield(true);
         let result = work(self);
@@ -230,8 +229,8 @@ impl<'g, 'm> Guide<'g, 'm> {
         result
     }
 
-    /// Starts a run and looks at the status until it is done, telling how long it takes. `explain` is asked about any
-    /// other status. What was there before the command says nothing of this run until something else was.
+    /// Starts a run and reads the status until it is done, reporting the expected duration. `explain` interprets any other
+    /// status. The status from before the command does not count until another one has been read.
     pub(super) fn run(
         &mut self,
         course: &RunCourse,
@@ -254,9 +253,9 @@ impl<'g, 'm> Guide<'g, 'm> {
             begun |= course.run.calibrates() && self.master.now().since(requested) >= BEGUN;
             let waits = status == course.before || !begun;
             if waits && elapsed < STATUS {
-                // Not begun yet.
+                // Not started yet.
             } else if status == course.before || (waits && status == course.done) {
-                // The start was not heard.
+                // The start command was not received.
                 let expected = course.active;
                 return Err(Failure::Status { kind: procedure.kind, expected, found: status });
             } else if status == course.done {
@@ -274,13 +273,13 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// The encoder restarts, or may: waits until it answers again, and looks where it is then.
+    /// Waits for an encoder that restarts, or may restart, until it replies again, and reads its state.
     pub(super) fn restart(&mut self) -> Result<(), Error> {
         self.step(ProcedureStep::Restart);
         self.standing.may_have_restarted();
         let Some(lock) = self.description.lock() else { return Ok(()) };
         let standing = &mut self.standing;
-        // It begins with another bank.
+        // After a restart another bank is selected.
         self.master.station().bank = None;
         // The written value is read back, even after cancellation.
         self.master.shielded(|master| {
@@ -290,7 +289,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         Ok(())
     }
 
-    /// Asks the person at the motor for something, measures it, and goes on when it fits and the person says so.
+    /// Gives the operator at the motor a task, measures, and continues when the measurement fits and the operator confirms.
     pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
         self.step(ProcedureStep::Await(task));
         let begun = self.master.now();
@@ -315,7 +314,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         }
     }
 
-    /// Positions for as long as lies between two questions, and the temperature where it matters.
+    /// Reads positions for the time between two questions, and the temperature if it matters.
     fn measure(&mut self, task: Task, gauge: &mut SpeedMonitor) -> Result<Measured, Failure> {
         let mut measured = Measured::default();
         let end = self.master.now() + ASKING;
@@ -348,7 +347,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 }
 
-/// Reads mode and password; gives back the mode.
+/// Reads mode and password; returns the mode.
 fn look(master: &mut Master<'_>, lock: Lock, standing: &mut LeftState) -> Result<DeviceMode, Error> {
     let mode = DeviceMode::new(master.read(lock.mode_at)?);
     let password = master.read(lock.password_at)? != 0;
@@ -391,7 +390,7 @@ pub(super) fn lead_back(
             ended?;
         }
         if DeviceMode::new(master.read(lock.mode_at)?) != DeviceMode::OPERATION {
-            // It wants the password for the way back as well.
+            // The return also requires the password.
             unlock(master, lock, standing)?;
             set_mode(master, lock, DeviceMode::OPERATION, standing)?;
         }
@@ -433,7 +432,7 @@ fn end_procedure(master: &mut Master<'_>, description: &Description, mode: Devic
 fn tolerate(ended: Result<(), Error>) -> Result<(), Error> {
     match ended {
         Err(Error::Refused { .. }) => Ok(()),
-        // Whether it was heard: what comes next tells whether the encoder still is.
+        // It is not known whether it was received: the next exchange shows whether the encoder is still there.
         Err(Error::Unclear { cause, .. }) if !matches!(*cause, Error::Link(_)) => Ok(()),
         ended => ended,
     }

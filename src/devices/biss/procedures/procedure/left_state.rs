@@ -1,5 +1,4 @@
-//! In which state an encoder is, as far as its answers tell: what a person has to know when the link is lost in the
-//! middle of a procedure.
+//! The state of an encoder as far as it is known from its replies, to be reported if the link is lost during a procedure.
 
 use super::Run;
 use crate::devices::biss::procedures::Error;
@@ -25,21 +24,21 @@ pub enum Activity {
     Nothing,
     /// A run of a procedure.
     Running(Run),
-    /// Something was entered and not saved: leaving the mode, or a loss of power, forgets it.
+    /// Values were entered and not saved: leaving the mode, or a loss of power, discards them.
     Entered,
-    /// The flash was written, or was about to be: what is stored is the old or the new.
+    /// The flash was written, or was about to be: the old or the new values are stored.
     Saving,
     /// It restarts, or was about to.
     Restarting,
 }
 
 impl<T: Copy + PartialEq> Possible<T> {
-    /// This and nothing else.
+    /// Creates a value that is certain.
     pub fn known(value: T) -> Self {
         Possible(vec![value])
     }
 
-    /// All that it may be, in the order in which it would have come about.
+    /// Returns all possible values, in the order in which they would have been reached.
     pub fn values(&self) -> &[T] {
         &self.0
     }
@@ -63,7 +62,7 @@ impl<T: Copy + PartialEq> Possible<T> {
     pub(super) fn becomes(&mut self, after: T, ended: &Result<(), Error>) {
         match ended {
             Ok(()) => *self = Possible::known(after),
-            // It was not sent, or not taken.
+            // It was not sent, or not accepted.
             Err(Error::Cancelled | Error::Refused { .. }) => {}
             Err(_) => self.or(after),
         }
@@ -79,12 +78,12 @@ impl LeftState {
         }
     }
 
-    /// Returns whether it is certainly in operation, without the password.
+    /// Returns whether it is certainly in operation, with the password cleared.
     pub fn is_in_operation(&self) -> bool {
         self.mode.is(DeviceMode::OPERATION) && self.password.is(false)
     }
 
-    /// A command was sent that restarts it, and whether it was heard is not known.
+    /// Notes that a command was sent that restarts it, and that may not have been received.
     pub(super) fn may_have_restarted(&mut self) {
         self.mode.or(DeviceMode::OPERATION);
         self.password.or(false);

@@ -1,7 +1,7 @@
 //! The guided procedures (manual 6.3 to 6.7), each straight-line code from entering its device mode to operation again.
-//! They address the person at the motor through an [`Operator`], report every [`ProcedureStep`], and always end in
-//! operation mode with the password cleared; if the encoder can no longer be reached, the known [`LeftState`] is reported
-//! instead, and [`lead_back`] does the rest later.
+//! They ask the operator at the motor through an [`Operator`], report every [`ProcedureStep`], and always end in operation
+//! mode with the password cleared. If the encoder can no longer be reached, the known [`LeftState`] is reported instead,
+//! and [`lead_back`] completes the return later.
 //!
 //! | file | what it is |
 //! |---|---|
@@ -40,12 +40,12 @@ use crate::devices::biss::protocol::{Descriptions, DeviceMode, Filter, PresetVal
 /// The result of an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// The person left it out, or what comes after its first run.
+    /// The operator skipped it, or the part after its first run.
     Skipped {
         /// The run that was done.
         after: Option<Run>,
     },
-    /// Registers were written, saved where that belongs to it, and read back.
+    /// Registers were written, saved if required, and read back.
     Stored {
         /// Number of registers.
         registers: u64,
@@ -53,7 +53,7 @@ pub enum Outcome {
     /// A preset value was stored.
     PresetStored {
         value: PresetValue,
-        /// As many bits as a turn has steps.
+        /// Number of bits of the steps per turn.
         singleturn_bits: u8,
     },
     /// A preset was carried out.
@@ -74,7 +74,7 @@ pub enum Outcome {
 }
 
 impl Guide<'_, '_> {
-    /// Carries an operation out, up to and including what was written being read back.
+    /// Carries out an operation, including reading back.
     pub(super) fn perform(&mut self, op: &Op) -> Result<Outcome, Failure> {
         match op {
             Op::StoreData { area, registers } => self.store_data(area, registers),
@@ -100,11 +100,11 @@ impl Guide<'_, '_> {
     }
 }
 
-/// Leads an encoder back to operation and clears the password, whoever changed it: after a lost link, or from another
-/// host. Returns the mode in which it was. One that calibrates, and is silent, is waited for.
+/// Returns an encoder to operation and clears the password, whoever changed it: after a lost link, or from another host.
+/// Returns the mode in which it was. Waits for one that is silent because it calibrates.
 ///
 /// # Errors
-/// The line, or an encoder that stays where it is.
+/// Errors of the exchange, or an encoder that does not return.
 pub fn lead_back(master: &mut Master<'_>, types: &Descriptions) -> Result<DeviceMode, Error> {
     if master.station().description.is_none() {
         master.with_patience(guide::SILENCE, |master| master.read(RegisterAddress::BANK_SELECT))?;

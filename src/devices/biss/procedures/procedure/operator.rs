@@ -1,5 +1,5 @@
-//! The person beside the motor while a procedure runs: the tasks, the measurement meanwhile, and the answers. In a
-//! window it is a user at a button, on a production line there is none, in a test it is a script.
+//! The operator at the motor while a procedure runs: the tasks, the measurement meanwhile, and the answers. In a window it
+//! is a user at a button, on a production line there is none, in a test it is a script.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
@@ -19,7 +19,7 @@ pub enum Run {
     WiegandCounterclockwise,
 }
 
-/// Speeds in revolutions a minute, both ends included.
+/// Speeds in revolutions per minute, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedRange {
     /// The slowest.
@@ -29,19 +29,19 @@ pub struct SpeedRange {
 }
 
 impl SpeedRange {
-    /// A speed is measured to this part of it.
+    /// Relative accuracy of measuring a speed.
     const EXACT: f64 = 0.01;
 
     const fn new(least: f64, greatest: f64) -> Self {
         SpeedRange { least, greatest }
     }
 
-    /// The same, as wide as a speed that is measured may lie in it: what is accepted.
+    /// Returns the range widened by the accuracy of a measurement: the accepted speeds.
     pub fn measured(self) -> Self {
         SpeedRange::new(self.least / (1.0 + Self::EXACT), self.greatest / (1.0 - Self::EXACT))
     }
 
-    /// The speed in its middle.
+    /// Returns the speed in the middle of the range.
     pub fn middle(self) -> f64 {
         f64::midpoint(self.least, self.greatest)
     }
@@ -67,13 +67,13 @@ impl Run {
         if self.calibrates() { SpeedRange::new(300.0, 700.0) } else { SpeedRange::new(500.0, 2000.0) }
     }
 
-    /// Manual 6.4: the speed that gives the best result. For the Wiegand test all are as good.
+    /// Manual 6.4: the speed with the best result. For the Wiegand test all are equal.
     pub const fn recommended(self) -> SpeedRange {
         if self.calibrates() { SpeedRange::new(498.0, 502.0) } else { self.allowed() }
     }
 
-    /// Manual 6.4: revolutions a minute by which the speed may waver. Of the Wiegand test it says that the speed is
-    /// constant, and no number.
+    /// Manual 6.4: allowed variation of the speed in revolutions per minute. For the Wiegand test the manual requires a
+    /// constant speed, without a number.
     pub const fn fluctuation(self) -> Option<f64> {
         if self.calibrates() { Some(2.0) } else { None }
     }
@@ -90,42 +90,42 @@ impl Run {
     const UNSTEADY: f64 = 0.05;
 }
 
-/// The task of the person.
+/// Task of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Task {
     /// Turn the motor as this run needs it.
     Turn(Run),
-    /// Let the shaft stand: data are not accessed while it turns.
+    /// Keep the shaft at rest: data are not accessed while it turns.
     Stand,
-    /// Let the shaft stand at the place that is to have the preset value.
+    /// Keep the shaft at rest at the place that is to get the preset value.
     StandAtPlace,
 }
 
-/// What prevents a start.
+/// Obstacle to a start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Blocker {
     /// There are not enough positions yet.
     Measuring,
     /// The encoder gives no position.
     NoPosition,
-    /// The shaft stands and has to turn.
+    /// The shaft stands still and must turn.
     Standing,
-    /// The shaft turns and has to stand.
+    /// The shaft turns and must stand still.
     Turning {
-        /// Revolutions a minute, above 0 clockwise.
+        /// Revolutions per minute, above 0 clockwise.
         rpm: f64,
     },
     /// It turns the other way.
     WrongDirection,
     /// It turns too slowly or too fast.
     Speed {
-        /// Revolutions a minute, without direction.
+        /// Revolutions per minute, without direction.
         rpm: f64,
         allowed: SpeedRange,
     },
-    /// The motor still accelerates, or its speed wavers.
+    /// The motor still accelerates, or its speed varies.
     Unsteady {
-        /// Revolutions a minute.
+        /// Revolutions per minute.
         spread: f64,
     },
     /// Manual 6.4: 25…40 °C.
@@ -152,7 +152,7 @@ pub struct Demand {
     pub task: Task,
     /// Motion of the shaft; `None` until it is measured.
     pub motion: Option<Motion>,
-    /// The encoder's temperature, where the procedure depends on it.
+    /// The encoder's temperature, if the procedure depends on it.
     pub celsius: Option<i16>,
     /// What prevents the start; empty if nothing does.
     pub blockers: Vec<Blocker>,
@@ -165,10 +165,10 @@ pub struct Demand {
 impl Demand {
     /// Manual 6.4: the temperatures of the calibration.
     pub const CELSIUS: std::ops::RangeInclusive<i16> = 25..=40;
-    /// The lowest speed that counts as turning, in revolutions a minute.
+    /// The lowest speed that counts as turning, in revolutions per minute.
     const SLOWEST: f64 = 1.0;
 
-    /// Judges what was measured.
+    /// Evaluates a measurement.
     pub(super) fn new(task: Task, measured: Measured, waited: Duration) -> Self {
         let Measured { motion, celsius, marked, unreadable } = measured;
         let mut blockers = Vec::new();
@@ -225,35 +225,35 @@ pub(super) struct Measured {
     pub(super) celsius: Option<i16>,
     /// Positions are marked as invalid.
     pub(super) marked: bool,
-    /// There are none.
+    /// There are no readable positions.
     pub(super) unreadable: bool,
 }
 
-/// The answer of the person.
+/// Answer of the operator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
     /// Nothing yet.
     Wait,
-    /// Start. It counts only where nothing stands against it.
+    /// Start. Valid only if nothing prevents it.
     Go,
-    /// Leave this part of the run out and go on with the next.
+    /// Skip this part of the run and continue with the next.
     Skip,
     /// End the run.
     Cancel,
-    /// No one will come: end with what prevents the start.
+    /// No operator will come: end, with the obstacles to the start.
     GiveUp,
 }
 
-/// The person beside the motor.
+/// Operator at the motor.
 pub trait Operator {
-    /// Called when something is asked for the first time: earlier answers belong to another question.
+    /// Prepares for a new task: earlier answers belong to another task.
     fn on_task_start(&mut self) {}
 
-    /// Asked again and again, a few times a second, each time with a new measurement.
+    /// Asks repeatedly, a few times per second, each time with a new measurement.
     fn attend(&mut self, demand: &Demand) -> Answer;
 }
 
-/// No person: starts as soon as all conditions are met, and waits for them for a limited time.
+/// No operator: starts as soon as all conditions are met, and waits for them for a limited time.
 #[derive(Clone, Copy, Debug)]
 pub struct Unattended {
     /// The time limit of each task.
@@ -268,7 +268,7 @@ impl Unattended {
 impl Operator for Unattended {
     fn attend(&mut self, demand: &Demand) -> Answer {
         let hopeless = demand.blockers.iter().any(|blocker| matches!(blocker, Blocker::Temperature { .. }));
-        // So that it ends with a reason where there is one.
+        // So that it ends with an obstacle if there is one.
         let measures = if demand.blockers == [Blocker::Measuring] { Self::MEASURING } else { Duration::ZERO };
         if demand.is_ready() {
             Answer::Go
@@ -280,12 +280,12 @@ impl Operator for Unattended {
     }
 }
 
-/// A person elsewhere, whose answers arrive here. Clones share them.
+/// Operator elsewhere, whose answers arrive here. Clones share them.
 #[derive(Clone, Debug, Default)]
 pub struct OperatorChannel(Arc<Mutex<Option<(Task, Answer)>>>);
 
 impl OperatorChannel {
-    /// Answers what is being asked; an answer to anything else, or from before it was asked, is not taken.
+    /// Answers the present task; an answer to another task, or from before it was given, is ignored.
     pub fn answer(&self, to: Task, answer: Answer) {
         *self.slot() = Some((to, answer));
     }

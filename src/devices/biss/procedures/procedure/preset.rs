@@ -1,5 +1,5 @@
-//! The preset (manual 6.7): its value is stored, or the shaft's place becomes that value. The encoder restarts after
-//! either.
+//! The preset (manual 6.7): its value is stored, or the shaft's present position becomes that value. The encoder restarts
+//! after either.
 
 use super::guide::{Attended, Guide};
 use super::{Activity, Failure, Outcome, ProcedureStep, Task};
@@ -9,7 +9,7 @@ use crate::devices::biss::protocol::{
     PresetCommand, PresetStatus, PresetValue, Procedure, ProcedureKind, RegisterAddress,
 };
 
-/// How far the shaft may tremble around its new value: 0.35°.
+/// Allowed jitter of the shaft around its new value: 0.35°.
 const TREMBLE: u64 = 1024;
 
 impl Guide<'_, '_> {
@@ -74,7 +74,7 @@ fn preset(from: &PositionReading, parts: PresetParts, value: PresetValue) -> u64
     u64::from(turns) << from.singleturn_bits | u64::from(steps)
 }
 
-/// Steps between two places, the shorter way round.
+/// Returns the steps between two positions, the shorter way round.
 fn distance(place: u64, reading: &PositionReading) -> u64 {
     let bits = u32::from(reading.raw().bits);
     let mask = 1_u64.checked_shl(bits).map_or(u64::MAX, |range| range - 1);

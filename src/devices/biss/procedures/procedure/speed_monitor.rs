@@ -1,5 +1,4 @@
-//! The motion of the shaft, measured from positions: direction, speed, variation, and standstill. It reads nothing
-//! itself.
+//! The motion of the shaft, measured from positions: direction, speed, variation, and standstill. It reads nothing itself.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -21,26 +20,26 @@ pub(super) struct SpeedMonitor {
 /// The motion of the shaft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
-    /// Revolutions a minute, averaged over the measurement; above 0 clockwise, that is, with rising positions.
+    /// Revolutions per minute, averaged over the measurement; positive clockwise, that is, with rising positions.
     pub rpm: f64,
-    /// Largest deviation of the speed of a quarter of the measurement, in revolutions a minute.
+    /// Largest deviation of the speed of a quarter of the measurement, in revolutions per minute.
     pub spread: f64,
     /// Revolutions between the farthest places.
     pub travel: f64,
 }
 
 impl Motion {
-    /// A shaft that stands may tremble by this part of a revolution (`U`).
+    /// Allowed jitter of a shaft at standstill as a part of a revolution (`U`).
     const STILL: f64 = 1.0 / 8192.0;
 
-    /// The shaft stands.
+    /// Returns whether the shaft stands still.
     pub fn is_still(&self) -> bool {
         self.travel <= Self::STILL
     }
 }
 
 impl SpeedMonitor {
-    /// Parts in which the speed is looked at by itself.
+    /// Number of parts of the window in which the speed is evaluated separately.
     const PARTS: i32 = 4;
 
     /// Measures over this stretch of time.
@@ -61,7 +60,7 @@ impl SpeedMonitor {
             self.places.clear();
         }
         self.places.push_back((time, place.steps));
-        // The one before the window is where it begins.
+        // The position before the window is its start.
         while self.places.get(1).is_some_and(|(second, _)| time.nanoseconds_since(*second) >= self.window) {
             self.places.pop_front();
         }
@@ -90,7 +89,7 @@ impl SpeedMonitor {
         Some(Motion { rpm, spread, travel })
     }
 
-    /// Revolutions from the first place of the window; the difference is exact.
+    /// Returns the revolutions from the first position of the window; the difference is exact.
     fn turns(&self, steps: i64) -> f64 {
         let first = self.places.front().map_or(steps, |(_, first)| *first);
         steps.saturating_sub(first) as f64 / self.steps_per_turn
@@ -132,7 +131,7 @@ mod tests {
         }
     }
 
-    /// Positions every 20 ms for 1.2 s, at a place that `turns` tells for the time in seconds.
+    /// Measures positions every 20 ms for 1.2 s; `turns` gives the position for a time in seconds.
     fn measured(multiturn_bits: u8, turns: impl Fn(f64) -> f64) -> Motion {
         let mut gauge = SpeedMonitor::over(Duration::from_secs(1));
         for at in (0..=1200).step_by(20) {
@@ -144,7 +143,7 @@ mod tests {
 
     #[test]
     fn a_steady_shaft_has_its_speed_and_direction() {
-        // 500 rpm are 25/3 revolutions a second, across the end of the range and without any revolutions counted.
+        // 500 rpm are 25/3 revolutions per second, across the end of the range and without counted turns.
         for (bits, rpm) in [(16, 500.0), (16, -500.0), (16, 2000.0), (0, 700.0), (0, -300.0)] {
             let motion = measured(bits, |seconds| 0.25 + seconds * rpm / 60.0);
             assert!((motion.rpm - rpm).abs() < 0.01 && motion.spread < 0.02, "{bits} {rpm}: {motion:?}");
@@ -171,7 +170,7 @@ mod tests {
         };
         assert!(tremble(16.0).is_still(), "16 steps are 1/8192 of a revolution");
         assert!(!tremble(18.0).is_still());
-        // It crept by half a degree in the second.
+        // It moved by half a degree in the second.
         assert!(!measured(16, |seconds| seconds / 720.0).is_still());
     }
 
@@ -182,10 +181,10 @@ mod tests {
             gauge.next(&reading(at, 0.0, 0));
         }
         assert!(gauge.motion().is_some());
-        // Half a revolution may have been either way.
+        // Half a revolution may have been in either direction.
         gauge.next(&reading(1020, 0.5, 0));
         assert_eq!(gauge.motion(), None);
-        // A clock that stands still tells nothing of a speed.
+        // Without progress of the clock no speed can be calculated.
         gauge.next(&reading(1020, 0.5, 0));
         assert_eq!(gauge.motion(), None);
     }

@@ -1,4 +1,4 @@
-//! The steps of each operation, in their order: what a view lists beforehand and marks as they come.
+//! The steps of each operation, in order: a view lists them beforehand and marks them as they are reported.
 
 use std::time::Duration;
 
@@ -11,7 +11,7 @@ use crate::devices::biss::protocol::DeviceMode;
 pub enum ProcedureStep {
     /// Checks conditions that do not depend on the motor: the filter.
     Conditions,
-    /// Waits for the person at the motor.
+    /// Waits for the operator at the motor.
     Await(Task),
     /// Password and device mode.
     Enter(DeviceMode),
@@ -30,7 +30,7 @@ pub enum ProcedureStep {
     Restart,
     /// Back to operation, and the password cleared.
     LeadBack,
-    /// Reads back what was written.
+    /// Reads back the values written.
     ReadBack,
 }
 
@@ -54,18 +54,18 @@ pub enum Detail {
         done: u64,
         total: u64,
     },
-    /// It takes its time.
+    /// The step takes some time.
     Lasts {
         /// Time so far.
         elapsed: Duration,
-        /// As long as it takes, where that can be told.
+        /// Expected duration, if known.
         expected: Option<Duration>,
     },
-    /// The task of the person, and the measurement.
+    /// The task of the operator, and the measurement.
     Demand(Demand),
 }
 
-/// The steps of an operation. A restart of the encoder leads back by itself.
+/// Returns the steps of an operation. A restart of the encoder returns it to operation by itself.
 pub fn steps_of(op: &Op) -> Vec<ProcedureStep> {
     let entered = |mode, steps: &[ProcedureStep]| {
         let mut all = vec![ProcedureStep::Enter(mode)];

@@ -14,7 +14,7 @@ const REVOLUTIONS: f64 = 515.0;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WiegandReport {
     pub result: WiegandResult,
-    /// It is kept in the encoder; it can be seen there after a restart.
+    /// The result is saved in the encoder, where it shows after a restart.
     pub saved: bool,
     /// Motion of the motor before the first run.
     pub clockwise: Option<Motion>,
@@ -60,7 +60,7 @@ impl Guide<'_, '_> {
             let statuses = [WiegandStatus::WaitForDirection, WiegandStatus::Counterclockwise, WiegandStatus::Complete];
             (WiegandCommand::StartCounterclockwise, statuses)
         };
-        // The slowest motor that is let start takes 62 s.
+        // The slowest motor with which a start is allowed takes 62 s.
         let rpm = motion.map_or(run.allowed().least, |motion| motion.rpm.abs()).max(run.allowed().least / 2.0);
         let expected = Duration::from_secs_f64(REVOLUTIONS / rpm * 60.0);
         let course = RunCourse {
@@ -84,7 +84,7 @@ impl Guide<'_, '_> {
         })
     }
 
-    /// Keeps the result. Nothing reads it back before a restart: the encoder's word is all there is.
+    /// Saves the result. It cannot be read back before a restart: only the encoder's status confirms it.
     fn save_result(&mut self, procedure: &Procedure) -> Result<(), Failure> {
         self.step(ProcedureStep::Save);
         self.does(Activity::Saving);

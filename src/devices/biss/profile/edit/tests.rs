@@ -66,7 +66,7 @@ fn registers_are_written_only_where_no_procedure_does() {
     let plan =
         plan_edits(&kit, &[], &[(at("0x40"), Some(2)), (at("0x50"), None)], &[edit("0x40", &[3]), edit("0x50", &[1])]);
     let plan = plan.unwrap();
-    // The bank is not kept; of the other nobody knows.
+    // The bank selection is not stored; whether the other one is, is not known.
     assert_eq!(items(&plan), [("0x40".to_owned(), 0), ("0x50".to_owned(), 1)]);
     assert_eq!(plan.base.registers, [(at("0x40"), 2)]);
     let same = plan_edits(&kit, &[], &[(at("0x40"), Some(2))], &[edit("0x40", &[2])]).unwrap();
@@ -153,7 +153,7 @@ fn a_motor_that_needs_this_encoder_is_refused() {
         let error = plan_mounting(&kit(), &device(), &run, MotorSource::ThisEncoder).unwrap_err();
         assert_eq!(error, PlanError::DrivenByThisEncoder);
     }
-    // What needs no motor does not ask for one.
+    // A run without a motor does not ask for one.
     assert!(plan_mounting(&kit(), &device(), &run(false, None), MotorSource::ThisEncoder).is_ok());
     let mut dynamic = device();
     dynamic.filter = Some(Filter::Dynamic);

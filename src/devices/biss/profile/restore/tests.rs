@@ -20,7 +20,7 @@ fn with_preset(profile: &mut BissProfile, singleturn: u32, multiturn: u32) {
     profile.preset = Some(PresetSetting { value, unknown: Default::default() });
 }
 
-/// Operations in short, with their cost.
+/// Returns the operations in short, with their cost.
 fn ops(restore: &Restore) -> Vec<String> {
     let short = |op: &Op| {
         let cost = crate::profile::Operation::write_cycles(op);
@@ -40,7 +40,7 @@ fn planned(profile: &BissProfile, device: &DeviceState) -> Restore {
     plan_restore(profile, device, RestoreOptions::default()).unwrap()
 }
 
-/// The issue: three bytes of one bank are three registers and one save.
+/// By the issue: three bytes of one bank are three registers and one save.
 #[test]
 fn what_differs_in_an_area_is_one_save() {
     let now = profile("1");
@@ -97,7 +97,7 @@ fn plans_by_case() {
     for (label, change, expected, cycles) in cases {
         let mut now = profile("1");
         let mut wanted = now.clone();
-        // What the encoder has and the profile does not mention is left alone.
+        // Banks that the profile does not mention are left alone.
         if label.starts_with("a profile") {
             with_bytes(&mut now, 0x24, &[(0, 0x55)]);
         }
@@ -105,7 +105,7 @@ fn plans_by_case() {
         let restore = planned(&wanted, &device(&now));
         assert_eq!(ops(&restore), expected, "{label}");
         assert_eq!(restore.plan.write_cycles(), cycles, "{label}");
-        // What is restored differs from nothing any more.
+        // After the restore nothing differs any more.
         if cycles > 0 {
             assert_eq!(planned(&wanted, &device(&wanted)).plan.ops, [], "{label}");
         }
@@ -125,7 +125,7 @@ fn a_bank_that_the_profile_calls_empty_is_emptied() {
     assert_eq!(banks_needed(&partial, &areas()), [0x25]);
 }
 
-/// Issue 22.9: another kind of encoder needs a permit of its own; the one for another serial number is not enough.
+/// Issue 22.9: another kind of encoder needs its own permission; the one for another serial number is not enough.
 #[test]
 fn another_kind_needs_a_permit_of_its_own() {
     let mut wanted = profile("1");
@@ -176,17 +176,17 @@ fn another_encoder_keeps_its_mounting() {
     let all = ["OEM data 0x24:0x00:00>01 0x24:0x01:00>02 0x24:0x02:00>03 (1)", "0x01:0x02+6 (1)"];
     assert_eq!(ops(&restore), all);
     assert_eq!(restore.mounting_left, []);
-    // Issue 22.7: what comes from another mounting is named where it is written.
+    // Issue 22.7: values from another mounting are named if they are written.
     let written: Vec<String> = restore.mounting_written.iter().map(ToString::to_string).collect();
     assert_eq!(written, ["0x01:0x02+6", "0x24:0x01+2"]);
     assert_eq!(planned(&wanted, &device(&profile("1"))).mounting_written, []);
-    // On the encoder itself nothing is held back.
+    // On the encoder itself nothing is left out.
     assert_eq!(ops(&planned(&wanted, &device(&profile("1")))), all);
     assert_eq!(ops(&plan_data(&wanted, &now).unwrap()), all[..1]);
 }
 
-/// Issue 22.9: another device ID, or a position of another width, is another type, which needs a permit of its own; another
-/// serial number needs the other one beside it.
+/// Issue 22.9: another device ID, or a position of another width, is another type, which needs its own permission; another
+/// serial number needs the other one as well.
 #[test]
 fn another_type_needs_a_permit_of_its_own() {
     let mut wanted = profile("1");
@@ -211,7 +211,7 @@ fn another_type_needs_a_permit_of_its_own() {
         assert!(matches!(error, PlanError::OtherDevice { .. }), "{error}");
         assert!(plan_restore(&wanted, &now, RestoreOptions { allow_other_type: true, ..device_only }).is_ok());
     }
-    // A width that one side does not know differs from nothing.
+    // A width that is unknown on one side counts as equal.
     assert!(plan_restore(&wanted, &unknown, RestoreOptions::default()).is_ok());
 }
 
@@ -270,7 +270,7 @@ fn what_the_encoder_cannot_have_is_told_or_refused() {
     assert_eq!(error, PlanError::NoBank { bank: 0x24 });
 }
 
-/// An area that nobody has to open is written register by register; what that costs nobody knows.
+/// An area without an opening command is written register by register; the cost is not known.
 #[test]
 fn an_area_without_a_procedure_is_written_directly() {
     let mut now = device(&profile("1"));
@@ -282,7 +282,7 @@ fn an_area_without_a_procedure_is_written_directly() {
     assert_eq!(restore.plan.write_cycles(), 2);
 }
 
-/// What the ready-made profiles do to an encoder as delivered, with another serial number.
+/// The effect of the ready-made profiles on an encoder as delivered, with another serial number.
 #[test]
 fn the_ready_made_profiles_do_what_they_say() {
     let read = |name: &str| {
@@ -305,8 +305,8 @@ fn the_ready_made_profiles_do_what_they_say() {
     let all = plan("servo-motor-data.ron", RestoreOptions { with_mounting: true, ..other });
     assert_eq!((all.mounting_left, all.plan.write_cycles()), (vec![], 2));
     assert_eq!(all.plan.base.banks.len(), 3, "nothing else is touched");
-    // A commutation record as HIPERFACE encoders keep it, of a motor with four pole pairs: 5299h is what Python's
-    // `binascii.crc_hqx(record, 0xFFFF)` says of the bytes before it.
+    // A commutation record as stored by HIPERFACE encoders, of a motor with four pole pairs: 5299h is the result of
+    // Python's `binascii.crc_hqx(record, 0xFFFF)` for the bytes before it.
     let record = [0x43, 0x4F, 0x31, 0x00, 0x1C, 0x71, 0xC7, 0x1C, 0x04, 0x00, 0x00, 0x00, 0x00, 0x00, 0x52, 0x99];
     assert_eq!(read("servo-motor-data.ron").bank(4).unwrap().bytes[32..48], record);
 }

@@ -1,4 +1,4 @@
-//! What a person writes is read, what is written is read again, and what is wrong is named.
+//! The user's text is parsed, the written text is parsed again, and errors are named.
 
 use super::*;
 use crate::devices::biss::protocol::{Access, Area, DeviceMode, RegisterAddress};
@@ -38,7 +38,7 @@ fn profile_with(from: &str, to: &str) -> BissProfile {
     profile(&SHORT.replacen(from, to, 1))
 }
 
-/// Everything that a profile can hold.
+/// Returns everything that a profile can hold.
 fn full() -> BissProfile {
     let mut profile = profile_with("listed:", "name: \"OEM data\", empty: 0x00, listed:");
     profile.identity.firmware = Some(Firmware::new(1, 6, 0));
@@ -66,7 +66,7 @@ fn what_is_written_is_read() {
     document.note = Some("two\nlines".to_owned());
     let text = document.emit();
     assert_eq!(Document::parse(&text, BissProfile::FORMATS), Ok(document));
-    // What a person looks for.
+    // Lines that a user looks for.
     for line in [
         "    device: \"biss\",",
         "        profile_id: 0x6129,",
@@ -207,7 +207,7 @@ fn a_mark_covers_its_registers() {
     assert_eq!(profile.mounting.len(), count, "an encoder without a preset value has nothing of the kind");
 }
 
-/// Issue 22.26: one value changed is one place changed.
+/// Issue 22.26: one changed value changes one place in the text.
 #[test]
 fn a_change_touches_nothing_else() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/biss.ron"));

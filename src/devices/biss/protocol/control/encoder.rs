@@ -15,7 +15,7 @@ pub struct Encoder {
 /// The request of a cycle to the encoder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// A register is to be read; [`Encoder::answer`] gives it. Until then the host waits.
+    /// A register has to be read; [`Encoder::answer`] supplies the value. Until then the host waits.
     Read {
         /// 00h…7Fh.
         address: u8,
@@ -24,10 +24,10 @@ pub enum Event {
     Write {
         /// 00h…7Fh.
         address: u8,
-        /// Its value from now on.
+        /// The new value.
         value: u8,
     },
-    /// The frame is damaged: nothing is done.
+    /// The frame is damaged: it has no effect.
     Damaged,
 }
 
@@ -39,10 +39,10 @@ enum State {
     Ignoring,
     /// `cycle` bits have come, the first is the highest.
     Head { bits: u32, cycle: u8 },
-    /// The host has sent its S and waits for this side's.
+    /// The host has sent its S and waits for that of this side.
     Start { address: u8, access: Access },
-    /// This side has sent its S and behind it `sent` bits of `word`, which is DATA and CRC4. Of a write it grows as it
-    /// comes.
+    /// This side has sent its S and then `sent` bits of `word`, which is DATA and CRC4. In a write, `word` grows with the
+    /// received bits.
     Data { address: u8, access: Access, word: u16, sent: u8 },
 }
 
@@ -60,12 +60,12 @@ impl Encoder {
     const HEAD_BITS: u8 = 18;
     const WORD_BITS: u8 = 12;
 
-    /// The control channel of the encoder with this number on its line, 0…7; the kit encoder is 0.
+    /// Creates the control channel of the encoder with this number on its line, 0…7; the kit encoder is 0.
     pub fn new(slave: u8) -> Self {
         Encoder { slave: slave & 7, zeros: 0, state: State::Rest }
     }
 
-    /// CDS of the cycle that begins.
+    /// Returns CDS of the cycle that begins.
     pub fn cds(&mut self) -> bool {
         match self.state {
             State::Rest | State::Ignoring | State::Start { access: Access::Read(None), .. } => false,
@@ -88,7 +88,7 @@ impl Encoder {
         }
     }
 
-    /// CDM of the cycle that ends.
+    /// Returns CDM of the cycle that ends.
     pub fn cdm(&mut self, bit: bool) -> Option<Event> {
         let rested = self.zeros >= REST_CYCLES;
         self.zeros = if bit { 0 } else { self.zeros.saturating_add(1) };
@@ -111,7 +111,7 @@ impl Encoder {
         event
     }
 
-    /// Gives the register that was asked for last. Where none is asked for, nothing happens.
+    /// Supplies the value of the register that was requested last. Without a request it has no effect.
     pub fn answer(&mut self, value: u8) {
         if let State::Start { access: access @ Access::Read(None), .. } = &mut self.state {
             *access = Access::Read(Some(with_crc(value)));
@@ -133,7 +133,7 @@ impl Encoder {
             }
             Self::HEAD_BITS if !matches!(bits & 3, 0b01 | 0b10) => (State::Ignoring, None),
             0..=Self::HEAD_BITS => (State::Head { bits, cycle }, None),
-            // The S behind R and W.
+            // The S after R and W.
             _ if bits & 1 == 0 => (State::Ignoring, None),
             _ => {
                 let access = if bits & 0b100 != 0 { Access::Read(None) } else { Access::Write };
@@ -151,7 +151,7 @@ fn begin(address: u8, access: Access) -> (State, Option<Event>) {
     }
 }
 
-/// A bit of DATA and CRC4 has come; `sent` counts it.
+/// Handles a bit of DATA and CRC4; `sent` counts it.
 fn transfer(address: u8, access: Access, word: u16, bit: bool, sent: u8) -> (State, Option<Event>) {
     if access != Access::Write {
         return (State::Data { address, access, word, sent }, None);

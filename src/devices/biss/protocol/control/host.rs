@@ -3,7 +3,7 @@
 use super::super::crc::crc4;
 use super::{ControlError, MAX_WAIT_CYCLES, REST_CYCLES, Request};
 
-/// A host, cycle by cycle. It has one request at a time and lies at rest in between.
+/// A host, cycle by cycle. It has one request at a time and is at rest in between.
 #[derive(Clone, Debug)]
 pub struct Host {
     /// Cycles of CDM = 0 in a row, so far as they matter.
@@ -17,7 +17,7 @@ pub struct Host {
 pub struct Step {
     /// CDM of this cycle. The level of the clock line during the time-out is its inverse.
     pub cdm: bool,
-    /// The request has ended with this cycle: the values read, or for a write those that the encoder repeated.
+    /// The end of the request in this cycle: the values read, or for a write those that the encoder repeated.
     pub outcome: Option<Result<Vec<u8>, ControlError>>,
 }
 
@@ -50,12 +50,12 @@ struct Transfer {
 }
 
 impl Transfer {
-    /// Register in turn. The request's addresses end at 7Fh.
+    /// Returns the current register. The request's addresses end at 7Fh.
     fn address(&self) -> u8 {
         self.request.address.saturating_add(u8::try_from(self.values.len()).unwrap_or(u8::MAX))
     }
 
-    /// Bit number `at` of DATA and CRC4 that the host sends.
+    /// Returns bit number `at` of DATA and CRC4 that the host sends.
     fn bit(&self, at: u8) -> bool {
         self.request.data(self.values.len()) << at & 0x800 != 0
     }
@@ -68,14 +68,14 @@ impl Default for Host {
 }
 
 impl Host {
-    /// The last cycle of a request's head; in the next one the encoder may give its S.
+    /// The last cycle of a request's head; in the next one the encoder may send its S.
     const LAST_OF_HEAD: u8 = 18;
     const WORD_BITS: u8 = 12;
 
     /// Asks for something as soon as the line is at rest.
     ///
     /// # Errors
-    /// Gives the request back while another one is under way.
+    /// Returns the request if another one is in progress.
     pub fn ask(&mut self, request: Request) -> Result<(), Request> {
         if self.is_busy() {
             return Err(request);
@@ -84,12 +84,12 @@ impl Host {
         Ok(())
     }
 
-    /// A request is under way.
+    /// Returns whether a request is in progress.
     pub fn is_busy(&self) -> bool {
         self.waiting.is_some() || !matches!(self.state, State::Rest)
     }
 
-    /// Gives a request up. The encoder forgets it within the zeros that precede the next.
+    /// Abandons a request. The encoder discards it during the zeros that precede the next.
     pub fn abort(&mut self) {
         self.waiting = None;
         self.rest();
@@ -122,7 +122,7 @@ impl Host {
     }
 
     fn head(&mut self, request: Request, bits: u32, cycle: u8, cds: bool) -> Step {
-        // The bit that the encoder has to send now, where it is known.
+        // The bit that the encoder has to send now, if it is known.
         let expected = match cycle {
             17 => Some(request.reads()),
             18 => Some(!request.reads()),
@@ -181,14 +181,14 @@ impl Host {
         Step { cdm: false, outcome: Some(Err(error)) }
     }
 
-    /// The zeros before the next request are counted from here: within a frame they may have been data.
+    /// Counts the zeros before the next request from here: within a frame they may have been data.
     fn rest(&mut self) {
         self.state = State::Rest;
         self.zeros = 0;
     }
 }
 
-/// S, CTS, ID, ADR, CRC4, R, W, S.
+/// Returns S, CTS, ID, ADR, CRC4, R, W, S.
 fn head(request: &Request) -> u32 {
     let header = 1 << 10 | u16::from(request.slave) << 7 | u16::from(request.address);
     let access = if request.reads() { 0b10 } else { 0b01 };

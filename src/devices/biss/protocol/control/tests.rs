@@ -30,7 +30,7 @@ const WRITES: [(u8, u8, &str); 10] = [
     (0x03, 0x80, "11000000001100110111000000000010"),
     (0x04, 0x01, "11000000010010100110000000111000"),
 ];
-/// Reference 3: CDS for a read of 4Bh, lock bits and the repeated R and W before it, P behind it.
+/// Reference 3: CDS for a read of 4Bh, lock bits and the repeated R and W before it, P after it.
 const CDS_4B: &str = "010000000000000001010100101101100";
 
 fn bits(text: &str) -> Vec<bool> {
@@ -41,14 +41,14 @@ fn text(bits: &[bool]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// A host and an encoder on a line, register by register what the encoder has.
+/// A host and an encoder on a line, with the registers of the encoder.
 struct Line {
     host: Host,
     encoder: Encoder,
     registers: [u8; 128],
     /// Cycles until an answer is there.
     processing: u8,
-    /// What went over the line since the first 1 of the host.
+    /// The bits on the line since the first 1 of the host.
     cdm: Vec<bool>,
     cds: Vec<bool>,
     events: Vec<Event>,
@@ -74,7 +74,7 @@ impl Line {
         }
     }
 
-    /// Another encoder, which has been on the line for long.
+    /// Adds another encoder, which has been on the line for long.
     fn attach(&mut self, slave: u8) {
         self.encoder = Encoder::new(slave);
         (0..REST_CYCLES).for_each(|_| assert_eq!(self.encoder.cdm(false), None));
@@ -190,7 +190,7 @@ fn nobody_and_nothing_understood() {
     line.attach(3);
     assert_eq!(line.ask(Request::read(3, 0x66, 1).unwrap()), Ok(vec![0xC3]));
     assert_eq!(line.ask(Request::read(0, 0x66, 1).unwrap()), Err(ControlError::NoSlave(0)));
-    // A head whose checksum was damaged on the way is not answered.
+    // A head with a damaged checksum is not answered.
     line.attach(0);
     line.flip_cdm = Some(14);
     assert_eq!(line.ask(Request::read(0, 0x66, 1).unwrap()), Err(ControlError::Rejected(0x66)));
@@ -201,14 +201,14 @@ fn nobody_and_nothing_understood() {
 fn a_command_is_ignored() {
     let mut encoder = Encoder::new(0);
     (0..REST_CYCLES).for_each(|_| assert_eq!(encoder.cdm(false), None));
-    // S, CTS = 0, CMD 01, CRC4 C; what follows would read a register: none is touched.
+    // S, CTS = 0, CMD 01, CRC4 C; the following bits would read a register, but none is accessed.
     for bit in bits("1000000000011100101000000000000") {
         encoder.cds();
         assert_eq!(encoder.cdm(bit), None);
     }
 }
 
-/// Whatever was on the line before, fourteen zeros lead back.
+/// After any traffic on the line, fourteen zeros return it to rest.
 #[test]
 fn fourteen_zeros_lead_back_from_every_cycle() {
     let (_, _, write) = WRITES[2];
@@ -219,7 +219,7 @@ fn fourteen_zeros_lead_back_from_every_cycle() {
             line.encoder.cds();
             line.encoder.cdm(*bit);
         }
-        // The host aborts there, and asks anew.
+        // The host aborts there, and repeats the request.
         let read = line.ask(Request::read(0, 0x66, 1).unwrap());
         assert_eq!(read, Ok(vec![0xC3]), "cut at {cut}");
     }
@@ -242,7 +242,8 @@ fn a_host_that_gives_up_is_ready_for_the_next() {
     assert!(host.cycle(false).cdm);
 }
 
-/// No flipped bit of the encoder's answer gives a wrong value, none of the host's writes a wrong one.
+/// A flipped bit of the encoder's answer never results in a wrong value read, and one of the host's never in a wrong value
+/// written.
 #[test]
 fn one_flipped_bit_anywhere_is_found() {
     let read = || Request::read(0, 0x66, 1).unwrap();
@@ -250,7 +251,7 @@ fn one_flipped_bit_anywhere_is_found() {
         let mut line = Line::new(0);
         line.flip_cds = Some(cycle);
         let read = line.ask(read());
-        // Lock bits of other encoders and the zeros behind them carry nothing.
+        // Lock bits of other encoders and the zeros after them carry no data.
         let carries_nothing = matches!(cycle, 0 | 2..=16);
         assert_eq!(read.is_ok(), carries_nothing, "CDS {cycle}: {read:?}");
         assert!(read.is_err() || read == Ok(vec![0xC3]), "CDS {cycle}");

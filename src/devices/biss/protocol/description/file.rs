@@ -1,4 +1,5 @@
-//! A description as it stands in its file. What is wrong is told where it stands: rows are checked while they are read.
+//! A description as written in its file. Errors are reported with their position, because rows are checked while they are
+//! read.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -186,7 +187,7 @@ impl TryFrom<RegisterLocation> for RegisterAddress {
     }
 }
 
-/// Reads what stands in the file and checks it, so that an error has its place.
+/// Defines a type that is checked while it is read from the file, so that an error has its position.
 macro_rules! checked {
     ($($row:ident => $own:ty,)*) => {$(
         impl<'de> Deserialize<'de> for $own {
@@ -296,7 +297,7 @@ fn firmware((major, minor, patch): (u8, u8, u8)) -> Firmware {
     Firmware::new(major, minor, patch)
 }
 
-/// A row that must not stand twice.
+/// A row that must not be duplicated.
 trait Row {
     /// Returns the unique keys that it takes, as named in messages.
     fn claims(&self) -> Vec<String>;
@@ -328,7 +329,7 @@ impl Row for Procedure {
     }
 }
 
-/// A list of rows, none of which claims what another does.
+/// A list of rows without conflicts.
 struct Rows<T>(Vec<T>);
 
 impl<T> Default for Rows<T> {

@@ -1,5 +1,5 @@
-//! The German names of a description: a list beside its English ones, so that a name that stands in many rows is
-//! translated once. An entry for something that the description does not name is a mistake, told where it stands.
+//! The German names of a description: a list separate from its English ones, so that a name in many rows is translated
+//! once. An entry for a name that the description does not use is an error, reported with its position.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -15,7 +15,7 @@ use super::name::Name;
 pub(super) struct GermanTexts(BTreeMap<String, String>);
 
 impl GermanTexts {
-    /// Gives the names their German; `text` is the file, in which a needless entry is looked for.
+    /// Adds the German names; `text` is the file, in which the position of a superfluous entry is searched.
     pub(super) fn translate<'a>(
         mut self,
         names: impl Iterator<Item = &'a mut Name>,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// A name. It is shown in English unless a language is asked for.
+/// A name. It is shown in English unless another language is requested.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(from = "String")]
 pub struct Name {
@@ -11,7 +11,7 @@ pub struct Name {
 }
 
 impl Name {
-    /// A name in English; empty for what has none.
+    /// Creates a name in English; empty for a part without a name.
     pub fn new(english: impl Into<String>) -> Self {
         Name { english: english.into(), german: None }
     }

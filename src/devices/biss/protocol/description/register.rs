@@ -1,4 +1,4 @@
-//! A register of a description: where it is, how wide, what its bytes say, what writing it costs.
+//! A register of a description: its place, width, meaning and write cost.
 
 use super::super::address::RegisterAddress;
 use super::super::status::Firmware;
@@ -20,11 +20,11 @@ pub struct Register {
     pub access: Access,
     /// Order of the bytes.
     pub order: ByteOrder,
-    /// Bytes as delivered, as many as it is wide; empty where nothing is known.
+    /// Bytes with factory settings, as many as its width; empty if not known.
     pub default: Vec<u8>,
     /// Decoding of the number.
     pub decoding: Decoding,
-    /// The sign of its unit; may be empty.
+    /// The symbol of its unit; may be empty.
     pub unit: String,
     /// Values the writing of which spends a write cycle of the flash.
     pub saves: Vec<u8>,
@@ -87,16 +87,16 @@ pub enum Decoding {
     Hex,
     /// `factor` times the number, and `offset`.
     Scaled {
-        /// Of one step.
+        /// The value of one step.
         factor: f64,
-        /// At 0.
+        /// The value at 0.
         offset: f64,
     },
     /// Bits with their names, the lowest bit 0.
     Bits(Vec<(u8, Name)>),
     /// Values with their names.
     Choice(Vec<(u64, Name)>),
-    /// Bytes in their order, with a dot between them: 1.6.0.
+    /// Bytes in their order, separated by dots: 1.6.0.
     Version,
     /// Characters in the order of their addresses.
     Text,
@@ -113,7 +113,7 @@ pub enum Decoded<'a> {
     Scaled(f64),
     /// The bits that are set; one without a name is unknown.
     Bits(Vec<(u8, Option<&'a Name>)>),
-    /// The value's name; `None` for one that has none.
+    /// The value's name; `None` if it has none.
     Choice(u64, Option<&'a Name>),
     /// A text or a version.
     Text(String),
@@ -150,9 +150,9 @@ impl Register {
     /// Widest register.
     pub(super) const MAX_WIDTH: u8 = 8;
 
-    /// A byte of it is there.
+    /// Returns whether it contains a byte at this address.
     pub fn contains(&self, address: RegisterAddress) -> bool {
-        // Global addresses of a bank follow each other, and a register does not leave its bank.
+        // Global addresses of a bank are consecutive, and a register does not leave its bank.
         let first = self.address.global();
         (first..first + u16::from(self.width)).contains(&address.global())
     }
@@ -166,7 +166,7 @@ impl Register {
         })
     }
 
-    /// The bytes for a number; `None` where it needs more than there are.
+    /// Returns the bytes for a number; `None` if it needs more than there are.
     pub fn bytes(&self, number: u64) -> Option<Vec<u8>> {
         let bytes = number.to_be_bytes();
         let (above, own) = bytes.split_at(bytes.len().checked_sub(usize::from(self.width))?);
@@ -200,24 +200,24 @@ impl Register {
         })
     }
 
-    /// Writing this value spends a write cycle of the flash.
+    /// Returns whether writing this value spends a write cycle of the flash.
     pub fn is_save(&self, value: u8) -> bool {
         self.saves.contains(&value)
     }
 }
 
 impl Area {
-    /// The bank belongs to it.
+    /// Returns whether the bank belongs to it.
     pub const fn contains(&self, bank: u8) -> bool {
         self.first <= bank && bank <= self.last
     }
 
-    /// Its banks.
+    /// Returns its banks.
     pub fn banks(&self) -> std::ops::RangeInclusive<u8> {
         self.first..=self.last
     }
 
-    /// Its bytes.
+    /// Returns the number of its bytes.
     pub fn size(&self) -> usize {
         (usize::from(self.last) + 1).saturating_sub(self.first.into()) * usize::from(RegisterAddress::BANK_SIZE)
     }

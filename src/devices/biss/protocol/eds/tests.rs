@@ -1,10 +1,10 @@
-//! The data sheet of the reference, field by field; sums; and sheets that tell no frame.
+//! The data sheet of the reference, field by field; sums; and sheets without a frame.
 
 use proptest::prelude::*;
 
 use super::*;
 
-/// Bank 2 of the reference, put together by hand.
+/// Returns bank 2 of the reference, put together by hand.
 fn common() -> [u8; 64] {
     let mut bank = [0; 64];
     for (offset, bytes) in [
@@ -20,7 +20,7 @@ fn common() -> [u8; 64] {
     bank
 }
 
-/// Bank 3 of the reference.
+/// Returns bank 3 of the reference.
 fn encoder() -> [u8; 64] {
     let mut bank = [0; 64];
     for (offset, bytes) in [

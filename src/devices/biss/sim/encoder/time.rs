@@ -1,4 +1,4 @@
-//! Effects of time: a start ends, the runs of a procedure end, the shaft follows its motor.
+//! Effects of time: the start ends, the runs of a procedure end, the shaft follows its motor.
 
 use super::{Encoder, Power};
 use crate::devices::biss::protocol::{CalibrationStatus, WiegandStatus};
@@ -6,7 +6,7 @@ use crate::devices::biss::sim::calibration::Ended;
 use crate::units::Moment;
 
 impl Encoder {
-    /// Lets happen what was due by `now`, and turns the shaft as the motor does by then.
+    /// Processes everything due by `now`, and turns the shaft with the motor.
     pub(super) fn settle(&mut self, now: Moment) {
         if let Power::Starting { ready } = self.power
             && ready <= now
@@ -35,7 +35,7 @@ impl Encoder {
         }
     }
 
-    /// The first run of a procedure is done, and the second needs the other direction.
+    /// Returns whether the first run of a procedure is done, and the second needs the other direction.
     fn waits_for_direction(&self) -> bool {
         self.calibration.status == CalibrationStatus::CounterclockwiseDone
             || self.wiegand.status == WiegandStatus::WaitForDirection

@@ -1,4 +1,4 @@
-//! What a host sees of the kit encoder behind the virtual adapter.
+//! The kit encoder behind the virtual adapter, as seen by a host.
 
 use std::time::Duration;
 
@@ -58,12 +58,12 @@ fn registers_are_read_and_written_by_bank() {
     host.expect(read(0x6A), Reply::BissRegisterRead { value: 0x00 });
     assert_eq!(host.adapter.device::<Encoder>().unwrap().flash().cycles(), 1);
     host.expect(write(0x40, 0x44), read_back(0x44));
-    host.refuses(read(0x00), ErrorCode::NO_ANSWER); // there is no such bank
+    host.refuses(read(0x00), ErrorCode::NO_ANSWER); // no such bank
     host.refuses(Request::BissRegisterRead { slave: 1, address: 0x66 }, ErrorCode::NO_ANSWER);
     host.refuses(read(0x80), ErrorCode::BAD_ARGUMENT);
 }
 
-/// 20 000 frames a second for a second: every one of them, in order, each with its position.
+/// 20 000 frames per second for a second: every one of them, in order, each with its position.
 #[test]
 fn a_fast_stream_has_no_gap() {
     let mut host = behind_adapter("rpm=600&position=0");
@@ -82,7 +82,7 @@ fn a_fast_stream_has_no_gap() {
         assert_eq!((data.t0_us, data.period_us, data.width), (start_us + 50 * count, 50, 6));
         for (status, raw) in &data.values {
             let PositionData { multiturn, singleturn, error, .. } = layout.parse(*raw).unwrap();
-            // Ten revolutions a second from the start of time.
+            // Ten revolutions per second from the start.
             let steps = (start_us + 50 * count) * 10 * (1 << 17) / 1_000_000;
             let found = u64::from(multiturn) << 17 | u64::from(singleturn);
             assert!(found.abs_diff(steps) <= 1 && !error && *status == BissStatus::OK, "{count}: {found} {steps}");

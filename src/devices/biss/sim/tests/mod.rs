@@ -1,5 +1,5 @@
-//! What a host sees of the virtual kit encoder, in virtual time. Expected values are the manual's and the reference's;
-//! none is computed by the code under test.
+//! The virtual kit encoder as seen by a host, in virtual time. Expected values are the manual's and the reference's; none
+//! is computed by the code under test.
 
 mod at_adapter;
 mod modes;
@@ -14,14 +14,14 @@ use super::*;
 use crate::devices::biss::protocol::RegisterAddress;
 use crate::units::Moment;
 
-/// Somebody who reads and writes registers by their names, without any line.
+/// Host that reads and writes registers by name, without a line.
 struct Host {
     encoder: Encoder,
     now: Moment,
 }
 
 impl Host {
-    /// With the query of a `sim:` link.
+    /// Creates a host with the query of a `sim:` link.
     fn with(query: &str) -> Self {
         Host { encoder: Encoder::new(&config(query)), now: Moment::START }
     }
@@ -34,7 +34,7 @@ impl Host {
         self.encoder.write(self.now, address(register), value)
     }
 
-    /// Writes what the encoder has to accept.
+    /// Writes a value that the encoder must accept.
     #[track_caller]
     fn put(&mut self, register: &str, value: u8) {
         assert!(self.write(register, value), "{register} = {value:02X}");
@@ -45,7 +45,7 @@ impl Host {
         assert_eq!(self.read(register), value, "{register}");
     }
 
-    /// The prologue of every procedure.
+    /// Runs the prologue of every procedure.
     #[track_caller]
     fn enter(&mut self, mode: u8) {
         self.put("0x6B", 0x2A);
@@ -65,7 +65,7 @@ impl Host {
         self.encoder.answers(self.now)
     }
 
-    /// Multiturn and singleturn.
+    /// Returns the multiturn and singleturn.
     fn position(&mut self) -> Option<(u32, u32)> {
         self.encoder.reading(self.now).map(|reading| (reading.multiturn, reading.singleturn))
     }

@@ -33,7 +33,7 @@ fn modes_that_there_are_not_are_ignored() {
     assert!(!host.write("0x6A", 0x05), "only from operation");
     host.expect("0x6A", 0x04);
     host.put("0x6B", 0x00);
-    host.put("0x6A", 0x00); // the way back is always open
+    host.put("0x6A", 0x00); // returning is always possible
 }
 
 #[test]

@@ -59,7 +59,7 @@ fn a_failure_of_the_second_run_loses_the_table() {
         host.wait(5.0);
         host
     };
-    // The motor still turns the other way.
+    // The motor still turns in the other direction.
     let mut host = after_first_run();
     host.put("0x00:0x00", 0x02);
     assert!(host.answers(), "this one answers while it runs");
@@ -99,7 +99,7 @@ fn the_second_run_needs_the_first() {
     assert!(!host.write("0x00:0x00", 0x01), "it runs already");
 }
 
-/// Reference 5.1: 515 revolutions, 61.8 s at 500 and 15.45 s at 2000 revolutions a minute.
+/// Reference 5.1: 515 revolutions, 61.8 s at 500 and 15.45 s at 2000 revolutions per minute.
 #[test]
 fn a_wiegand_test_takes_515_revolutions_each_way() {
     for (rpm, seconds) in [(500.0, 61.8), (2000.0, 15.45)] {
@@ -145,13 +145,13 @@ fn a_motor_that_pauses_only_takes_longer() {
     host.turn(1000.0);
     host.wait(15.8);
     host.expect("0x00:0x07", 0x01);
-    host.wait(0.2); // 265 and a little
+    host.wait(0.2); // slightly more than 265
     host.expect("0x00:0x07", 0x03);
 }
 
 #[test]
 fn a_wiegand_test_fails_for_its_reasons() {
-    // The motor was not turned the other way.
+    // The motor was not reversed.
     let mut host = Host::with("rpm=1000&calibration-silent=off");
     host.enter(0x02);
     assert!(!host.write("0x00:0x06", 0x02), "the first run comes first");
@@ -178,7 +178,7 @@ fn whoever_holds_the_motor_turns_the_shaft() {
     let motor = host.encoder.motor();
     host.wait(1.0);
     assert_eq!(host.position(), Some((1, 0)));
-    // The shaft follows from the next question on.
+    // The shaft follows from the next request on.
     motor.set_rpm(-120.0);
     assert_eq!(host.position(), Some((1, 0)));
     host.wait(0.25);
@@ -189,7 +189,7 @@ fn whoever_holds_the_motor_turns_the_shaft() {
         motor.set_rpm(set);
         assert_eq!(motor.rpm(), turned);
     }
-    // A copy of the encoder has a motor of its own.
+    // A copy of the encoder has its own motor.
     let copy = host.encoder.clone();
     copy.motor().set_rpm(1.0);
     assert_eq!(motor.rpm(), -12_000.0);
@@ -211,7 +211,7 @@ fn a_motor_that_reverses_does_so_when_a_procedure_waits_for_it() {
     host.expect("0x00:0x01", 0x22);
     assert_eq!(host.encoder.motor().rpm(), 500.0, "nothing waits any more");
     host.put("0x6A", 0x00);
-    // As the calibration has left it, the motor turns as the Wiegand test wants it first: 61.8 s each way.
+    // After the calibration the motor turns in the direction that the Wiegand test needs first: 61.8 s each way.
     host.enter(0x02);
     host.put("0x00:0x06", 0x01);
     host.wait(62.0);
@@ -220,7 +220,7 @@ fn a_motor_that_reverses_does_so_when_a_procedure_waits_for_it() {
     host.put("0x00:0x06", 0x02);
     host.wait(62.0);
     host.expect("0x00:0x07", 0x06);
-    // One that does not is left as it is.
+    // A motor that does not reverse by itself is left as it is.
     let mut host = Host::with("rpm=-500");
     host.enter(0x01);
     host.put("0x00:0x00", 0x01);

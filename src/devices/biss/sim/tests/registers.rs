@@ -3,7 +3,7 @@
 use super::*;
 use crate::devices::biss::protocol::{Descriptions, ErrorRegister};
 
-/// Every register of the description that has a default has it.
+/// Every register with a default in the description has that value.
 #[test]
 fn the_encoder_is_as_delivered() {
     let mut host = Host::with("");

@@ -1,4 +1,4 @@
-//! What is saved: data, filter, preset; the wear of the flash; and power that is lost in the middle of it.
+//! Saved values: data, filter, preset; the wear of the flash; and a loss of power during a save.
 
 use super::*;
 use crate::devices::biss::protocol::Filter;

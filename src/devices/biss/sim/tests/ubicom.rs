@@ -15,7 +15,7 @@ impl Line {
         Line { port: Port::new(&config(query)), now: Moment::START }
     }
 
-    /// Everything that arrives until nothing more will, and when the last byte did.
+    /// Returns everything that arrives until nothing more will, and when the last byte did.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.port.poll_at() {
@@ -97,10 +97,10 @@ fn what_is_not_understood_is_not_answered() {
         "80 01 01 02 00 26 00 54", // wrong checksum
         "80 01 01 03 00 26 00 54", // LEN 3 with two bytes
         "80 02 01 02 00 26 00 54", // another node
-        "80 01 04 01 00 01 78",    // no such command
-        "80 01 03 01 00 02 78",    // no such position
-        "80 01 01 02 00 40 11 2A", // no such bank
-        "80 01 01 02 00 00 7B",    // the manual's example, a byte short
+        "80 01 04 01 00 01 78",    // unknown command
+        "80 01 03 01 00 02 78",    // unknown position
+        "80 01 01 02 00 40 11 2A", // unknown bank
+        "80 01 01 02 00 00 7B",    // the manual's example, a byte too short
     ];
     for request in silent {
         line.expect(request, "");
@@ -115,7 +115,7 @@ fn a_partial_frame_is_forgotten_after_20_ms() {
     line.port.on_bytes(line.now, &[0x80, 0x01, 0x01, 0x02]);
     assert_eq!(line.receive().0, "");
     line.expect(READ_TEMPERATURE, TEMPERATURE);
-    // Continued in time, it is one.
+    // Continued in time, it is a frame.
     let request = parse_hex(READ_TEMPERATURE).unwrap();
     line.port.on_bytes(line.now, &request[..3]);
     line.port.poll(line.now);
@@ -135,7 +135,7 @@ fn a_request_while_the_encoder_works_or_talks_is_lost() {
     let mut line = Line::with("temperature=25");
     line.expect(&format!("{READ_TEMPERATURE} {READ_TEMPERATURE}"), TEMPERATURE);
     line.wait(1.0);
-    // It talks from 1.69 to 2.30 ms; what began in between is not whole.
+    // It sends from 1.69 to 2.30 ms; a frame that started in between is incomplete.
     line.port.on_bytes(line.now, &parse_hex(READ_TEMPERATURE).unwrap());
     line.wait(0.0018);
     line.expect(READ_TEMPERATURE, TEMPERATURE);
@@ -191,7 +191,7 @@ fn another_speed_gives_no_frame() {
     line.expect(READ_TEMPERATURE, TEMPERATURE);
 }
 
-/// The store that costs the encoder its power is not answered; opening the link gives it back.
+/// A store during which the encoder loses its power is not answered; opening the link restores the power.
 #[test]
 fn a_dead_encoder_comes_back_with_the_link() {
     let mut line = Line::with("fault=die-in-store:1");
@@ -208,7 +208,7 @@ fn a_dead_encoder_comes_back_with_the_link() {
     assert_eq!(line.port.encoder().motor().rpm(), 0.0);
 }
 
-/// Issue 22.18: what no UART holds is lost, so that the line is not busy for longer than its buffer lasts.
+/// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer lasts.
 #[test]
 fn a_flood_of_bytes_does_not_make_it_deaf() {
     let mut line = Line::with("temperature=25");

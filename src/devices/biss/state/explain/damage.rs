@@ -1,4 +1,4 @@
-//! Damaged replies in words.
+//! Texts of damaged replies.
 
 use crate::app::Text;
 use crate::buses::ubicom::protocol::ReplyError;

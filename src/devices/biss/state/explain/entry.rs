@@ -1,4 +1,4 @@
-//! Why a profile is refused.
+//! Reasons for refusing a profile.
 
 use crate::app::Text;
 use crate::devices::biss::profile::EntryError;

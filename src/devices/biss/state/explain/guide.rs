@@ -1,4 +1,4 @@
-//! Guided procedures in words: their steps, what a person is to do, why a start is not possible, what came of them.
+//! Texts of guided procedures: steps, tasks of the operator, obstacles to a start, results.
 
 use crate::app::{Severity, Text};
 use crate::devices::biss::procedures::procedure::{
@@ -8,7 +8,7 @@ use crate::devices::biss::profile::{Op, PresetParts};
 use crate::devices::biss::protocol::{DeviceMode, PulseVoltage};
 use crate::devices::biss::state::TEXTS;
 
-/// The heading of an operation.
+/// Returns the heading of an operation.
 pub fn procedure(op: &Op) -> Text {
     TEXTS.text(match op {
         Op::Calibrate => "guide.calibration",
@@ -121,7 +121,7 @@ pub(super) fn speeds(text: Text, range: SpeedRange) -> Text {
     text.with_number("least", range.least, 0).with_number("greatest", range.greatest, 0)
 }
 
-/// Returns the result of an operation, a line each; for the page and for the report.
+/// Returns the result of an operation, one line per item; for the page and for the report.
 pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     match outcome {
         Outcome::Skipped { after } => vec![TEXTS.text(match after {
@@ -154,14 +154,14 @@ pub fn outcome(outcome: &Outcome) -> Vec<Text> {
     }
 }
 
-/// Returns the result of an operation, a line each with its severity; the name of one that was skipped.
+/// Returns the result of an operation, one line per item with its severity; the name of one that was skipped.
 pub fn report(op: &Op, own: &Outcome) -> Vec<(Severity, Text)> {
     let lines = outcome(own);
     if let Outcome::Skipped { .. } = own {
         let named = |words| TEXTS.text("guide.of_operation").with_text("what", procedure(op)).with_text("words", words);
         return lines.into_iter().map(|words| (Severity::Note, named(words))).collect();
     }
-    // The first says what was done, or how it was judged; the rest is beside it.
+    // The first line tells what was done, or the verdict; the others add to it.
     let severity = |at: usize| match own {
         Outcome::Tested(report) => match at {
             0 => verdict(report.result.lowest_cw).max(verdict(report.result.lowest_ccw)),
@@ -229,7 +229,7 @@ mod tests {
         }
     }
 
-    /// Manual 6.3: the average less four standard deviations has to be above 5.3 V.
+    /// Manual 6.3: the average minus four standard deviations must be above 5.3 V.
     #[test]
     fn a_wiegand_result_is_measured_against_the_limit() {
         let result = WiegandResult {

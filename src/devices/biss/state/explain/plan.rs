@@ -1,11 +1,11 @@
-//! Why something cannot be planned for a BiSS encoder, and another type of profile, in words.
+//! Texts of the BiSS planning errors, and of another type of profile.
 
 use crate::app::Text;
 use crate::devices::biss::profile::{OtherType, PlanError};
 use crate::devices::biss::protocol::ProcedureKind;
 use crate::devices::biss::state::TEXTS;
 
-/// A profile that goes onto another type of encoder.
+/// Returns the text for a profile for another type of encoder.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "biss_review.other_kind", "biss_review.other_width")
 }

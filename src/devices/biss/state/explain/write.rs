@@ -1,5 +1,5 @@
-//! Writes in words: what is wanted, the operations of a plan, why there is no plan, what was written, why it ended early and
-//! in which state the encoder was left.
+//! Texts of writes: changes, operations of a plan, why there is no plan, what was written, why it ended early and in which
+//! state the encoder was left.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use crate::devices::biss::protocol::{CalibrationStatus, Layout, PresetValue, Wie
 use crate::devices::biss::state::TEXTS;
 use crate::devices::biss::state::words::filter;
 
-/// A change in words.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),
@@ -33,7 +33,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// An operation in words; each run of registers by itself, named as everywhere.
+/// Returns the text of an operation, each run of registers separately, with the usual names.
 pub fn op(op: &Op, layout: &Layout) -> OpWords {
     let bits = layout.singleturn_bits();
     match op {
@@ -81,7 +81,7 @@ fn runs(registers: &[RegisterChange]) -> Vec<ChangeWords> {
     RegisterRange::runs(registers.iter().map(|own| own.address)).into_iter().map(words).collect()
 }
 
-/// A preset value as angle, step and turn; a turn has as many steps as these bits.
+/// Returns the text of a preset value as angle, step and turn; a turn has as many steps as these bits.
 pub fn preset(value: PresetValue, singleturn_bits: u8) -> Text {
     preset_words("biss_op.preset_value", value, singleturn_bits)
 }
@@ -101,14 +101,15 @@ pub fn wear(prepared: &Prepared) -> Option<Text> {
     Some(TEXTS.text("biss_review.wear").with("cycles", cycles).with("limit", WEAR_LIMIT))
 }
 
-/// A write that is done.
+/// Returns the text for a write that is done.
 pub fn written(written: &Written) -> Text {
-    // Of a calibration the encoder's word is all there is.
+    // Only the encoder's status confirms a calibration.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
+/// Returns the text of an interrupted write: how far it got, why, in which state the encoder was left, and where the backup
+/// is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let done = &interrupted.done;
     let mut texts = vec![if interrupted.cause.is_cancelled() {
@@ -124,9 +125,9 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
     });
     let what_next = match (interrupted.unclear(), kind) {
         (Some(register), _) => TEXTS.text("biss_write.unclear").with("register", register),
-        // The table may be lost without a write, and no backup holds it.
+        // The table may be lost without a write, and no backup contains it.
         (None, ChangeKind::Calibration) => TEXTS.text("write.backup_calibration"),
-        // An operation that may have been carried out counts as a write cycle, where it costs one.
+        // An operation that may have been carried out counts as a write cycle, if it costs one.
         _ if done.write_cycles == 0 && done.written == 0 => Text::new("write.untouched"),
         (None, ChangeKind::Restore) => Text::new("write.backup"),
         (None, ChangeKind::Bytes) => TEXTS.text("biss_write.bytes"),
@@ -184,7 +185,7 @@ fn left(standing: &LeftState) -> Vec<Text> {
     texts
 }
 
-/// Returns why a procedure did not reach its end.
+/// Returns why a procedure failed.
 pub fn failure(failure: &Failure) -> Text {
     match failure {
         Failure::Device(error) => encoder(error),
@@ -234,7 +235,7 @@ fn wiegand(status: WiegandStatus, code: u8) -> Text {
     }
 }
 
-/// A status that does not belong there.
+/// Returns the text for a status that does not belong there.
 fn unknown(status: u8) -> Text {
     TEXTS.text("biss_failure.unknown").with("status", format!("0x{status:02X}"))
 }
@@ -260,7 +261,7 @@ mod tests {
         (words(English), words(German))
     }
 
-    /// Each action in words of its own, also at a terminal; and nothing is told as untouched that may be otherwise.
+    /// Each action has its own words, also at a terminal; and nothing is reported as unchanged that may have changed.
     #[test]
     fn what_to_do_about_a_write_that_was_cut_off_fits_its_kind() {
         let last = |interrupted: &Interrupted, kind| {
@@ -304,7 +305,7 @@ mod tests {
         Some(LeftState { mode, password: Possible::known(password), activity })
     }
 
-    /// Issue 22.5: whatever completes it comes behind leading the encoder back.
+    /// Issue 22.5: the remedy comes after returning the encoder to operation.
     #[test]
     fn what_completes_a_write_comes_after_leading_back() {
         for kind in [ChangeKind::Restore, ChangeKind::Bytes, ChangeKind::Guided, ChangeKind::Filter] {

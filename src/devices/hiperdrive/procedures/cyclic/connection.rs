@@ -1,4 +1,4 @@
-//! Packets of a cyclic connection: numbered and timed on their way out, looked at on their way in (reference 7).
+//! Packets of a cyclic connection: numbered and timed when sent, checked when received (reference 7).
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ pub struct Connection {
     sequence: u32,
     count: u16,
     arrivals: Arrivals,
-    /// When something that counts came last, or when the connection was opened.
+    /// Time of the last valid packet, or of the opening.
     heard: Moment,
     /// Start of the present period of uninterrupted listening.
     awake: Moment,
@@ -30,17 +30,17 @@ pub struct Connection {
     figures: LinkFigures,
 }
 
-/// Without a packet for so many intervals, nothing moves, and a connection over which something moves is lost.
+/// Number of intervals without a packet after which nothing moves, and a connection with motion is lost.
 const LOST: u32 = 3;
-/// Until the first packet comes.
+/// Time allowed for the first packet.
 const FIRST: Duration = Duration::from_secs(1);
-/// Before the data of a target that sends it: its description would say so (`U`).
+/// Length of the header before the data of a target that sends one: its description would tell (`U`).
 const HEADER: usize = 4;
 
 impl Connection {
     /// Creates the connection at the time it was opened; the first packet is due at once.
     pub fn new(opened: &Opened, now: Moment) -> Self {
-        // An interval of nothing would never end.
+        // An interval of 0 would loop forever.
         let interval = |interval: Duration| interval.max(Duration::from_millis(1));
         let come_interval = interval(opened.to_originator_interval);
         Connection {
@@ -76,15 +76,15 @@ impl Connection {
         self.next
     }
 
-    /// Returns whether nothing has arrived for three intervals, for whatever reason: the positions of the drives are
-    /// not known.
+    /// Returns whether nothing has arrived for three intervals, for whatever reason: the positions of the drives are not
+    /// known.
     pub fn is_quiet(&self, now: Moment) -> bool {
         self.began && now.since(self.heard) > self.come_interval * LOST
     }
 
-    /// Returns how long nothing has arrived, if that is too long. While something moves the limit is three intervals of
+    /// Returns how long nothing has arrived, if that is too long. While something moves, the limit is three intervals of
     /// listening: a busy computer that could not listen cannot tell whether nothing arrived, and packets may still be
-    /// queued. At rest, and in any case, it is as long as the target itself waits for a packet.
+    /// queued. At rest, and as an absolute limit, it is the time the target itself waits for a packet.
     pub fn silent(&mut self, now: Moment, moves: bool) -> Option<Duration> {
         if now.since(self.next) > self.come_interval {
             self.awake = now;
@@ -96,7 +96,7 @@ impl Connection {
         (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
 
-    /// A packet has come: what it says, where it counts.
+    /// Handles a packet. Returns its data if it is valid and new.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> Option<InImage> {
         let packet = IoPacket::parse(bytes, RealTimeFormat::Modeless).ok();
         let packet = packet.filter(|packet| packet.connection == self.to_originator);

@@ -1,4 +1,4 @@
-//! All drives of a cyclic connection with their dead-men, from its opening to its end.
+//! All drives of a cyclic connection with their dead-men, from opening to end.
 
 use std::time::Duration;
 
@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{DeadMan, Intent, Permit};
 use crate::devices::hiperdrive::protocol::{Actual, DriveNumber, OutData, OutImage};
 use crate::units::Moment;
 
-/// The drives behind a cyclic connection.
+/// Drives behind a cyclic connection.
 #[derive(Clone, Debug)]
 pub struct Drives {
     connection: Connection,
@@ -26,17 +26,17 @@ struct ControlledDrive {
     heard: Option<Actual>,
 }
 
-/// The way to the end: they stand, then they are off, then nothing is sent any more.
+/// The end of the connection: the drives stop, then are switched off, then nothing more is sent.
 #[derive(Clone, Copy, Debug)]
 struct Ending {
     since: Moment,
-    /// Packets that say off.
+    /// Packets sent with the drives off.
     off: u32,
 }
 
-/// As long as the ladder is, and what the drives need to brake.
+/// Duration of the stop ladder, and the time for braking.
 const LADDER: Duration = Duration::from_millis(700);
-/// One of them may be lost.
+/// More than one, since a packet may be lost.
 const OFF: u32 = 3;
 
 impl Drives {
@@ -54,7 +54,7 @@ impl Drives {
         }
     }
 
-    /// The drives' dead-men.
+    /// Returns the drives' dead-men.
     pub fn dead_men(&self) -> impl Iterator<Item = &DeadMan> {
         self.controlled.iter().map(|man| &man.dead_man)
     }
@@ -74,13 +74,13 @@ impl Drives {
         self.ending.is_some()
     }
 
-    /// Returns whether nothing is to be sent any more: the connection is to be closed.
+    /// Returns whether nothing more is to be sent: the connection is to be closed.
     pub fn is_over(&self) -> bool {
         let off = self.ending.is_some_and(|ending| ending.off >= OFF);
         off || matches!(self.lost, Some(CyclicLost::DoesNotStand(_) | CyclicLost::Port(_)))
     }
 
-    /// The connection is to end: the drives stop, then they are off.
+    /// Starts the end of the connection: the drives stop, then they are switched off.
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
             self.ending = Some(Ending { since: now, off: 0 });
@@ -88,7 +88,7 @@ impl Drives {
         }
     }
 
-    /// The connection has ended without being asked to. The drives are told to stop as long as they may hear it.
+    /// Notes that the connection was lost. The drives are told to stop, as they may still receive packets.
     pub fn lose(&mut self, now: Moment, why: CyclicLost) {
         if self.lost.is_none() && !self.is_over() {
             self.lost = Some(why);
@@ -96,7 +96,7 @@ impl Drives {
         self.close(now);
     }
 
-    /// A packet has come. Whether it counted.
+    /// Handles a packet. Returns whether it counted.
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> bool {
         let Some(image) = self.connection.on_packet(now, bytes) else { return false };
         for man in &mut self.controlled {
@@ -110,7 +110,7 @@ impl Drives {
         self.connection.poll_at()
     }
 
-    /// The packet that is due now, where one is. Everything that has come until now has been handed over before.
+    /// Returns the packet that is due now, if any. All packets received until now must have been handed over before.
     pub fn poll(&mut self, now: Moment, intent: &Intent, permit: impl Fn(DriveNumber) -> Permit) -> Option<Vec<u8>> {
         if now < self.poll_at() || self.is_over() {
             return None;

@@ -8,19 +8,19 @@ use crate::link::LinkError;
 /// Counts of a connection since it was opened.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LinkFigures {
-    /// From packet to packet, each way, as the target has agreed.
+    /// Interval between packets as agreed by the target, in both directions.
     pub interval: Duration,
     /// Packets to the target.
     pub sent: u64,
     /// Packets that counted.
     pub received: u64,
-    /// Packets that should have come before one that came.
+    /// Packets that did not arrive before a later one.
     pub missed: u64,
-    /// Packets that a newer one had overtaken, or that came twice.
+    /// Packets overtaken by a newer one, or received twice.
     pub stale: u64,
     /// Packets that were none of this connection, or broken.
     pub malformed: u64,
-    /// From packet to packet, as they came.
+    /// Intervals between received packets.
     pub intervals: Histogram,
 }
 
@@ -32,7 +32,7 @@ pub struct Histogram {
     greatest: Option<i64>,
 }
 
-/// Why a cyclic connection has ended by itself.
+/// Why a cyclic connection ended without being closed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CyclicLost {
     /// Nothing has come for three intervals.
@@ -41,13 +41,13 @@ pub enum CyclicLost {
         /// Duration of the silence.
         after: Duration,
     },
-    /// The port is gone.
+    /// The port failed.
     #[error(transparent)]
     Port(#[from] LinkError),
-    /// The drive does not stand whatever it is sent: the connection was closed, so that the target stops it.
+    /// The drive does not stop, whatever is sent: the connection was closed so that the target stops it.
     #[error("drive {} did not stop", .0.get())]
     DoesNotStand(DriveNumber),
-    /// The session's own connection, over TCP, is gone.
+    /// The session's own TCP connection is lost.
     #[error("the connection for parameters is gone")]
     Session,
     /// The program has failed.
@@ -61,16 +61,16 @@ const EDGES: [i64; 14] = [-5000, -2000, -1000, -500, -200, -100, -50, 50, 100, 2
 /// Number of intervals with this deviation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bucket {
-    /// Microseconds too long at least, negative for too short; `None`: however short.
+    /// Lower bound of the deviation in microseconds, negative for too short; `None` without a bound.
     pub from_us: Option<i64>,
-    /// Microseconds too long at most; `None`: however long.
+    /// Upper bound of the deviation in microseconds; `None` without a bound.
     pub below_us: Option<i64>,
     /// Number of intervals.
     pub count: u64,
 }
 
 impl Histogram {
-    /// An interval of `took` where `wanted` was wanted.
+    /// Counts an interval `took` against the nominal `wanted`.
     pub fn count(&mut self, wanted: Duration, took: Duration) {
         let nanoseconds = |duration: Duration| i64::try_from(duration.as_nanos()).unwrap_or(i64::MAX);
         let off = nanoseconds(took).saturating_sub(nanoseconds(wanted)) / 1000;
@@ -82,7 +82,7 @@ impl Histogram {
         self.greatest = Some(self.greatest.map_or(off, |greatest| greatest.max(off)));
     }
 
-    /// The buckets, the shortest intervals first.
+    /// Returns the buckets, the shortest intervals first.
     pub fn buckets(&self) -> impl Iterator<Item = Bucket> {
         let from = std::iter::once(None).chain(EDGES.iter().copied().map(Some));
         let below = EDGES.iter().copied().map(Some).chain(std::iter::once(None));
@@ -90,7 +90,7 @@ impl Histogram {
         buckets.map(|((from_us, below_us), count)| Bucket { from_us, below_us, count })
     }
 
-    /// The least and the greatest, in microseconds off; `None` before there was any.
+    /// Returns the minimum and maximum deviation in microseconds; `None` before the first interval.
     pub fn range_us(&self) -> Option<(i64, i64)> {
         self.least.zip(self.greatest)
     }

@@ -15,7 +15,7 @@ fn at(ms: u64) -> Moment {
     Moment::START + Duration::from_millis(ms)
 }
 
-/// As the reference's packets have it (section 9): 00020001 both ways; 10 ms.
+/// Returns the packets of the reference (section 9): 00020001 in both directions; 10 ms.
 fn opened(topology: Topology, pkw: bool, order: ByteOrder) -> Opened {
     let owner = Owner { connection_serial: 1, vendor: 0x1234, serial_number: 0xABCD };
     let close = ForwardClose { timeout: RequestTimeout::TWO_SECONDS, owner, path: Path::assemblies(104, 100, 101) };
@@ -42,7 +42,7 @@ const TO_TARGET: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 16 00 0
 const TO_ORIGINATOR: &str = "02 00 02 80 08 00 01 00 02 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 \
                              00 00 00 00 00 00 00 00";
 
-/// A report of the first drive with its sequence number.
+/// Returns a report of the first drive with its sequence number.
 fn report(sequence: u32, status: u16, position: i32) -> Vec<u8> {
     let mut bytes = hex(TO_ORIGINATOR);
     bytes[10..14].copy_from_slice(&sequence.to_le_bytes());
@@ -59,10 +59,10 @@ fn packets_of_the_reference() {
     assert_eq!(connection.packet(at(0), &image), hex(TO_TARGET));
     let came = connection.on_packet(at(4), &hex(TO_ORIGINATOR)).unwrap();
     assert_eq!((came.drives[0].status.word(), came.drives[0].position), (0x2A37, 163_840));
-    // The next one: both counts are one higher.
+    // In the next one both counts are one higher.
     let second = connection.packet(at(10), &image);
     assert_eq!((second[10], second[18]), (2, 2));
-    // A target that has a header before its data.
+    // A target that sends a header before its data.
     let mut with = hex(TO_ORIGINATOR);
     with.splice(20..20, [1, 0, 0, 0]);
     (with[10], with[16]) = (2, 0x16);
@@ -70,7 +70,7 @@ fn packets_of_the_reference() {
     assert_eq!((connection.figures().sent, connection.figures().received), (2, 2));
 }
 
-/// Reference 2: 8 bytes a drive, and 8 of parameter words at the end where they are; sizes 14 to 78 of the packet's data.
+/// Reference 2: 8 bytes per drive, and 8 of parameter words at the end if present; 14 to 78 bytes of data per packet.
 #[test]
 fn images_are_laid_out_by_the_connection() {
     for (topology, pkw, data) in [
@@ -94,8 +94,8 @@ fn images_are_laid_out_by_the_connection() {
     }
 }
 
-/// Each deadline is an interval behind the last one, however late the packet before it was; after a long pause one packet
-/// goes, not all of them.
+/// Each deadline is one interval after the previous one, however late that packet was; after a long pause one packet is
+/// sent, not all of them.
 #[test]
 fn deadlines_do_not_drift() {
     let mut connection = Connection::new(&opened(Topology::Adapter, true, ByteOrder::Little), at(5));
@@ -113,7 +113,7 @@ fn permit(_: DriveNumber) -> Permit {
     Permit::within(-1_000_000, 1_000_000)
 }
 
-/// An adapter whose drive follows at once, cycle by cycle.
+/// Adapter whose drive follows at once, cycle by cycle.
 struct Bench {
     drives: Drives,
     intent: Intent,
@@ -134,7 +134,7 @@ impl Bench {
         self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// The control word of the interval.
+    /// Returns the control word of the interval.
     fn cycle(&mut self) -> Option<u16> {
         if self.answers {
             self.sequence += 1;
@@ -170,8 +170,8 @@ impl Bench {
     }
 }
 
-/// Reference, issue and manual: three intervals without a packet are a loss. The stop word goes out all the same: it may be
-/// only the way back that is cut. Then off, then nothing any more, whatever comes.
+/// Reference, issue and manual: three intervals without a packet are a loss. The stop word is still sent, since only the
+/// return path may be cut. Then off, then nothing more, whatever arrives.
 #[test]
 fn a_loss_stops_and_stays() {
     let mut bench = Bench::jogs();
@@ -189,24 +189,24 @@ fn a_loss_stops_and_stays() {
     assert_eq!(bench.cycles(100), Vec::<String>::new());
 }
 
-/// A computer that was busy for 70 ms has heard nothing, and cannot say that nothing came: what came is still to be looked at.
-/// Beyond the target's time-out (80 ms here) the drives have stopped by themselves.
+/// A computer that was busy for 70 ms has not listened, and cannot tell that nothing arrived: received packets are still
+/// queued. After the target's time-out (80 ms here) the drives have stopped by themselves.
 #[test]
 fn whoever_was_kept_from_listening_listens_before_giving_up() {
     for (away, lost) in [(70, false), (100, true)] {
         let mut bench = Bench::jogs();
-        // What came stands in line behind whoever wakes up.
+        // Packets received meanwhile are queued when the thread wakes up.
         bench.answers = false;
         bench.ms += away;
         assert_eq!(bench.cycles(1).join(" "), "1419", "the first word that leaves again");
         bench.answers = true;
         bench.cycles(3);
         assert_eq!(bench.drives.lost().is_some(), lost, "{away} ms");
-        // Without knowing where the drive is nothing moves on.
+        // Without a known position nothing continues to move.
         let how = if lost { Ended::Lost } else { Ended::Deaf };
         assert_eq!(bench.drives.dead_men().next().unwrap().ended(), Some((1, how)), "{away} ms");
     }
-    // Nothing comes after it either.
+    // Nothing more arrives after it either.
     let mut bench = Bench::jogs();
     bench.answers = false;
     bench.ms += 40;
@@ -229,7 +229,7 @@ fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
         bench.answers = true;
         bench.cycles(3);
     }
-    // Nothing begins meanwhile.
+    // No motion starts meanwhile.
     bench.answers = false;
     bench.cycles(4);
     bench.act(MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false });
@@ -239,7 +239,7 @@ fn at_rest_silence_is_borne_until_the_time_out_of_the_target() {
     assert_eq!(bench.drives.lost(), Some(&CyclicLost::Silent { after: Duration::from_millis(90) }));
 }
 
-/// Closing is: stop, stand, off three times.
+/// Closing: stop, standstill, off three times.
 #[test]
 fn an_end_stops_and_switches_off() {
     let mut bench = Bench::jogs();
@@ -252,7 +252,7 @@ fn an_end_stops_and_switches_off() {
     assert!(bench.ms - begun <= 250, "{} ms", bench.ms - begun);
 }
 
-/// A drive that goes on moving: after the ladder the connection is to be closed.
+/// A drive that does not stop: after the ladder the connection is to be closed.
 #[test]
 fn a_drive_that_does_not_stand_ends_the_connection() {
     let mut bench = Bench::jogs();
@@ -285,7 +285,7 @@ fn the_others_rest() {
         intent.refreshed = at(ms);
         let Some(packet) = drives.poll(at(ms), &intent, permit) else { continue };
         let words = [0, 8, 16, 24].map(|place| u16::from_le_bytes([packet[24 + place], packet[25 + place]]));
-        // Of every place, also of those without a drive, what follows from its word.
+        // For every place, including those without a drive, the reply that follows from its word.
         let mut image = Vec::new();
         for (word, moves) in words.into_iter().zip(&mut moves) {
             let level = [(0x0400, 1), (0x0001, 2), (0x0008, 4)]
@@ -313,7 +313,7 @@ fn the_others_rest() {
 }
 
 proptest! {
-    /// Whatever comes is counted, and nothing of it moves a drive or keeps the connection alive.
+    /// Any packet is counted, and a malformed one neither moves a drive nor keeps the connection alive.
     #[test]
     fn any_packets(packets in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..80), 1..40)) {
         let mut bench = Bench::new();
@@ -326,14 +326,14 @@ proptest! {
         let after = bench.drives.figures();
         prop_assert_eq!(after.malformed + after.received + after.stale, before.malformed + before.received + packets.len() as u64);
         prop_assert_eq!(after.received, before.received);
-        // At rest it is kept for as long as the target waits, which is eight intervals here.
+        // At rest it is kept as long as the target waits, which is eight intervals here.
         bench.cycles(8);
         prop_assert!(bench.drives.lost().is_none());
         bench.cycles(2);
         prop_assert!(bench.drives.lost().is_some());
     }
 
-    /// A report that is cut, that has a bit flipped, that comes twice or late: no panic, and it counts once at most.
+    /// A report that is cut, has a bit flipped, is repeated or late: no panic, and it counts at most once.
     #[test]
     fn damaged_reports(
         reports in prop::collection::vec((0u32..40, 0usize..37, 0usize..400, 0u8..4), 1..60)

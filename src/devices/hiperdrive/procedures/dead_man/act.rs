@@ -8,25 +8,25 @@ use crate::units::Moment;
 /// A motion request to a drive, and when it was last refreshed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Intent {
-    /// Of which drive. The others rest.
+    /// The drive to move. The others rest.
     pub drive: DriveNumber,
     pub wish: MotionRequest,
-    /// The act of a person that it came with: each has a number of its own, higher than those before.
+    /// Number of the user's act: each has its own, higher than those before.
     pub number: u64,
-    /// When it was last said. After [`Intent::FRESH`] nothing that moves goes on.
+    /// Time of the last refresh. After [`Intent::FRESH`] no motion continues.
     pub refreshed: Moment,
 }
 
 /// A motion request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MotionRequest {
-    /// Nothing: what moves stops, and the drive's state is held.
+    /// No request: a motion stops, and the drive's state is held.
     Rest,
-    /// Another state.
+    /// Leads the drive to another state.
     Lead(Goal),
-    /// A fault is acknowledged; the drive is ready then.
+    /// Acknowledges a fault; the drive is then ready.
     Acknowledge,
-    /// To a place, in steps as scaled.
+    /// Moves to a position in scaled steps.
     Move {
         /// Target position.
         target: i32,
@@ -40,16 +40,16 @@ pub enum MotionRequest {
         /// Speed and torque.
         effort: Effort,
     },
-    /// The job that runs waits.
+    /// Pauses the running job.
     Pause,
-    /// The job that waits goes on.
+    /// Resumes the paused job.
     Resume,
-    /// Turning for as long as it is held, to the end of the range at most.
+    /// Turns as long as the button is held, to the end of the range at most.
     Jog {
         direction: Direction,
-        /// Speed and torque; slow ([`Effort::JOG`]) if it leads further out.
+        /// Speed and torque; limited to [`Effort::JOG`] if `outward` is set.
         effort: Effort,
-        /// From outside the limits it may lead further out: a wrong reference can make that the only way back.
+        /// If set, it may lead further out from outside the limits: with a wrong reference that can be the only way back.
         outward: bool,
     },
     /// Turning in speed mode.
@@ -79,71 +79,71 @@ pub enum Goal {
 /// Speed and torque of a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Of the greatest speed (parameter 166).
+    /// Percentage of the maximum speed (parameter 166).
     pub speed: Percent,
-    /// Of the nominal torque.
+    /// Percentage of the nominal torque.
     pub torque: Percent,
 }
 
-/// The permit of a drive.
+/// Permission of a drive to move: limits, locks and exceptions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Permit {
-    /// Parameters 158 and 160; `None` where they were not read.
+    /// Parameters 158 and 160; `None` if they were not read.
     pub limits: Option<(i32, i32)>,
     /// The locks that prevent motion.
     pub locks: Vec<Lock>,
-    /// It may run past its limits.
+    /// If set, it may run past its limits.
     pub endless: bool,
-    /// The parameters are to be read again before a motion begins; what is under way goes on.
+    /// If set, the parameters must be read again before a motion starts; a running one continues.
     pub doubted: bool,
-    /// Steps of one degree as scaled, at least 1: how exactly a drive repeats a position (manual, technical data).
+    /// Steps of one degree as scaled, at least 1: the repeatability of a drive (manual, technical data).
     pub degree: u32,
 }
 
 /// A reason why a drive may not move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Lock {
-    /// Its parameters were not read.
+    /// The parameters were not read.
     Unread,
-    /// Parameter 186 is 255, or no time: a drive that hears nothing any more could go on.
+    /// Parameter 186 is 255 or not a time: a drive could continue to move after communication is lost.
     NoTimeout,
     /// The scaling has changed, and the limits with it; the user has not confirmed them yet.
     LimitsUnconfirmed,
     /// Parameter 152 is not 1.
     NotRequested,
-    /// Its parameters were read too long ago: another master may have changed them since.
+    /// The parameters were read too long ago: another master may have changed them since.
     Outdated,
-    /// The device does not answer explicit messages any more.
+    /// The device no longer answers explicit messages.
     NoAnswer,
 }
 
 /// The phase of a drive's motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// Nothing: its state is held.
+    /// Its state is held.
     Idle,
-    /// It is led to this state.
+    /// It is being led to this state.
     Leading(Goal),
     /// A motion is about to begin.
     Starting(Motive),
     Moving(Motive),
-    /// Its job waits.
+    /// Its job is paused.
     Paused {
         target: i32,
     },
-    /// It is to stand.
+    /// It is being stopped.
     Stopping(Rung),
 }
 
 /// A motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motive {
-    /// To a place.
+    /// A positioning job.
     Job {
-        /// In steps as scaled.
+        /// In scaled steps.
         target: i32,
     },
-    /// In speed mode.
+    /// A run in speed mode.
     Run { direction: Direction, end: RunEnd },
 }
 
@@ -152,55 +152,55 @@ pub enum Motive {
 pub enum Rung {
     /// The stop of its mode. Torque stays on.
     Mode,
-    /// 0401h: operation is taken away.
+    /// 0401h: operation is disabled.
     Operational,
     /// 0000h.
     Off,
-    /// The cyclic connection is to be closed: the drives' own watchdog ends everything.
+    /// The cyclic connection is to be closed, so that the drives' own watchdog stops them.
     Close,
 }
 
 /// How an act ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// The drive was led to where it should be.
+    /// The drive has reached the requested state.
     Done,
     /// It is at its target.
     Arrived,
-    /// It stands at the end of the range.
+    /// It stopped at the end of the range.
     RangeEnd,
-    /// Released or stopped by the user.
+    /// Released or stopped.
     Stopped,
-    /// Another act came.
+    /// Replaced by another act.
     Replaced,
     /// Not refreshed in time.
     Stale,
-    /// The drive has said nothing for too long.
+    /// No reports from the drive for too long.
     Deaf,
     /// The cyclic connection was lost or closed.
     Lost,
-    /// The drive has failed. Nothing moves until that is acknowledged.
+    /// The drive has a fault. Nothing moves until it is acknowledged.
     Fault,
-    /// It may not move any more.
+    /// It is no longer permitted to move.
     Locked(Lock),
-    /// It was refused and nothing has been sent for it.
+    /// It was refused, and nothing was sent for it.
     Refused(Refusal),
-    /// The drive is in this state and did not follow a word of its way to where it should be.
+    /// The drive is in this state and did not follow a word on the way to the requested one.
     NoAnswer(State),
     /// The drive did not begin the motion.
     NotStarted,
-    /// The drive has left what it has to be in for a motion.
+    /// The drive has left the state required for a motion.
     Left(State),
-    /// The drive stands, but has not reached its target.
+    /// The drive stands still, but has not reached its target.
     Short,
     /// The drive is beyond its limits.
     Beyond {
-        /// In steps as scaled.
+        /// In scaled steps.
         position: i32,
     },
     /// The drive moves away from its target, or against the direction of its run.
     WrongWay {
-        /// In steps as scaled.
+        /// In scaled steps.
         position: i32,
     },
 }
@@ -208,48 +208,48 @@ pub enum Ended {
 /// Why an act was refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// It may not move.
+    /// The drive is locked.
     Locked(Lock),
     /// 0 % of speed or torque.
     NoEffort,
     /// The target is beyond the limits.
     Outside {
-        /// In steps as scaled.
+        /// In scaled steps.
         target: i32,
         /// Parameter 158.
         low: i32,
         /// Parameter 160.
         high: i32,
     },
-    /// It is outside its limits, and this would lead further out.
+    /// The drive is outside its limits, and this would lead further out.
     Outward {
-        /// In steps as scaled.
+        /// In scaled steps.
         position: i32,
         /// Parameter 158.
         low: i32,
         /// Parameter 160.
         high: i32,
     },
-    /// By status bit 15 it is outside its limits, though its position is inside: which way leads in is not known.
+    /// By status bit 15 the drive is outside its limits, though its position is inside: the direction back in is not known.
     Unclear {
-        /// In steps as scaled.
+        /// In scaled steps.
         position: i32,
         /// Parameter 158.
         low: i32,
         /// Parameter 160.
         high: i32,
     },
-    /// Past the limits it may not run.
+    /// An endless run is not allowed.
     Endless,
-    /// It has failed: that is to be acknowledged first.
+    /// The drive has a fault, which must be acknowledged first.
     Fault,
-    /// It is in the switch-on lock: it is to be led out of it first.
+    /// The drive is in the switch-on lock, and must be led out of it first.
     SwitchOnLock,
-    /// No job runs.
+    /// No job is running.
     NothingToPause,
-    /// No job waits.
+    /// No job is paused.
     NothingToResume,
-    /// There is no drive in this place.
+    /// No drive at this place.
     Absent,
 }
 
@@ -257,7 +257,7 @@ impl Intent {
     /// How long a refresh stays valid. It has to be repeated every 100 ms.
     pub const FRESH: Duration = Duration::from_millis(250);
 
-    /// Creates an act that requests nothing.
+    /// Creates an intent that requests nothing.
     pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
         Intent { drive, wish: MotionRequest::Rest, number, refreshed: now }
     }
@@ -281,7 +281,7 @@ impl MotionRequest {
         )
     }
 
-    /// Returns speed and torque, if it has any.
+    /// Returns speed and torque, if the request has any.
     pub fn effort(self) -> Option<Effort> {
         match self {
             MotionRequest::Jog { effort, outward: true, .. } => Some(effort.at_most(Effort::JOG)),
@@ -300,7 +300,7 @@ impl MotionRequest {
 }
 
 impl Goal {
-    /// All of them, the lowest first.
+    /// All goals, lowest first.
     pub const ALL: [Goal; 4] = [Goal::Off, Goal::Ready, Goal::Operational, Goal::Enabled];
 
     pub(super) const fn above(self) -> Goal {
@@ -323,7 +323,7 @@ impl Goal {
 }
 
 impl Effort {
-    /// Nothing would begin.
+    /// No speed and no torque: no motion starts.
     pub const NONE: Effort = Effort { speed: Percent::NONE, torque: Percent::NONE };
     /// Speed and torque of a new jog: 10 % and 25 %.
     pub const JOG: Effort = Effort { speed: percent(10), torque: percent(25) };
@@ -336,7 +336,7 @@ impl Effort {
         Effort { speed: self.speed.min(other.speed), torque: self.torque.min(other.torque) }
     }
 
-    /// 0 % of one of them: nothing would begin.
+    /// Returns whether speed or torque is 0 %: no motion would start.
     pub const fn is_none(self) -> bool {
         self.speed.get() == 0 || self.torque.get() == 0
     }
@@ -350,14 +350,14 @@ const fn percent(percent: u8) -> Percent {
 }
 
 impl Default for Permit {
-    /// Returns the permit for nothing, as long as a drive's parameters were not read.
+    /// Returns the permit before a drive's parameters were read: no motion.
     fn default() -> Self {
         Permit { limits: None, locks: vec![Lock::Unread], endless: false, doubted: false, degree: 1 }
     }
 }
 
 impl Permit {
-    /// Motion within these limits, with nothing against it, under the factory's scale of 65536 steps a turn.
+    /// Creates a permit for motion within these limits, without locks, with the factory scale of 65536 steps per turn.
     pub const fn within(low: i32, high: i32) -> Self {
         Permit { limits: Some((low, high)), locks: Vec::new(), endless: false, doubted: false, degree: 183 }
     }

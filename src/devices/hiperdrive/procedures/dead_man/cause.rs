@@ -5,7 +5,7 @@ use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
 use crate::units::Moment;
 
 impl DeadMan {
-    /// Ends the act that is under way where there is a reason to.
+    /// Ends the running act if there is a reason to.
     pub(super) fn look_for_an_end(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
         if self.act.is_none() {
             return;
@@ -86,7 +86,7 @@ impl DeadMan {
         }
     }
 
-    /// Returns whether another request has replaced this act.
+    /// Returns how the act ends if the intent is no longer for it; `None` if it still is.
     fn overtaken(&self, number: u64, said: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(
             intent.wish,

@@ -1,11 +1,11 @@
-//! Leading a drive through its states: one word after the other, each until the drive has followed, with a limit (reference 3,
-//! and the recipes of `devices/hiperdrive/protocol/recipe`).
+//! Leading a drive through its states: one word after the other, each until the drive has followed or a time limit ends
+//! (reference 3, and the recipes of `devices/hiperdrive/protocol/recipe`).
 
 use super::{Act, DeadMan, Ended, Goal, Mark, Motive, Refusal, SETTLE, STEP, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
 
-/// A drive on its way to a state.
+/// Sequence of words that leads a drive to a state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lead {
     goal: Goal,
@@ -14,11 +14,11 @@ pub(super) struct Lead {
     word: Option<(ControlWord, Mark)>,
 }
 
-/// How a drive is to continue.
+/// Next step of leading a drive.
 enum Way {
     By(ControlWord),
     There,
-    /// It does not follow.
+    /// The drive does not follow.
     Lost,
 }
 
@@ -36,7 +36,7 @@ impl Goal {
         }
     }
 
-    /// The word that holds it.
+    /// Returns the word that holds this goal.
     pub(super) const fn word(self) -> ControlWord {
         match self {
             Goal::Off => ControlWord::OFF,
@@ -52,7 +52,7 @@ impl Lead {
         Lead { goal, acknowledges: false, word: None }
     }
 
-    /// Out of a fault or the lock, to ready.
+    /// Leads out of a fault or the lock, to ready.
     const fn out() -> Self {
         Lead { goal: Goal::Ready, acknowledges: true, word: None }
     }
@@ -74,7 +74,7 @@ impl Lead {
     fn way(&self, now: Mark, status: StatusWord, after_run: bool) -> Way {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
-        // The drive has seen a word for long enough to have taken it: an edge follows that it must not miss.
+        // The drive has received a word for long enough to have processed it: the edge that follows must not be missed.
         let seen =
             |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
         let state = status.state();
@@ -90,7 +90,7 @@ impl Lead {
             (_, goal) => match Goal::of(state) {
                 level if level > goal => goal.word(),
                 level if level < goal => level.above().word(),
-                // Nothing else begins before it stands.
+                // Nothing else starts before it stands still.
                 _ if state == State::Moving => W::ENABLED,
                 _ if after_run && goal == Goal::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
                 _ => return Way::There,
@@ -102,7 +102,7 @@ impl Lead {
 }
 
 impl DeadMan {
-    /// Leads the drive as it was asked for.
+    /// Starts to lead the drive to the requested state.
     pub(super) fn lead(&mut self, now: Moment, actual: Actual, goal: Goal) -> Result<(), Refusal> {
         if actual.status.has(StatusBit::Fault) && goal != Goal::Off {
             return Err(Refusal::Fault);
@@ -122,7 +122,7 @@ impl DeadMan {
         Ok(())
     }
 
-    /// A step of the way.
+    /// Takes the next step.
     pub(super) fn go_on(&mut self, now: Moment, actual: Actual, mut lead: Lead) {
         let mark = self.mark(now);
         match lead.way(mark, actual.status, self.after_run) {
@@ -154,11 +154,11 @@ impl DeadMan {
         self.stage = Stage::Arm { since: self.mark(now), acknowledged };
     }
 
-    /// The drive stays where it is, or goes down: a way was given up.
+    /// Holds the present state or a lower one after the leading was given up.
     pub(super) fn hold_what_is(&mut self, state: State) {
         let highest = if self.after_run { Goal::Ready } else { Goal::Enabled };
         self.level = match state {
-            // Bit 0 stays for the acknowledgement.
+            // Bit 0 stays set for the acknowledgement.
             State::Fault | State::Locked => Goal::Operational,
             state => Goal::of(state),
         }

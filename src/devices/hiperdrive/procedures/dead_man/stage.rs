@@ -1,4 +1,4 @@
-//! The stage of an act: armed, started, under way, to be stopped; and its control word.
+//! The stages of the dead-man: at rest, leading, armed, started, moving, paused, stopping; and their control words.
 
 use std::time::Duration;
 
@@ -7,37 +7,37 @@ use super::{DeadMan, Effort, Ended, Goal, Motion, Motive, RUNG, Rung, SETTLE, SH
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
 
-/// The stage of an act.
+/// Stage of the dead-man.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Stage {
-    /// Its level is held.
+    /// The level is held.
     Rest {
-        /// Since when it moves regardless.
+        /// Since when the drive moves although it should rest.
         moves: Option<Moment>,
     },
     /// It is led to another state.
     Lead(Lead),
-    /// It has the set-points of a motion, and the word from which that begins.
+    /// It has the setpoints of a motion, and the word from which the motion can start.
     Arm {
         since: Mark,
         /// Status bit 12 as reported before.
         acknowledged: bool,
     },
-    /// The motion begins.
+    /// The motion starts.
     Start { since: Mark, acknowledged: bool },
-    /// It is under way.
+    /// The motion is running.
     Go {
         since: Mark,
         acknowledged: bool,
-        /// Since when the drive stands.
+        /// Since when the drive stands still.
         stands: Option<Mark>,
     },
-    /// A job waits.
+    /// A job is paused.
     Paused { since: Mark, acknowledged: bool },
-    /// The drive is to stand.
+    /// The drive is being stopped.
     Stop {
         rung: Rung,
-        /// On this rung.
+        /// Start of this rung.
         since: Moment,
         begun: Mark,
         /// The stop of its mode.
@@ -45,30 +45,30 @@ pub(super) enum Stage {
     },
 }
 
-/// A moment, and how often something had been heard then.
+/// A moment, with the number of reports received until then.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     pub(super) at: Moment,
     pub(super) report: u64,
 }
 
-/// Number of reports after a mark, late enough, that prove a later state.
+/// Number of reports after a mark of which the last one surely describes the time after it, if the time has passed too.
 const REPORTS: u64 = 2;
 
 impl Mark {
-    /// Returns whether something was heard since `earlier`, and that is `time` ago.
+    /// Returns whether at least `time` has passed since `earlier`, and [`REPORTS`] reports have arrived.
     pub(super) fn is_past(self, earlier: Mark, time: Duration) -> bool {
         self.at.since(earlier.at) >= time && self.report >= earlier.report + REPORTS
     }
 }
 
 impl Stage {
-    /// A motion is meant.
+    /// Returns whether a motion is requested.
     pub(super) const fn moves(&self) -> bool {
         matches!(self, Stage::Arm { .. } | Stage::Start { .. } | Stage::Go { .. })
     }
 
-    /// A motion is meant or waits.
+    /// Returns whether a motion is requested or paused.
     pub(super) const fn has_motion(&self) -> bool {
         self.moves() || matches!(self, Stage::Paused { .. })
     }
@@ -95,7 +95,7 @@ impl DeadMan {
             Stage::Lead(lead) => self.go_on(now, actual, lead),
             Stage::Arm { since, acknowledged } => {
                 if self.runs() || !toggled(acknowledged) {
-                    // It has seen the word.
+                    // It has received the word.
                     if mark.is_past(since, Duration::ZERO) {
                         self.stage = Stage::Start { since: mark, acknowledged };
                     }
@@ -131,7 +131,7 @@ impl DeadMan {
 
     fn look_whether_it_is_over(&mut self, mark: Mark, actual: Actual, stands: Mark) {
         let Stage::Go { since, .. } = self.stage else { return };
-        // A word from before the beginning may still say that it stands, or has arrived at another target.
+        // A report from before the start may still say that it stands still, or has reached another target.
         let late = mark.is_past(since, SETTLE);
         if self.runs() {
             if late && mark.is_past(stands, SETTLE) {
@@ -147,12 +147,12 @@ impl DeadMan {
         }
     }
 
-    /// The motion is one in speed mode.
+    /// Returns whether the motion is one in speed mode.
     pub(super) fn runs(&self) -> bool {
         self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.motive, Motive::Run { .. }))
     }
 
-    /// The act has ended, and what moves is to stand.
+    /// Ends the act, and stops its motion.
     pub(super) fn stop(&mut self, now: Moment, how: Ended) {
         let moved = self.stage.has_motion();
         self.end(how);
@@ -162,15 +162,15 @@ impl DeadMan {
         }
     }
 
-    /// Up the ladder while it does not stand; what is held when it does. Behind a run that is ready, from where the next
-    /// motion leads up again.
+    /// Climbs the ladder while the drive moves, and holds its state once it stands still. After a run that state is ready,
+    /// from which the next motion leads up again.
     fn climb(&mut self, mark: Mark, actual: Actual) {
         let Stage::Stop { rung, since, begun, word } = self.stage else { return };
         if rung == Rung::Close {
             return;
         }
         if mark.is_past(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
-            // No higher than the rung's own word.
+            // Not above the rung's own word.
             self.hold_what_is(actual.status.state());
         } else if mark.at.since(since) >= RUNG {
             let rung = rung.next();
@@ -178,7 +178,7 @@ impl DeadMan {
         }
     }
 
-    /// A drive at rest: what is held follows it down, and it has to stand.
+    /// Watches a drive at rest: the level held follows it down, and a drive that moves is stopped.
     fn watch(&mut self, now: Moment, actual: Actual, moves: Option<Moment>) {
         match actual.status.state() {
             State::Fault | State::Locked => self.level = self.level.min(Goal::Operational),
@@ -197,7 +197,7 @@ impl DeadMan {
         }
     }
 
-    /// The word of an enabled drive at rest: a stop, and bit 6 as it was.
+    /// Returns the word of a drive at rest: if enabled, a stop with bit 6 unchanged.
     fn resting(&self) -> ControlWord {
         let sent = self.sent.control;
         let enabled = Goal::of_word(sent) == Goal::Enabled;
@@ -217,7 +217,7 @@ impl DeadMan {
             (Stage::Stop { rung: Rung::Operational, .. }, _) => ControlWord::OPERATIONAL,
             (Stage::Stop { rung: Rung::Off | Rung::Close, .. }, _) => ControlWord::OFF,
             (stage, Some(Motion { motive, .. })) => moving(stage, motive, actual),
-            // There is no motion in these stages without an act.
+            // Without an act there is no motion in these stages.
             (_, None) => ControlWord::READY,
         };
         let target = match (&self.stage, motion.and_then(|motion| motion.motive.target())) {

@@ -1,5 +1,5 @@
-//! docs/motion.md says how a motion ends, as a table of phases and events; here it is read and played (issue 21, *What must
-//! hold*).
+//! The table of phases and events in docs/motion.md, which says how a motion ends, is read and played here (issue 21, *What
+//! must hold*).
 
 use std::time::Duration;
 
@@ -17,12 +17,12 @@ struct Bench {
     permit: Permit,
     status: u16,
     position: i32,
-    /// The request is refreshed all the time.
+    /// The request is refreshed in every interval.
     refreshes: bool,
     heard: bool,
 }
 
-/// Enabled and standing; enabled and moving, with the acknowledgement of a job or a run.
+/// Status words: ready; enabled and standing; enabled and moving, and standing, with the acknowledgement of a job or a run.
 const READY: u16 = 0x2A31;
 const ENABLED: u16 = 0x2A37;
 const MOVING: u16 = 0x1A37;
@@ -59,7 +59,7 @@ impl Bench {
         (0..count).for_each(|_| self.cycle());
     }
 
-    /// Returns the row of the table for this phase.
+    /// Creates a bench whose dead-man is in this phase of the table.
     fn in_phase(name: &str) -> Self {
         let job = MotionRequest::Move { target: 5000, effort: Effort::JOG };
         let jog = MotionRequest::Jog { direction: Direction::Clockwise, effort: Effort::JOG, outward: false };
@@ -119,7 +119,7 @@ impl Bench {
             "no status from the drive" => {
                 self.heard = false;
                 self.man.fall_deaf(self.now);
-                // What is only led waits longer.
+                // Leading alone takes longer.
                 let leads = matches!(self.man.phase(), Phase::Leading(_));
                 self.cycles(if leads { 36 } else { 0 });
             }
@@ -139,7 +139,7 @@ impl Bench {
             }
             "standstill" => {
                 self.status = if self.status & 0x1000 == 0 { ENABLED } else { STANDING };
-                // A start is given a second, a drive that stands half of one.
+                // A start is allowed a second, a drive at standstill half a second.
                 self.cycles(if paused { 0 } else { 110 });
             }
             other => panic!("{other} is no event"),
@@ -147,7 +147,7 @@ impl Bench {
     }
 }
 
-/// The rows of the table, with its head: cells without blanks around them.
+/// Returns the rows of the table with its head: trimmed cells.
 fn table() -> Vec<Vec<&'static str>> {
     let lines = DOCUMENT.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
@@ -170,7 +170,7 @@ fn motions_end_as_the_document_says() {
                 format!("{how:?}").split([' ', '(', '{']).next().unwrap_or_default().to_owned()
             });
             assert_eq!(&name, expected, "{} while {phase}", row[0]);
-            // Whatever has ended, the word on the wire stands.
+            // However the act has ended, the word sent is a standing one.
             assert!(ended.is_none() || bench.man.sent().control.is_standing(), "{} while {phase}", row[0]);
         }
     }

@@ -1,4 +1,4 @@
-//! The dead-man with anything: whatever a drive says, a person wants and the clock does.
+//! The dead-man with arbitrary reports, requests and times.
 
 use std::time::Duration;
 
@@ -15,19 +15,19 @@ const FULL: Effort = Effort { speed: Percent::FULL, torque: Percent::FULL };
 /// Bits 1, 2, 11 and 13 to 15, and those of jog steps.
 const NEVER: u16 = 0b1110_1011_0000_0110;
 
-/// What happens in an interval.
+/// Input of an interval.
 #[derive(Clone, Debug)]
 struct Tick {
     ms: u64,
-    /// `None`: nothing was heard. Status word and position.
+    /// Status word and position; `None`: nothing was received.
     heard: Option<(u16, i32)>,
-    /// A new act, of this drive or another.
+    /// A new act, for this drive or another.
     act: Option<(bool, MotionRequest)>,
-    /// It is said that the act is wanted still.
+    /// The act is refreshed.
     refreshed: bool,
     locked: bool,
     endless: bool,
-    /// The number falls back, or the wish changes under its number.
+    /// The number decreases, or the request changes under its number.
     meddled: Option<MotionRequest>,
 }
 
@@ -54,7 +54,7 @@ fn wish() -> impl Strategy<Value = MotionRequest> {
     ]
 }
 
-/// Words that drives really say come more often than any.
+/// Realistic status words are generated more often than arbitrary ones.
 fn status() -> impl Strategy<Value = u16> {
     let said = [0x2A30, 0x2A31, 0x2A33, 0x2A37, 0x3A37, 0x1A37, 0x0A37, 0x3E37, 0x2E37, 0x2AB8, 0x2A70, 0, 0x0A30];
     prop_oneof![8 => prop::sample::select(said.to_vec()), 1 => any::<u16>()]
@@ -81,7 +81,7 @@ fn heard(said: Option<(u16, i32)>) -> Option<Actual> {
     said.map(|(status, position)| Actual { status: StatusWord::new(status), speed: 0, position })
 }
 
-/// Each status that matters, before any word that matters: nothing begins with a word that stands.
+/// Every relevant status before every relevant word: a standing word starts nothing.
 #[test]
 fn nothing_begins_with_a_word_that_stands() {
     let befores: Vec<ControlWord> =
@@ -101,7 +101,7 @@ fn nothing_begins_with_a_word_that_stands() {
     assert_eq!(standing, 512 + 48 + 32);
 }
 
-/// The trap of reference 3: behind a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5 are
+/// The trap of reference 3: after a run, no word on the way clears bit 12 while the drive is enabled and bits 4 and 5 are
 /// set, and the drive is below operational before it is enabled again.
 #[test]
 fn out_of_speed_mode_through_ready() {
@@ -115,7 +115,7 @@ fn out_of_speed_mode_through_ready() {
         let wish = if at < 20 { jog } else { MotionRequest::Stop };
         let intent = Intent { drive: DriveNumber::FIRST, wish, number: 1 + u64::from(at >= 20), refreshed: now };
         let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.word();
-        // It acknowledges a run with bit 12, and forgets it below operational alone.
+        // It acknowledges a run with bit 12, and forgets it only below operational.
         status = match word {
             0x1459 => 0x1A37,
             0x1419 if status & 0x1000 != 0 => 0x3A37,
@@ -130,7 +130,7 @@ fn out_of_speed_mode_through_ready() {
     assert_eq!((man.sent().target, man.ended()), (77, Some((1, Ended::Stopped))));
 }
 
-/// Between two looks of a thread that was kept from looking, a stop may have been said, and something else behind it.
+/// Between two calls of a thread that was suspended, a stop may have been requested, followed by something else.
 #[test]
 fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
     let permit = Permit::within(-1000, 1000);
@@ -153,14 +153,14 @@ fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
             look(&mut man, number, MotionRequest::Pause, 0x1A37);
             assert!(matches!(man.phase(), Phase::Paused { .. }));
         }
-        // The one between them was a stop.
+        // The act between them was a stop.
         let word = look(&mut man, number + 2, next, 0x1A37);
         assert!(word.is_standing() && matches!(man.phase(), Phase::Stopping(_)), "{:?}", man.phase());
         assert_eq!(man.ended(), Some((number, Ended::Stopped)));
     }
 }
 
-/// A drive that answers as it is told to, ten milliseconds a look; somebody says all the time that it is still wanted.
+/// Drive that replies as configured, ten milliseconds per call; the request is always fresh.
 struct Looks {
     man: DeadMan,
     now: Moment,
@@ -179,7 +179,7 @@ impl Looks {
         self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
     }
 
-    /// So many looks at a drive that says this.
+    /// Calls the dead-man this number of times with a drive that reports this.
     fn look(&mut self, times: u32, status: u16, position: i32) -> Setpoint {
         for _ in 0..times {
             self.now = self.now + Duration::from_millis(10);
@@ -192,8 +192,8 @@ impl Looks {
 
 const CLOCKWISE: MotionRequest = MotionRequest::Jog { direction: Direction::Clockwise, effort: FULL, outward: false };
 
-/// Issue 21.3: parameters that somebody doubts while a drive is still led to where it may move are read before it does; what
-/// moves goes on, and what waits does not begin again.
+/// Issue 21.3: parameters that are doubted while a drive is still being led up are read before it moves; a running motion
+/// continues, and a paused one does not resume.
 #[test]
 fn a_doubt_keeps_a_motion_from_its_beginning() {
     let doubted = Ended::Refused(Refusal::Locked(Lock::Outdated));
@@ -223,8 +223,8 @@ fn a_doubt_keeps_a_motion_from_its_beginning() {
     assert_eq!(looks.man.ended(), Some((2, doubted)));
 }
 
-/// Issue 21.4: limits that another master writes, or a shaft that is pushed, between the last word on the way up and the first
-/// of the motion: a drive that is outside then did not begin there, and goes no further out.
+/// Issue 21.4: limits that another master changes, or a shaft that is pushed, between the last word on the way up and the
+/// first of the motion: a drive that is outside then did not start there, and does not move further out.
 #[test]
 fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
     for (wish, direction) in [
@@ -251,7 +251,7 @@ fn a_drive_that_gets_outside_before_it_moves_does_not_begin() {
     }
 }
 
-/// Issue 21.4: status bit 15 between limits that are both within a degree does not tell at which of them the drive is.
+/// Issue 21.4: if both limits are within a degree, status bit 15 does not tell at which of them the drive is.
 #[test]
 fn near_both_limits_bit_15_does_not_tell_the_way_in() {
     let at = |position| Permit::within(-150, 150).outside(heard(Some((0xAA37, position))).unwrap());
@@ -260,8 +260,8 @@ fn near_both_limits_bit_15_does_not_tell_the_way_in() {
     assert_eq!((at(-151), at(151)), (Some(Outside::At(Side::Below)), Some(Outside::At(Side::Above))));
 }
 
-/// Issue 21.6b: the first packets of a connection are no position (a hub first asks all its drives), so that a step from there
-/// would lead somewhere else. It begins once positions have come for 250 ms.
+/// Issue 21.6b: the first packets of a connection contain no position (a hub first queries all its drives), so a step from
+/// there would lead elsewhere. It starts once positions have arrived for 250 ms.
 #[test]
 fn a_step_is_not_counted_from_the_first_packets() {
     let mut looks = Looks::new();
@@ -283,7 +283,7 @@ proptest! {
         let mut now = Moment::START;
         let mut intent = Intent::rest(DriveNumber::FIRST, 5, now);
         let mut before = Setpoint::default();
-        // Acts up to this one have ended, by our own book.
+        // Acts up to this one have ended, by the test's own record.
         let mut over = 5;
         let mut unmet = Duration::ZERO;
         for Tick { ms, heard: said, act, refreshed, locked, endless, meddled } in ticks {
@@ -291,7 +291,7 @@ proptest! {
             now = now + step;
             if let Some((own, wish)) = act {
                 let other = DriveNumber::new(2).unwrap();
-                // A pause and its end carry a job on; any other act, and a gap of time, ends the one before.
+                // A pause and its end continue a job; any other act, and a gap in time, ends the previous one.
                 let carries = matches!(wish, MotionRequest::Pause | MotionRequest::Resume) && own && !intent.is_stale(now);
                 over = if carries { over } else { intent.number };
                 let drive = if own { DriveNumber::FIRST } else { other };
@@ -330,7 +330,7 @@ proptest! {
             // Out of speed mode: never by clearing bit 12 alone.
             let leaves = before.control.has(ControlBit::SpeedMode) && !word.has(ControlBit::SpeedMode);
             prop_assert!(!leaves || !word.has(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
-            // A drive that does not stand goes up the ladder to its end.
+            // A drive that does not stop is led through the whole ladder.
             unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
             prop_assert!(unmet < RUNG * 3 + Duration::from_millis(240) || man.gives_up());
             before = sent;

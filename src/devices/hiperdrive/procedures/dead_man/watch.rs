@@ -1,4 +1,4 @@
-//! The watch over a motion: the position of every report is held against the limits and the target, so that a drive that
+//! The watch over a motion: the position in every report is compared with the limits and the target, so that a drive that
 //! ignores its limits or turns the wrong way is stopped with the very next packet.
 //!
 //! | case | what holds |
@@ -9,8 +9,8 @@
 //! | outside by status bit 15 alone, more than a degree inside or near both limits | nothing moves but what was freed for this press: the way in is not known |
 //! | overrun while braking | a stop that is under way goes on; its reason stays |
 //!
-//! Within one degree beyond a limit the motion ended at the end of its range: a drive repeats a position no better than
-//! ±1° (manual, technical data; reference 5).
+//! Within one degree beyond a limit, a run has ended at the end of its range: a drive repeats a position no better than ±1°
+//! (manual, technical data; reference 5).
 
 use super::{DeadMan, Ended, Lock, Motion, MotionRequest, Motive, Permit, Refusal, SHORT, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
@@ -29,22 +29,22 @@ pub enum Side {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outside {
     At(Side),
-    /// The drive says so by status bit 15, and its position is more than a degree inside both limits, or near both.
+    /// Status bit 15 is set, but the position is more than a degree inside both limits, or near both.
     Unclear,
 }
 
-/// Supervises the course of a motion.
+/// Supervision of a running motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Watch {
-    /// It began outside the limits, here, and has not been inside since.
+    /// How it was outside the limits at the start; `None` once it has been inside.
     outside: Option<Outside>,
-    /// The least distance so far: of a job to its target, of a run to where it leads.
+    /// The least distance so far: of a job to its target, of a run in its direction.
     best: i64,
     /// Position of a waiting job after braking.
     waits_at: Option<i32>,
-    /// A person has freed the way further out, from outside, for this press.
+    /// The user has enabled the way further out, from outside, for this press.
     freed: bool,
-    /// A run began at the end of the range to which it leads: there may be nowhere to go.
+    /// A run started at the end of the range to which it leads: there may be no travel left.
     pub(super) at_end: bool,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Watch {
 const ACCURACY: i64 = 3;
 
 impl Outside {
-    /// This direction may lead further out.
+    /// Returns whether this direction may lead further out.
     pub fn is_outward(self, direction: Direction) -> bool {
         match self {
             Outside::At(side) => side.outward() == direction,
@@ -67,7 +67,7 @@ impl Permit {
     pub fn outside(&self, actual: Actual) -> Option<Outside> {
         let (limits, degree) = (self.limits?, i64::from(self.degree));
         let by_status = || {
-            // Of a range so narrow that both limits are within a degree it may be either.
+            // In a range so narrow that both limits are within a degree, it may be either.
             match [Side::Below, Side::Above].map(|side| side.beyond(actual.position, limits) >= -degree) {
                 [true, false] => Outside::At(Side::Below),
                 [false, true] => Outside::At(Side::Above),
@@ -84,7 +84,7 @@ fn side(position: i32, (low, high): (i32, i32)) -> Option<Side> {
 }
 
 impl Side {
-    /// Steps beyond the limit of this side; negative inside.
+    /// Returns the steps beyond the limit of this side; negative inside.
     pub fn beyond(self, position: i32, (low, high): (i32, i32)) -> i64 {
         match self {
             Side::Above => i64::from(position) - i64::from(high),
@@ -92,7 +92,8 @@ impl Side {
         }
     }
 
-    /// The direction that leads further out. Clockwise counts up (manual 7.2: the step of parameter 170, +4096, is clockwise).
+    /// Returns the direction that leads further out. Clockwise counts up (manual 7.2: the step of parameter 170, +4096, is
+    /// clockwise).
     pub const fn outward(self) -> Direction {
         match self {
             Side::Above => Direction::Clockwise,
@@ -102,13 +103,14 @@ impl Side {
 }
 
 impl Motion {
-    /// The limits that this motion has to obey: none for an endless run.
+    /// Returns the limits that apply to this motion: none for an endless run.
     fn limits(&self, permit: &Permit) -> Option<(i32, i32)> {
         let endless = matches!(self.motive, Motive::Run { end: RunEnd::Endless, .. });
         permit.limits.filter(|_| !endless)
     }
 
-    /// Steps to the target of a job; of a run, which has none, how the distance changes as it goes the way it should.
+    /// Returns the steps to the target of a job. For a run, which has no target, returns a number that decreases as it
+    /// moves in its direction.
     fn distance(&self, actual: Actual) -> i64 {
         let position = i64::from(actual.position);
         match self.motive {
@@ -135,13 +137,13 @@ impl Watch {
         Watch { outside, best, waits_at: None, freed, at_end }
     }
 
-    /// Holds a report against the limits and the target. Returns how the motion ends, where it has to.
+    /// Compares a report with the limits and the target. Returns how the motion ends, if it must.
     pub(super) fn look(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance(actual);
         self.best = self.best.min(distance);
         let is_job = matches!(motion.motive, Motive::Job { .. });
-        // The target of a job lies within the limits: a degree beside it is no overrun.
+        // The target of a job is within the limits: up to a degree from it is no overrun.
         let beyond = if is_job && distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
         // At its target a job may overshoot by its accuracy.
         let arrives = is_job && self.best <= ACCURACY * degree;
@@ -209,7 +211,7 @@ impl Permit {
 }
 
 impl DeadMan {
-    /// Holds what the drive says now against the limits and the target of its motion.
+    /// Compares the present report with the limits and the target of the motion.
     pub(super) fn watch_motion(&mut self, now: Moment, actual: Actual, permit: &Permit) -> Option<Ended> {
         let mark = self.mark(now);
         let act = self.act.as_mut()?;
@@ -218,7 +220,8 @@ impl DeadMan {
             act.watch = None;
         }
         let Some(watch) = &mut act.watch else {
-            // Before it begins, with the first report behind the way up as well: what holds at the beginning holds there.
+            // Before the start, including the first report after leading up: the conditions for a start apply there as
+            // well.
             let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
             let refusal = doubted.or_else(|| permit.check_place(motion.wish, actual).err());
             if refusal.is_none() && self.stage.has_motion() {

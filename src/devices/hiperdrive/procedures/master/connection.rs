@@ -1,7 +1,7 @@
-//! The cyclic connection is opened and closed over explicit messages (reference 7); what goes over it is not here.
+//! Opening and closing the cyclic connection over explicit messages (reference 7). Its packets are in `cyclic`.
 //!
-//! Sizes and kinds of connection that a device takes its description would say (`U`): with parameter words and from one to the
-//! other is asked for first, then to all who listen, then without parameter words.
+//! The sizes and kinds of connection that a device accepts would be in its description (`U`). Tried in this order: with
+//! parameter words, point to point; then multicast; then without parameter words.
 
 use core::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -22,11 +22,11 @@ pub struct Opened {
     pub to_target_id: u32,
     /// Connection id of packets to the originator.
     pub to_originator_id: u32,
-    /// From one packet to the target to the next.
+    /// Interval of packets to the target.
     pub to_target_interval: Duration,
-    /// From one packet of the target to the next.
+    /// Interval of packets from the target.
     pub to_originator_interval: Duration,
-    /// Without a packet for so long, the target ends the connection and the drives stop.
+    /// Time without a packet after which the target ends the connection and the drives stop.
     pub timeout: Duration,
     /// Layout of the process data.
     pub layout: Layout,
@@ -38,12 +38,12 @@ pub struct Opened {
     pub close: ForwardClose,
 }
 
-/// Our name in the list of makers: none that is given away (reference 9).
+/// Vendor ID of this program: an unassigned number (reference 9).
 const VENDOR: u16 = 0x1234;
-/// Eight intervals: a host that is late once loses nothing. Of long ones four are enough, so that drives stop soon.
+/// Eight intervals: a host that is late once loses nothing. Long intervals use four, so that drives stop soon.
 const TIMEOUT: u8 = 1;
 const LONG_TIMEOUT: u8 = 0;
-/// From here on intervals are long.
+/// Intervals from here on count as long.
 const LONG: Duration = Duration::from_millis(35);
 /// Factor by which a device may extend the interval, up to the longest that may be requested.
 const SLOWER: u32 = 2;
@@ -57,10 +57,10 @@ const KINDS: [u16; 3] = [KIND, 0x0123, 0x0124];
 const SIZES: [u16; 3] = [0x0109, 0x0127, 0x0128];
 
 impl Master<'_> {
-    /// Opens the cyclic connection; packets of the target are to come to this port of ours.
+    /// Opens the cyclic connection; the target sends its packets to the local `port`.
     ///
     /// # Errors
-    /// [`Error::OtherMaster`], [`Error::Refused`]; the way.
+    /// [`Error::OtherMaster`], [`Error::Refused`]; errors of the exchange.
     pub fn forward_open(&mut self, topology: Topology, port: u16) -> Result<Opened, Error> {
         let order = self.station.link.order;
         let with = |pkw| Layout { topology, pkw, order };
@@ -92,10 +92,10 @@ impl Master<'_> {
         }
     }
 
-    /// Closes a cyclic connection. One that has ended already is closed. A wish to end is not heard.
+    /// Closes a cyclic connection. One that has already ended counts as closed. Cancellation is ignored.
     ///
     /// # Errors
-    /// [`Error::Refused`]; the way.
+    /// [`Error::Refused`]; errors of the exchange.
     pub fn forward_close(&mut self, close: &ForwardClose) -> Result<(), Error> {
         const ENDED: u16 = 0x0107;
         match self.shielded(|master| master.request(RequestedItem::Close, &close.request(), Repeats::Always)) {
@@ -141,7 +141,8 @@ impl Master<'_> {
         };
         let ours = Item::SocketToOriginator(SocketAddress::new(Ipv4Addr::UNSPECIFIED, port));
         let close = ForwardClose { timeout: open.timeout, owner, path: open.path.clone() };
-        // Opened twice it would be refused as in use: it is sent once. Where its reply is not understood it may be open.
+        // A second open would be refused as in use, so it is sent once. If its reply is not understood, the connection may
+        // be open.
         let requested = self.request_with(RequestedItem::Open, &open.request(), &[ours], ONCE);
         let opened = requested.and_then(|(reply, items)| match ForwardOpened::parse(&reply.data) {
             Ok(opened) => Ok((opened, items)),
@@ -183,7 +184,7 @@ fn is_of_connection(refusal: &Refusal) -> bool {
     refusal.status == GeneralStatus::CONNECTION
 }
 
-/// Asking like this leaves out what was refused.
+/// Returns whether a request of this layout and kind avoids the refused one.
 fn answers(refusal: &Refusal, layout: Layout, kind: NetworkType) -> bool {
     let first = refusal.extended.first().filter(|_| is_of_connection(refusal));
     match first {

@@ -17,7 +17,7 @@ impl Master<'_> {
     /// Returns why a parameter was refused, as far as can be found out.
     ///
     /// # Errors
-    /// The way.
+    /// Errors of the exchange.
     pub(super) fn why_refused(
         &mut self,
         requested: RequestedItem,
@@ -75,8 +75,8 @@ impl Master<'_> {
         }
     }
 
-    /// Returns the present range of a parameter: 160 is above 158, position and reference lie between them (reference
-    /// 4), and no limit is more turns from 0 than the drive has (5).
+    /// Returns the present range of a parameter: 160 is above 158, position and reference are between them (reference 4),
+    /// and no limit is farther from 0 than the drive's turns (5).
     fn range_now(&mut self, number: ParameterNumber, row: &ParameterRow) -> Result<Option<Range>, Error> {
         let travel = match number.drive().filter(|_| row.reach.is_some()) {
             Some(drive) => self.travel(drive)?,
@@ -89,7 +89,7 @@ impl Master<'_> {
         let mut of_drive = |base| match ParameterNumber::of_drive(base, drive) {
             Some(number) => match self.read_number(number) {
                 Ok(value) => Ok(Some(value)),
-                // Why the other one was refused counts.
+                // The cause of the original refusal is what counts.
                 Err(error) if error.is_unsaid() => Ok(None),
                 Err(error) => Err(error),
             },

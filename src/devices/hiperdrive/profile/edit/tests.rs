@@ -1,11 +1,11 @@
-//! Orders of writing, refusals, warnings: against the rules of the manual, worked out by hand.
+//! Orders of writing, refusals, warnings: compared with the rules of the manual, worked out by hand.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number};
 use crate::devices::hiperdrive::profile::{Warning, warnings};
 use crate::devices::hiperdrive::protocol::{Range, Variant};
 
-/// What a plan writes, one after the other; a service by its code.
+/// Returns the writes of a plan in order; a service by its code.
 fn steps(plan: &HiperdrivePlan) -> Vec<(u16, i64)> {
     let step = |op: &Op| match op {
         Op::Write { number, new, .. } => (number.get(), *new),
@@ -19,7 +19,7 @@ fn at(place: u8, position: i32) -> Positions {
     [(drive(place), position)].into()
 }
 
-/// A hub with drives HDA30A at its places 1 and 3.
+/// Returns the state of a hub with drives HDA30A at places 1 and 3.
 fn state(image: &Image, positions: &Positions) -> DeviceState {
     let identity = identity("100", &[(1, "4711"), (3, "4712")]);
     DeviceState { identity, image: image.clone(), positions: positions.clone() }
@@ -78,8 +78,8 @@ fn a_drive_is_requested_before_all_else_and_given_up_after_it() {
     assert_eq!(warnings(&plan), [Warning::NotRequested(drive(3))]);
 }
 
-/// Old limits, where the drive stands, new ones; and which of them the drive takes first. The rules (reference 4): 160 is
-/// above 158, and the drive between both, with every write.
+/// Old limits, position, new limits; and which of them the drive accepts first. The rules (reference 4): 160 is above 158,
+/// and the drive between both, at every write.
 #[test]
 fn limits_are_written_in_the_order_that_the_drive_takes() {
     let cases = [
@@ -112,7 +112,7 @@ fn limits_are_written_in_the_order_that_the_drive_takes() {
 }
 
 proptest::proptest! {
-    /// Whatever the limits are, and wherever the drive stands: each write leaves it between limits that are in order.
+    /// For any limits and any position: each write leaves the drive between limits that are in order.
     #[test]
     fn limits_are_always_written_as_the_drive_takes_them(
         old in (-100i64..100, 1i64..100),
@@ -123,7 +123,7 @@ proptest::proptest! {
         let device = image(&[1]).with(&image_of(&[(158, old.0), (160, old.1)]));
         let plan = plan_edits(&device, &image_of(&[(158, new.0), (160, new.1)]), &at(1, position));
         let is_inside = (new.0..=new.1).contains(&i64::from(position));
-        // Where nothing differs, nothing is looked at.
+        // Without differences nothing is checked.
         proptest::prop_assert_eq!(plan.is_ok(), is_inside || old == new);
         let mut limits = old;
         for (own, value) in plan.iter().flat_map(steps) {
@@ -146,9 +146,9 @@ fn a_drive_outside_its_new_limits_is_not_touched() {
     // 163840 are 2.5 turns, which are 1000 steps of 400 a turn.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], 163_840), outside(1000, 0, 999));
     assert!(plan(&[(154, 400), (156, 256), (158, 0), (160, 1000)], 163_840).is_ok());
-    // −1 step of 65536 a turn lies in step −1 of 400, which reaches from −1/400 turn to 0.
+    // −1 step of 65536 per turn is step −1 of 400, which reaches from −1/400 turn to 0.
     assert_eq!(refused(&[(154, 400), (156, 256), (158, 0), (160, 999)], -1), outside(-1, 0, 999));
-    // Another drive's position says nothing.
+    // The position of another drive has no effect.
     assert!(plan_edits(&image(&[1, 3]), &image_of(&[(358, 0)]), &at(1, -1)).is_ok());
 }
 
@@ -187,8 +187,8 @@ fn what_cannot_be_written_is_told_by_its_reason() {
     assert_eq!(error.range, Range::Within(-33_554_432, 33_554_432));
 }
 
-/// Issue 21.10: ±512 turns of an HDA30 in steps of the scale as it will be: 65536 a turn are 33554432, 400 are 204800. A step of
-/// the drive's own keys is no longer than its way of 1024 turns.
+/// Issue 21.10: ±512 turns of an HDA30 in steps of the planned scale: 65536 per turn are 33554432, 400 are 204800. A step
+/// of the drive's own keys is at most its travel of 1024 turns.
 #[test]
 fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
     let jogs = |image: Image| image.with(&image_of(&[(170, 4096), (176, -4096)]));
@@ -202,13 +202,13 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
         (&scaled, &[(158, -204_800), (160, 204_800)], None),
         (&scaled, &[(158, -204_801)], Some((158, 204_800))),
         (&scaled, &[(160, 204_801)], Some((160, 204_800))),
-        // With the scale of the same plan, either way.
+        // With the scale of the same plan, in both directions.
         (&factory, &[(154, 400), (156, 256), (160, 204_801)], Some((160, 204_800))),
         (&scaled, &[(154, 256), (156, 1), (158, -33_554_432), (160, 33_554_432)], None),
         (&factory, &[(170, 67_108_864), (176, -67_108_864)], None),
         (&factory, &[(170, 67_108_865)], Some((170, 67_108_864))),
         (&scaled, &[(176, -409_601)], Some((176, 409_600))),
-        // What is not written is not looked at: its numbers move with the scale, of which the plan warns.
+        // Values that are not written are not checked: they move with the scale, of which the plan warns.
         (&factory, &[(154, 400), (156, 256)], None),
     ];
     for (device, wanted, refused) in cases {
@@ -221,7 +221,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
             (planned, _) => panic!("{wanted:?}: {planned:?}"),
         }
     }
-    // Of another variant nothing is known but the bits; HDA70 has 16000 turns.
+    // An unknown variant is limited by the bits only; HDA70 has 16000 turns.
     for (variant, most) in [(Variant::OTHER, i64::from(i32::MAX)), (Variant::new(13), 1_048_576_000)] {
         let mut state = state(&factory, &at(1, 0));
         state.identity.drives[0].variant = Some(variant);
@@ -230,7 +230,7 @@ fn no_limit_is_planned_beyond_the_turns_of_the_drive() {
         let PlanError::OutOfRange(error) = error else { panic!("{error}") };
         assert!(matches!(error.range, Range::Within(_, high) if high == most), "{variant:?}");
     }
-    // Limits that lie beyond the turns since the scale was changed let no position be set there either.
+    // Limits beyond the travel after a change of scale do not allow setting a position there either.
     let moved = image(&[1]).with(&image_of(&[(154, 400), (156, 256)]));
     let PlanError::OutOfRange(error) = plan_set_position(&moved, drive(1), 300_000).unwrap_err() else { panic!() };
     assert_eq!((error.number, error.range), (number(198), Range::Within(-204_800, 204_800)));

@@ -1,4 +1,4 @@
-//! What is restored, left alone and refused, and what differs.
+//! Restored, unchanged and refused items, and differences.
 
 use super::*;
 use crate::devices::hiperdrive::profile::test_profiles::{drive, identity, image, image_of, number, profile};
@@ -32,7 +32,7 @@ fn only_what_differs_is_written() {
     let restore = plan_restore(&profile(), &device, NONE).unwrap();
     assert_eq!(written(&restore), [166]);
     assert_eq!(restore.plan.ops.last(), Some(&Op::Service(Service::Save)));
-    // 2 registers and 2 · 13 parameters, but for the two.
+    // 2 registers and 2 · 13 parameters, less these two.
     assert_eq!((restore.unchanged, restore.missing.len()), (26, 0));
     assert_eq!(restore.mounting_left, [Item(number(398))], "a reference is never restored, on its own drive either");
     let restore = plan_restore(&profile(), &device, ALL).unwrap();
@@ -66,7 +66,7 @@ fn another_device_or_drive_is_refused() {
     assert!(plan_restore(&by_hand, &device, NONE).is_ok());
 }
 
-/// Issue 22.9: the serial number is the same in all of these, so that the permit for another type is the one they need.
+/// Issue 22.9: the serial number is the same in all of these, so that they need only the permission for another type.
 #[test]
 fn another_type_of_device_or_drive_is_refused() {
     let mut device = device();
@@ -84,7 +84,7 @@ fn another_type_of_device_or_drive_is_refused() {
     assert_eq!(error, OtherType::Drive { drive: drive(3), profile: profiles, device: devices }.into());
     assert!(error.to_string().contains("7 (HDA30A)") && error.to_string().contains("13 (HDA70)"), "{error}");
     assert!(plan_restore(&profile(), &device, TYPE).is_ok());
-    // Another serial number as well needs both.
+    // With another serial number as well, both are needed.
     device.identity.drives[1].serial_number = "5000".to_owned();
     let error = plan_restore(&profile(), &device, TYPE).unwrap_err();
     assert!(matches!(error, PlanError::OtherDrive { .. }), "{error}");
@@ -106,7 +106,7 @@ fn what_a_person_marks_stays_on_its_own_drive() {
     assert_eq!((written(&restore), restore.mounting_left), (vec![160], vec![Item(number(360))]));
     let restore = plan_restore(&marked, &device, ALL).unwrap();
     assert_eq!(written(&restore), [160, 360]);
-    // Issue 22.7: what comes from another mounting is named where it is written; drive 1 is the profile's own.
+    // Issue 22.7: items from another mounting are named if they are written; drive 1 is the profile's own.
     assert_eq!(restore.mounting_written, [Item(number(360))]);
 }
 
@@ -124,8 +124,9 @@ fn differences_are_named_by_drive() {
     assert_eq!(comparison.only_right[0], "152 drive 4");
 }
 
-/// Steps a turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 / 256 = 20
-/// of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a turn is 1800.
+/// Steps per turn are 256 · numerator / denominator (reference 5): 256 · 400 / 256 = 400 of 0.01 mm in 4 mm; 256 · 20 / 256
+/// = 20 of 0.1 mm in 2 mm; 256 · 3600 / 256 = 3600 of 0.1 degree. 511 turns of them are 204400 and 10220; half a turn is
+/// 1800.
 #[test]
 fn the_ready_made_profiles_do_what_they_say() {
     let read = |name: &str| {

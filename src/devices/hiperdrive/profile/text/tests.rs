@@ -1,4 +1,4 @@
-//! The text there and back, as a person writes it, and what is wrong with it.
+//! The text, written and parsed, in the form of a user, and its errors.
 
 use super::super::test_profiles::{drive, identity, image_of, number, profile};
 use super::*;
@@ -14,7 +14,7 @@ fn parse(text: &str) -> Result<HiperdriveProfile, ProfileError> {
     Document::parse(text, HiperdriveProfile::FORMATS)?.body.into_profile()
 }
 
-/// As a person writes it, with no device in mind.
+/// Profile as written by a user, for no particular device.
 const SHORT: &str = r#"(
     schema: 1,
     device: "hiperdrive",
@@ -136,17 +136,17 @@ fn who_it_is_is_kept() {
     assert_eq!(parse(&document(profile.clone()).emit()), Ok(profile));
 }
 
-/// As a person writes it, with comments.
+/// Profile as written by a user, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperdrive.ron"));
 
-/// Issue 22.26: one value changed is one place changed.
+/// Issue 22.26: one changed value changes one place in the text.
 #[test]
 fn a_change_touches_nothing_else() {
     let edit = |own: &mut HiperdriveProfile| assert_eq!(own.image.values.insert(number(166), 40), Some(50));
     changed_in_place(COMMENTED, edit, "166: 50", "166: 40");
 }
 
-/// Issue 22.26: what comes and what goes takes its line and no other.
+/// Issue 22.26: an added or removed entry changes its own line only.
 #[test]
 fn entries_come_and_go() {
     let (_, carried) = edited(COMMENTED, |_, own: &mut HiperdriveProfile| {

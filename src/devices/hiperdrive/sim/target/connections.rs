@@ -1,8 +1,8 @@
-//! The connection manager: who opens and closes cyclic and explicit connections, and which request is wrapped in another.
+//! The connection manager: opening and closing cyclic and explicit connections, and unwrapping requests.
 //!
-//! Chosen here (`U`): one cyclic connection, to one master; it takes the sizes with and without parameter words, intervals
-//! from 5 to 100 ms, and no configuration data; nothing is sent to several at once. Explicit connections (class 3) are for
-//! clients that want one, and end with their session. A ForwardOpen with long fields (5Bh) is no service here.
+//! Chosen here (`U`): one cyclic connection, to one master; sizes with and without parameter words, intervals from 5 to 100
+//! ms, no configuration data and no multicast. Explicit connections (class 3) are available, and end with their session. A
+//! ForwardOpen with long fields (5Bh) is not supported.
 
 use std::net::{Ipv4Addr, SocketAddrV4};
 use std::time::Duration;
@@ -63,7 +63,7 @@ const ASSEMBLY_CLASS: u16 = 0x04;
 const MESSAGE_ROUTER: u16 = 0x02;
 
 impl Connections {
-    /// None, behind what was lost with the supply.
+    /// Creates the state without connections that follows the loss of the supply.
     pub(super) fn after(lost: &Connections) -> Self {
         Connections { opened: lost.opened, ..Connections::default() }
     }
@@ -77,7 +77,7 @@ impl Connections {
         self.cyclic.as_ref().map(Cyclic::due)
     }
 
-    /// A session ends, with its explicit connections.
+    /// Ends the explicit connections of a session.
     pub(super) fn end(&mut self, session: u32) {
         self.explicit.retain(|explicit| explicit.session != session);
     }
@@ -86,7 +86,7 @@ impl Connections {
         self.explicit.retain(|explicit| now.since(explicit.heard) < explicit.timeout);
     }
 
-    /// A message has come over an explicit connection: what its replies carry.
+    /// Handles a message over an explicit connection: returns what its replies carry.
     pub(super) fn message(&mut self, to_target_id: u32, session: u32, now: Moment) -> Option<u32> {
         let mut explicit = self.explicit.iter_mut();
         let found = explicit.find(|one| one.to_target_id == to_target_id && one.session == session)?;
@@ -101,7 +101,7 @@ impl Connections {
 }
 
 impl Plant {
-    /// A request to the connection manager; with its reply the sockets that are to be known beside it.
+    /// Handles a request to the connection manager; returns its reply with the socket items to be sent beside it.
     pub(super) fn manage(&mut self, from: (Originator, u32), request: &Request, items: &Items) -> (Reply, Vec<Item>) {
         let alone = |reply| (reply, Vec::new());
         if let Err(status) = object(&request.path) {
@@ -285,13 +285,13 @@ fn originator_socket(peer: Ipv4Addr, requested: Option<SocketAddress>) -> Socket
     }
 }
 
-/// The request in an Unconnected_Send: time-out, its length, itself, filled to whole words; then a route, which leads
-/// nowhere else from here.
+/// Unwraps the request in an Unconnected_Send: time-out, length, request, padded to whole words; then a route, which is
+/// ignored.
 fn wrapped(data: &[u8]) -> Result<Request, GeneralStatus> {
     let [_, _, low, high, rest @ ..] = data else { return Err(GeneralStatus::TOO_SHORT) };
     let length = usize::from(u16::from_le_bytes([*low, *high]));
     let message = rest.get(..length).ok_or(GeneralStatus::TOO_SHORT)?;
     let inner = Request::parse(message).map_err(|_| GeneralStatus::new(0x04))?;
-    // Once is enough.
+    // Only one level of wrapping is allowed.
     if inner.service.code() == UNCONNECTED_SEND { Err(GeneralStatus::NO_SERVICE) } else { Ok(inner) }
 }

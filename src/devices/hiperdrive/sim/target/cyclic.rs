@@ -1,8 +1,8 @@
-//! The cyclic connection of class 1: packets that come, packets that go, each at its moment.
+//! The cyclic connection of class 1: packets received and sent, each at its time.
 //!
-//! Chosen here (`U`): the first packet goes an interval after the connection was opened; every packet that came in its turn
-//! counts, whatever its data count says; a packet that is old, of a wrong length or of another connection is dropped, counted
-//! and no sign of life.
+//! Chosen here (`U`): the first packet is sent an interval after the connection was opened; every packet in sequence
+//! counts, whatever its data count; a packet that is old, of a wrong length or of another connection is dropped and
+//! counted, and does not keep the connection alive.
 
 use std::net::SocketAddrV4;
 use std::time::Duration;
@@ -51,7 +51,8 @@ impl Cyclic {
 }
 
 impl Plant {
-    /// Packets that are due go, each with what the drives say at its moment. A connection whose master was lost is gone.
+    /// Sends the packets that are due, each with the state of the drives at its time. The connection of a lost master is
+    /// closed.
     pub(super) fn produce(&mut self) {
         while let Some(cyclic) = self.connections.cyclic.as_mut() {
             let at = cyclic.next.min(self.now);
@@ -67,7 +68,7 @@ impl Plant {
             let packet = IoPacket {
                 connection: cyclic.to_originator_id,
                 sequence: cyclic.sequence,
-                // Its lower half.
+                // The lower half.
                 count: cyclic.sequence as u16,
                 header: None,
                 data: self.station.image(at).emit(cyclic.layout),
@@ -79,7 +80,7 @@ impl Plant {
         }
     }
 
-    /// A datagram has come.
+    /// Handles a received datagram.
     pub(super) fn on_datagram(&mut self, now: Moment, from: SocketAddrV4, packet: &[u8]) {
         self.advance(now);
         if !self.hears() || !self.arrives() {

@@ -1,4 +1,4 @@
-//! A frame and its reply: sessions, lists, and what carries CIP messages.
+//! Frames and replies: sessions, lists, and the services that carry CIP messages.
 
 use std::net::SocketAddrV4;
 
@@ -8,7 +8,7 @@ use crate::buses::ethernet_ip::protocol::{
     SocketAddress,
 };
 
-/// The only service of encapsulation: CIP over TCP, and cyclic data over UDP. Item 0100h: version, capability, name.
+/// The only encapsulation service: CIP over TCP, and cyclic data over UDP. Item 0100h: version, capability, name.
 const SERVICES: (u16, [u8; 20]) = (0x0100, *b"\x01\x00\x20\x01Communications\0\0");
 /// Attribute 8 of the identity object: operational.
 const OPERATIONAL: u8 = 3;
@@ -18,9 +18,9 @@ const PATH_SEGMENT: GeneralStatus = GeneralStatus::new(0x04);
 type Refusal = EncapsulationStatus;
 
 impl Plant {
-    /// The reply to a frame, where there is one.
+    /// Returns the reply to a frame, if there is one.
     pub(super) fn answer(&mut self, from: Originator, frame: &Frame) -> Option<Frame> {
-        // So ODVA: options that are not known make a frame void, and so does the status of a reply.
+        // By ODVA, a frame with unknown options is void, and so is one with the status of a reply.
         if frame.options != 0 || frame.status != EncapsulationStatus::OK {
             return None;
         }
@@ -44,7 +44,7 @@ impl Plant {
         })
     }
 
-    /// A frame that came in a datagram: only who is there can be asked so.
+    /// Handles a frame in a datagram: only list commands are answered. Returns whether it is one.
     pub(super) fn answer_datagram(&mut self, from: SocketAddrV4, frame: &Frame) -> bool {
         let asked = matches!(frame.command, Command::LIST_IDENTITY | Command::LIST_SERVICES | Command::LIST_INTERFACES);
         if asked && frame.options == 0 {
@@ -92,7 +92,7 @@ impl Plant {
         Body::List(Items(items))
     }
 
-    /// The items of a frame in its own session.
+    /// Parses the items of a frame in its own session.
     fn items(&self, from: Originator, frame: &Frame) -> Result<Items, Refusal> {
         if self.sessions.get(&frame.session) != Some(&from) {
             return Err(EncapsulationStatus::NO_SESSION);
@@ -103,7 +103,7 @@ impl Plant {
         }
     }
 
-    /// SendRRData.
+    /// Handles SendRRData.
     fn unconnected(&mut self, from: Originator, frame: &Frame) -> Result<Body, Refusal> {
         let items = self.items(from, frame)?;
         let (Some(Item::Null), Some(message)) = (items.0.first(), items.unconnected_data()) else {
@@ -114,7 +114,7 @@ impl Plant {
         Ok(Body::Data { interface: 0, timeout_s: 0, items: Items(items) })
     }
 
-    /// SendUnitData; nothing for a connection that there is not.
+    /// Handles SendUnitData; `None` for an unknown connection.
     fn connected(&mut self, from: Originator, frame: &Frame) -> Result<Option<Body>, Refusal> {
         let items = self.items(from, frame)?;
         let [Item::ConnectedAddress(connection), Item::ConnectedData(data), ..] = items.0.as_slice() else {
@@ -130,7 +130,7 @@ impl Plant {
         Ok(Some(Body::Data { interface: 0, timeout_s: 0, items }))
     }
 
-    /// A CIP message; with its reply the sockets that are to be known beside it.
+    /// Handles a CIP message; returns its reply with the socket items to be sent beside it.
     fn message(
         &mut self,
         from: (Originator, u32),

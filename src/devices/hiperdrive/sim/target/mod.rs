@@ -1,8 +1,8 @@
 //! An EtherNet/IP target in front of a station (reference 7): TCP connections, and the datagrams of all of them.
 //!
-//! Chosen here (`U`): a session ends with its TCP connection, a cyclic connection does not: it lives by its own time-out, as
-//! its packets tell that the master lives. A stream that is no frames, and UnRegisterSession, end the TCP connection. What
-//! lost its supply answers again after the next connection.
+//! Chosen here (`U`): a session ends with its TCP connection; a cyclic connection does not, and ends by its own time-out,
+//! since its packets show that the master is alive. Bytes that are not frames, and UnRegisterSession, end the TCP
+//! connection. A target that lost its supply answers again after the next connection.
 //!
 //! | file | what it is |
 //! |---|---|
@@ -34,8 +34,8 @@ use crate::sim::line::Queue;
 use crate::sim::{ByteDevice, DatagramDevice, Faults};
 use crate::units::Moment;
 
-/// A TCP connection to a virtual adapter or hub, and the datagrams of all of them. Made of a [`Config`];
-/// [`connection`](Self::connection) gives another originator's, and so does a clone.
+/// TCP connection to a virtual adapter or hub, and the datagrams of all of them. Created from a [`Config`];
+/// [`connection`](Self::connection) gives one of another originator, and so does a clone.
 #[derive(Debug)]
 pub struct Target {
     shared: Arc<Mutex<Plant>>,
@@ -54,7 +54,7 @@ pub struct Figures {
     pub broken: u64,
     /// Packets of the cyclic connection that counted.
     pub packets: u64,
-    /// Of it, but older than one that came before, or the same again.
+    /// Packets of the connection that were older than an earlier one, or repeated.
     pub stale: u64,
     /// Datagrams that were neither a packet nor a frame, or of a wrong length.
     pub malformed: u64,
@@ -63,12 +63,12 @@ pub struct Figures {
 }
 
 impl Target {
-    /// The virtual device as `config` wants it.
+    /// Creates the virtual device from `config`.
     pub fn new(config: &Config) -> Self {
         Target::to(Arc::new(Mutex::new(Plant::new(config))), Ipv4Addr::LOCALHOST)
     }
 
-    /// The connection of another originator, who has this address, to the same device.
+    /// Creates the connection of another originator with this address to the same device.
     pub fn connection(&self, peer: Ipv4Addr) -> Self {
         Target::to(self.shared.clone(), peer)
     }
@@ -78,12 +78,12 @@ impl Target {
         Target { shared, originator, receiver: Receiver::default(), to_host: Queue::default(), ended: false }
     }
 
-    /// Looks at the station, or does something to it that no bus can.
+    /// Reads the station, or changes it in a way that no bus can.
     pub fn with<T>(&self, work: impl FnOnce(&mut Station) -> T) -> T {
         work(&mut self.lock().station)
     }
 
-    /// The supply goes and comes back: sessions and connections are gone, and what was not saved.
+    /// Switches the supply off and on: sessions, connections and unsaved values are lost.
     pub fn power_cycle(&self) {
         self.lock().power_cycle();
     }
@@ -115,7 +115,7 @@ impl Target {
 }
 
 fn lock(shared: &Mutex<Plant>) -> MutexGuard<'_, Plant> {
-    // A virtual device left behind by a panicking test is still a device.
+    // The virtual device stays usable after a test has panicked.
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

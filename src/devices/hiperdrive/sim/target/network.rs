@@ -1,7 +1,7 @@
 //! The TCP/IP object (class F5h) and the Ethernet link (F6h), as ODVA has them (`P`).
 //!
-//! Chosen here (`U`): attribute 5 can be set only while attribute 3 says that addresses are stored, and counts at once; the
-//! virtual device stays reachable where it was.
+//! Chosen here (`U`): attribute 5 can be set only while attribute 3 is stored addresses, and takes effect at once; the
+//! virtual device stays reachable at its old address.
 
 use std::net::Ipv4Addr;
 
@@ -31,12 +31,12 @@ const NONE: InterfaceConfiguration = InterfaceConfiguration {
 const NETWORK: Ipv4Addr = Ipv4Addr::new(255, 255, 255, 0);
 /// The address that a virtual DHCP or BOOTP server assigns.
 const GIVEN: Ipv4Addr = Ipv4Addr::new(192, 168, 1, 200);
-/// Attribute 1: an address was got; attribute 2: BOOTP, DHCP, can be set.
+/// Attribute 1: an address was obtained; attribute 2: BOOTP, DHCP, can be set.
 const CONFIGURED: u32 = 1;
 const CAPABILITY: u32 = 0x15;
 const ETHERNET_LINK: u16 = 0xF6;
 const MEGABITS: u32 = 100;
-/// Attribute 2 of the Ethernet link: it is there, in both directions at once.
+/// Attribute 2 of the Ethernet link: active, full duplex.
 const LINK_UP: u32 = 0x03;
 
 impl Network {
@@ -71,7 +71,7 @@ impl Network {
         (self.control, self.stored) = (dhcp(), NONE);
     }
 
-    /// An attribute of the TCP/IP object.
+    /// Returns an attribute of the TCP/IP object.
     pub(super) fn interface(&self, attribute: u16) -> Option<Vec<u8>> {
         let bytes = match attribute {
             1 => CONFIGURED.to_le_bytes().to_vec(),
@@ -83,14 +83,14 @@ impl Network {
                 [&(path.len() as u16 / 2).to_le_bytes()[..], &path].concat()
             }
             InterfaceConfiguration::ATTRIBUTE => self.present.emit(),
-            // The host's name: none.
+            // Empty host name.
             6 => vec![0, 0],
             _ => return None,
         };
         Some(bytes)
     }
 
-    /// All of them, in their order.
+    /// Returns all attributes in order.
     pub(super) fn interface_all(&self) -> Vec<u8> {
         (1..=6).filter_map(|attribute| self.interface(attribute)).flatten().collect()
     }
@@ -103,7 +103,7 @@ impl Network {
                 if matches!(control.source(), AddressSource::Unknown(_)) {
                     return Err(GeneralStatus::INVALID_VALUE);
                 }
-                // From another source to what is stored: that is the present address then (reference 1).
+                // On a change from another source to stored, the present address is stored (reference 1).
                 if control.source() == AddressSource::Stored && self.control.source() != AddressSource::Stored {
                     self.stored = self.present.clone();
                 }
@@ -122,7 +122,7 @@ impl Network {
         Ok(Vec::new())
     }
 
-    /// An attribute of the Ethernet link.
+    /// Returns an attribute of the Ethernet link.
     pub(super) fn link(&self, attribute: u16) -> Option<Vec<u8>> {
         match attribute {
             1 => Some(MEGABITS.to_le_bytes().to_vec()),
@@ -132,7 +132,7 @@ impl Network {
         }
     }
 
-    /// All of them, in their order.
+    /// Returns all attributes in order.
     pub(super) fn link_all(&self) -> Vec<u8> {
         (1..=3).filter_map(|attribute| self.link(attribute)).flatten().collect()
     }

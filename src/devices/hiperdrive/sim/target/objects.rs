@@ -1,4 +1,4 @@
-//! The CIP objects: identity, parameters (reference 7), and those of the network.
+//! The CIP objects: identity, parameters (reference 7), and network objects.
 
 use super::plant::Plant;
 use crate::buses::ethernet_ip::protocol::{
@@ -12,11 +12,11 @@ const DEVICE_TYPE: u16 = 0x0C;
 /// Chosen (`U`).
 const PRODUCT_CODE: u16 = 1;
 const REVISION: Revision = Revision { major: 1, minor: 2 };
-/// Bits 7 to 4 of the status word: no cyclic connection, and one that runs; bit 0: it has an owner.
+/// Bits 7 to 4 of the status word: no cyclic connection, or a running one; bit 0: it has an owner.
 const NOT_CONNECTED: u16 = 0x0030;
 const CONNECTED: u16 = 0x0061;
 const ETHERNET_LINK: u16 = 0xF6;
-/// Of the device; that of drive n is n more.
+/// Class of the device parameters; that of drive n is n higher.
 const PARAMETERS: u16 = 0x64;
 /// The attribute can only be set.
 const NOT_GETTABLE: GeneralStatus = GeneralStatus::new(0x2C);

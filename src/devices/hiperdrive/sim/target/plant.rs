@@ -31,7 +31,7 @@ pub(super) struct Plant {
     pub(super) udp: u16,
     pub(super) figures: Figures,
     pub(super) now: Moment,
-    /// Whose they are, by their numbers.
+    /// Originators by session number.
     pub(super) sessions: BTreeMap<u32, Originator>,
     pub(super) datagrams: Queue<(SocketAddrV4, Vec<u8>)>,
     pub(super) rng: Rng,
@@ -48,7 +48,7 @@ pub(super) struct Originator {
     pub(super) address: Ipv4Addr,
 }
 
-/// Between a frame and its reply.
+/// Time between a frame and its reply.
 const REPLY: Duration = Duration::from_millis(1);
 
 impl Plant {
@@ -92,7 +92,7 @@ impl Plant {
         }
     }
 
-    /// A frame that came over TCP; its reply with when it leaves, if there is one and it gets through.
+    /// Handles a frame received over TCP; returns its reply with the time it is sent, if there is one and it gets through.
     pub(super) fn take(&mut self, now: Moment, from: Originator, frame: &Frame) -> Option<(Moment, Vec<u8>)> {
         self.advance(now);
         self.figures.frames += 1;
@@ -110,7 +110,7 @@ impl Plant {
         frame.command != Command::UNREGISTER_SESSION
     }
 
-    /// Ends the TCP connection of an originator, with its session and what belongs to it.
+    /// Ends the TCP connection of an originator, with its session and its explicit connections.
     pub(super) fn leave(&mut self, originator: Originator) {
         let own: Vec<u32> = self.sessions.iter().filter(|(_, owner)| **owner == originator).map(|(s, _)| *s).collect();
         own.into_iter().for_each(|session| self.end(session));
@@ -141,24 +141,25 @@ impl Plant {
         self.datagrams = Queue::default();
     }
 
-    /// Notes that something has arrived; returns whether it is heard.
+    /// Notes that something has arrived; returns whether the target receives it.
     pub(super) fn hears(&mut self) -> bool {
         let speaks = self.speaks();
         self.heard = self.heard.saturating_add(1);
         speaks && !self.station.is_dead(self.now)
     }
 
-    /// Returns whether it has not fallen silent.
+    /// Returns whether the target still sends.
     pub(super) fn speaks(&self) -> bool {
         !self.station.is_cut_off() && self.faults.silent_after().is_none_or(|count| self.heard < count)
     }
 
-    /// A datagram gets through to it.
+    /// Returns whether a datagram gets through to it.
     pub(super) fn arrives(&mut self) -> bool {
         self.faults.passage(&mut self.rng, 0).carried.is_some()
     }
 
-    /// Ethernet brings a packet whole or not at all: what happens to a byte of a serial line happens to all of them.
+    /// Applies the faults to a packet. Ethernet delivers a packet whole or not at all: a fault of one byte on a serial line
+    /// affects all of them.
     pub(super) fn carry(&mut self, mut bytes: Vec<u8>) -> Option<Vec<u8>> {
         let passage = self.faults.passage(&mut self.rng, 0);
         let carried = passage.carried?;
@@ -172,7 +173,7 @@ impl Plant {
         Some(bytes)
     }
 
-    /// A datagram leaves at that moment, if it gets through.
+    /// Sends a datagram at that moment, if it gets through.
     pub(super) fn send(&mut self, at: Moment, to: SocketAddrV4, bytes: Vec<u8>) {
         if let Some(bytes) = self.carry(bytes) {
             self.datagrams.insert(at + self.faults.delay(), (to, bytes));

@@ -1,14 +1,14 @@
-//! What goes wrong, what it looks like, and the way out (reference 3, 4 and 7).
+//! Faults, how they appear, and how to leave them (reference 3, 4 and 7).
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ACKNOWLEDGE, State, UNLOCK};
 
-/// What an operational drive says after a fault: 2AB8, with ZSW12 and 10 as they were.
+/// Returns whether an operational drive reports a fault: 2AB8, with ZSW12 and 10 unchanged.
 fn is_fault(bench: &mut Bench) -> bool {
     bench.actual(FIRST).status.word() & 0x2AFF == 0x2AB8
 }
 
-/// Leads out of a fault by the recipe of the reference; every step is done when the next one comes.
+/// Leads out of a fault by the recipe of the reference; each step is done before the next one is sent.
 fn acknowledge(bench: &mut Bench) {
     for step in ACKNOWLEDGE {
         bench.word(step.word.word());
@@ -33,7 +33,7 @@ fn a_blocked_drive_fails_and_comes_back() {
         acknowledge(&mut bench);
         assert_eq!(bench.read(197), Value::Number(0));
         assert_eq!(bench.error(), code, "the buffer keeps it");
-        // The job is gone; a new one away from the wall runs.
+        // The job is discarded; a new one away from the wall runs.
         bench.out[FIRST].target = 0;
         bench.words(&[0x0439, 0x0479]);
         bench.run(2000);
@@ -58,7 +58,7 @@ fn a_weak_drive_does_not_follow() {
     assert_eq!(bench.position(), 65_536);
 }
 
-/// 50 °C around it and 40 K of its own at full torque: above 80 °C after 60 s · ln 4 = 83 s of moving.
+/// 50 °C ambient and 40 K of its own at full torque: above 80 °C after 60 s · ln 4 = 83 s of motion.
 #[test]
 fn a_hot_drive_fails() {
     let hot = SpindleLoad { ambient: 50.0, ..SpindleLoad::default() };
@@ -106,7 +106,7 @@ fn a_drive_that_is_not_on_warns() {
     assert_eq!(bench.actual(FIRST).status.word(), 0x2A30);
 }
 
-/// Reference 3: where bit 0 has fallen before the acknowledgement, the lock needs a fall of its own.
+/// Reference 3: if bit 0 was cleared before the acknowledgement, the lock needs another falling edge.
 #[test]
 fn the_lock_needs_an_edge() {
     let mut bench = Bench::single();
@@ -118,7 +118,7 @@ fn the_lock_needs_an_edge() {
     assert_eq!(bench.words(&UNLOCK.map(|step| step.word.word())), 0x2A31);
 }
 
-/// Reference 7 and 3: 40 ms without a packet, and 100 ms to brake; not a matter of who looks when.
+/// Reference 7 and 3: 40 ms without a packet, and 100 ms to brake, however often the state is read.
 #[test]
 fn a_lost_master_stops_all_drives() {
     for looks in [&[][..], &[10, 39, 40, 41, 200]] {
@@ -126,7 +126,7 @@ fn a_lost_master_stops_all_drives() {
         bench.start(655_360);
         bench.run(500);
         let at = |ms| Duration::from_millis(ms);
-        // The last packet came 10 ms ago.
+        // The last packet arrived 10 ms ago.
         let last = bench.now - at(10);
         for ms in looks {
             assert_eq!(bench.station.is_open(last + at(*ms)), *ms < 40, "{ms} ms");
@@ -137,7 +137,7 @@ fn a_lost_master_stops_all_drives() {
         assert_eq!(later.status.state(), State::Fault);
         bench.now = last + at(5000);
         assert_eq!(bench.error(), ErrorCode::CONNECTION_TIMEOUT);
-        // What comes without a connection is dropped; after another one it takes an acknowledgement.
+        // Data received without a connection are dropped; after the next connection an acknowledgement is needed.
         bench.run(500);
         assert!(!bench.station.is_open(bench.now));
         bench.station.open(bench.now, at(40));

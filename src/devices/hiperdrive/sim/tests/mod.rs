@@ -1,4 +1,4 @@
-//! The virtual drives against the reference: a host's words and what comes back, in virtual time.
+//! The virtual drives against the reference: words of a host and the replies, in virtual time.
 
 mod faults;
 mod motion;
@@ -35,7 +35,7 @@ impl Bench {
         Bench::new(Setup::default())
     }
 
-    /// A hub of four with drives in the first two places.
+    /// Creates a hub of four with drives in the first two places.
     fn hub() -> Self {
         let drive = Some((Variant::new(13), SpindleLoad::default()));
         Bench::new(Setup { topology: Topology::Hub4, drives: vec![drive, drive], serial_number: 1 })
@@ -51,7 +51,7 @@ impl Bench {
         (0..ms / 10).for_each(|_| self.cycle());
     }
 
-    /// A control word for 30 ms, then what the first drive says.
+    /// Sends a control word for 30 ms; returns the status of the first drive.
     fn word(&mut self, control: u16) -> u16 {
         self.out[FIRST].control = control;
         self.run(30);
@@ -66,7 +66,7 @@ impl Bench {
         assert_eq!(self.words(&[0x0000, 0x0400, 0x0401, 0x0409]), 0x2A37);
     }
 
-    /// Enabled, and on the way to a target.
+    /// Enables the drive and starts a move to a target.
     fn start(&mut self, target: i32) {
         self.enable();
         self.word(0x0439);
@@ -82,7 +82,7 @@ impl Bench {
         self.actual(FIRST).position
     }
 
-    /// Cycles until the first drive says a word; how long that took.
+    /// Cycles until the first drive reports a status; returns the time taken.
     fn until(&mut self, status: u16) -> u64 {
         for ms in (0..120_000).step_by(10) {
             if self.actual(FIRST).status.word() == status {
@@ -110,7 +110,7 @@ impl Bench {
         self.station.write(self.now, number(own), &Value::Number(value))
     }
 
-    /// The newest error.
+    /// Returns the newest error.
     fn error(&mut self) -> ErrorCode {
         match self.read(108) {
             Value::Number(code) => ErrorCode::new(code.try_into().unwrap()),

@@ -1,12 +1,12 @@
-//! Jobs, runs, steps: how they begin, and what ends them (reference 3).
+//! Jobs, runs and steps: how they start, and what ends them (reference 3).
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::devices::hiperdrive::protocol::State;
 
-/// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, of which 0.1 s each are for speeding up
-/// and slowing down (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
+/// Reference 3 and 9: the start sequence with its status words. 2.5 turns at 35 rpm, with 0.1 s each for acceleration and
+/// braking (0.0583 turns): 0.2 + (2.5 − 0.0583) / 0.58333 s = 4.386 s.
 #[test]
 fn the_published_start_sequence() {
     let mut bench = Bench::single();
@@ -19,18 +19,18 @@ fn the_published_start_sequence() {
     let took = 30 + bench.until(0x3E37);
     assert!((4370..=4420).contains(&took), "{took} ms");
     assert_eq!((bench.position(), bench.actual(FIRST).speed), (163_840, 0));
-    // The next job: another target, and bit 6 the other way.
+    // The next job: another target, and bit 6 inverted.
     bench.out[FIRST].target = -65_536;
     assert_eq!(bench.word(0x0439), 0x0A37);
     bench.until(0x2E37);
     assert_eq!(bench.position(), -65_536);
-    // The same bit again is none.
+    // The same bit again starts nothing.
     bench.out[FIRST].target = 0;
     assert_eq!(bench.word(0x0439), 0x2E37);
     assert_eq!(bench.word(0x0000), 0x2A30);
 }
 
-/// One step of the state machine follows another while the word stays; a word with reserved bits is as if it had not come.
+/// The state machine advances step by step while the word is unchanged; a word with reserved bits has no effect.
 #[test]
 fn a_word_leads_as_far_as_it_can() {
     let mut bench = Bench::single();
@@ -39,7 +39,7 @@ fn a_word_leads_as_far_as_it_can() {
     assert_eq!(bench.word(0x0400), 0x2A31);
 }
 
-/// A stop ends a job for good, in a tenth of a second; a pause does not. Speed is what was asked for.
+/// A stop discards a job, in a tenth of a second; a pause does not. The speed is the requested one.
 #[test]
 fn jobs_are_stopped_and_paused() {
     let mut bench = Bench::single();
@@ -60,13 +60,13 @@ fn jobs_are_stopped_and_paused() {
     bench.run(200);
     let stopped = bench.actual(FIRST);
     assert_eq!((stopped.status.word(), stopped.speed), (0x3A37, 0));
-    // Bit 4 comes back: bit 6 is as it was acknowledged.
+    // Bit 4 is set again: bit 6 is as it was acknowledged.
     bench.out[FIRST].control = 0x0479;
     bench.run(500);
     assert_eq!(bench.position(), stopped.position);
 }
 
-/// Reference 3: whatever takes operation away ends the motion.
+/// Reference 3: anything that disables operation ends the motion.
 #[test]
 fn what_is_not_enabled_does_not_move() {
     for control in [0x0401, 0x0400, 0x0000, 0x0008] {
@@ -77,13 +77,13 @@ fn what_is_not_enabled_does_not_move() {
         bench.run(200);
         let actual = bench.actual(FIRST);
         assert_eq!((actual.speed, actual.status.word() & 0x2004), (0, 0x2000), "{control:04X}");
-        // The way back is no start.
+        // The way back is not a start.
         bench.words(&[0x0400, 0x0401, 0x0409]);
         assert_eq!(bench.position(), actual.position, "{control:04X}");
     }
 }
 
-/// Reference 3 and 9: what has to be there for a start.
+/// Reference 3 and 9: the conditions for a start.
 #[test]
 fn what_a_start_needs() {
     for (speed, torque) in [(0, 100), (100, 0)] {
@@ -95,8 +95,8 @@ fn what_a_start_needs() {
     }
 }
 
-/// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it is a job to a stale target, and
-/// 0400 is the way out.
+/// Reference 3: a run ends at the range, an endless one does not; clearing bit 12 after it starts a job to a stale target,
+/// and 0400 avoids it.
 #[test]
 fn speed_mode_and_its_trap() {
     let mut bench = Bench::single();
@@ -109,7 +109,7 @@ fn speed_mode_and_its_trap() {
     assert_eq!(bench.words(&[0x1419, 0x1459]), 0x3A37);
     assert_eq!(bench.position(), 65_536, "nowhere to run");
     bench.word(0x1419);
-    // ZSW12 is set, bit 6 clear, the target 0 where nobody wants to go.
+    // ZSW12 is set, bit 6 is clear, and the target 0 is unwanted.
     assert_eq!(bench.word(0x0439), 0x0A37);
     bench.until(0x2E37);
     assert_eq!(bench.position(), 0);
@@ -122,7 +122,7 @@ fn speed_mode_and_its_trap() {
     let stopped = bench.position();
     assert_eq!(bench.words(&[0x0400, 0x0401, 0x0409, 0x0439]), 0x2A37);
     assert_eq!(bench.position(), stopped);
-    // Endless: past the end, which the status tells.
+    // Endless: past the end, which the status reports.
     bench.words(&[0x1439, 0x1479]);
     bench.run(4000);
     let actual = bench.actual(FIRST);
@@ -144,11 +144,11 @@ fn a_jog_step_runs_to_its_end() {
     assert_eq!((bench.write(170, 65_536), bench.write(172, 10)), (Ok(()), Ok(())));
     bench.word(0x0509);
     bench.run(1000);
-    // 10 % of 35 rpm, whatever the process data say.
+    // 10 % of 35 rpm, whatever the process data contain.
     assert_eq!(bench.actual(FIRST).speed, 35);
 }
 
-/// Reference 4: drives of a hub come without being requested, and move one by one.
+/// Reference 4: the drives of a hub are not requested at first, and move one by one.
 #[test]
 fn a_hub_moves_what_is_requested() {
     let mut bench = Bench::hub();
@@ -166,7 +166,7 @@ fn a_hub_moves_what_is_requested() {
     assert_eq!(both(&mut bench, 0x0479), [0x2A30, 0x1A37, 0]);
     bench.run(3000);
     assert_eq!([0, 1].map(|drive| bench.actual(drive).position), [0, 65_536]);
-    // S3 at a drive: nothing begins.
+    // S3 at a drive: nothing starts.
     bench.station.turn_s3(bench.now, 2);
     bench.out[1].target = 0;
     both(&mut bench, 0x0439);
@@ -174,7 +174,7 @@ fn a_hub_moves_what_is_requested() {
     assert_eq!(bench.actual(1).position, 65_536);
 }
 
-/// However often somebody looks, the same happens.
+/// The result does not depend on how often the state is read.
 #[test]
 fn time_passes_the_same_in_any_portions() {
     let run = |portions: &[u64]| {
@@ -197,7 +197,7 @@ fn time_passes_the_same_in_any_portions() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// Whatever is sent: no panic, and but for endless runs no motion beyond the range.
+    /// With arbitrary input: no panic, and no motion beyond the range except in endless runs.
     #[test]
     fn whatever_is_sent(
         sent in prop::collection::vec((any::<u16>(), 0u8..=120, 0u8..=120, -200_000i32..200_000, 1u64..400), 1..60)

@@ -1,4 +1,4 @@
-//! Parameters: what they may be, what is kept, and the parameter words in the process data (reference 4 to 6).
+//! Parameters: allowed values, stored values, and the parameter words in the process data (reference 4 to 6).
 
 use super::super::Refused;
 use super::*;
@@ -9,7 +9,7 @@ fn value(number: i64) -> Value {
     Value::Number(number)
 }
 
-/// Every parameter of the table can be read of a drive and of a device, and is of its kind.
+/// Every parameter of the table can be read for a drive and for a device, and has its type.
 #[test]
 fn every_parameter_is_there() {
     let mut bench = Bench::hub();
@@ -20,7 +20,7 @@ fn every_parameter_is_there() {
         }
     }
     let mut read = |own| bench.station.read(bench.now, number(own));
-    // The third place is empty, a fifth one there is not.
+    // The third place is empty, a fifth one does not exist.
     assert_eq!((read(320), read(352), read(307)), (Ok(value(0)), Ok(value(0)), Err(Refused::State)));
     assert_eq!((read(507), read(25)), (Err(Refused::Unknown), Err(Refused::Unknown)));
     assert_eq!((read(13), read(120)), (Ok(Value::Text("HIPERDRIVE HUB-4".to_owned())), Ok(value(13))));
@@ -56,7 +56,8 @@ fn limits_hold_the_position() {
     assert_eq!((bench.write(160, 1), bench.read(158), bench.read(160)), (Ok(()), value(0), value(1)));
 }
 
-/// Issue 21.10: ±512 turns of an HDA30, ±16000 of an HDA70, in steps as scaled; a step of its keys is no longer than its way.
+/// Issue 21.10: ±512 turns of an HDA30, ±16000 of an HDA70, in scaled steps; a step of its keys is no longer than its
+/// travel.
 #[test]
 fn no_limit_is_taken_beyond_the_turns_of_the_drive() {
     let mut bench = Bench::single();
@@ -76,7 +77,7 @@ fn no_limit_is_taken_beyond_the_turns_of_the_drive() {
     assert_eq!((hub.write(260, 1_048_576_001), hub.write(260, 1_048_575_999)), (Err(Refused::Value), Ok(())));
 }
 
-/// Reference 5: the nearest multiple of 64, within the limits, and only while it stands.
+/// Reference 5: the nearest multiple of 64, within the limits, and only at standstill.
 #[test]
 fn the_position_is_set() {
     let mut bench = Bench::single();
@@ -86,14 +87,14 @@ fn the_position_is_set() {
     }
     assert_eq!(bench.write(198, 33_554_432), Err(Refused::Value));
     assert_eq!(bench.write(197, 0), Ok(()));
-    // From 2.5 turns on by one.
+    // From 2.5 turns by one more.
     bench.start(229_376);
     assert_eq!(bench.write(198, 0), Err(Refused::State));
     bench.until(0x3E37);
     assert_eq!(bench.position(), 229_376);
 }
 
-/// Reference 3 and 5: with 400 steps a turn a turn is 400; the limits keep their numbers.
+/// Reference 3 and 5: with 400 steps per turn a turn is 400; the limits keep their numbers.
 #[test]
 fn scaling_moves_everything_but_the_numbers_of_the_limits() {
     let mut bench = Bench::single();
@@ -112,7 +113,7 @@ fn scaling_moves_everything_but_the_numbers_of_the_limits() {
     assert_eq!(bench.actual(FIRST).speed, 3500);
 }
 
-/// Reference 4: 47 saves, recalls and forgets; what is never saved is gone with the supply.
+/// Reference 4: 47 saves, recalls and resets; values that are never saved are lost with the supply.
 #[test]
 fn what_survives_the_supply() {
     let mut bench = Bench::single();
@@ -139,8 +140,8 @@ fn what_survives_the_supply() {
     assert_eq!(bench.write(47, 2), Err(Refused::Value));
 }
 
-/// Issue 21.6 (d): 47 = −1 and −2 are about what the adapter or hub keeps itself (manual, 47): its registers, which drives are
-/// requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
+/// Issue 21.6 (d): 47 = −1 and −2 concern the parameters that the adapter or hub stores itself (manual, 47): its registers,
+/// which drives are requested (152), their baud rate (190). Scale, limits and reference of a drive stay.
 #[test]
 fn the_device_recalls_its_own_parameters_alone() {
     let own = [24, 152, 190];
@@ -165,7 +166,7 @@ fn the_device_recalls_its_own_parameters_alone() {
     }
 }
 
-/// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory's state makes it that of the
+/// Issue 21.6 (d): a reset has no effect on the position that was set, saved or not; the factory state makes it that of the
 /// shaft, between 0 and 1 turn (manual, 198).
 #[test]
 fn a_position_that_was_set_outlasts_a_reset() {
@@ -186,7 +187,7 @@ fn a_position_that_was_set_outlasts_a_reset() {
     assert_eq!((bench.read(198), bench.position()), (value(0), 16_384));
 }
 
-/// −4: the drives begin anew, at most 2 s later; their place is what it was.
+/// −4: the drives restart, at most 2 s later, with unchanged positions.
 #[test]
 fn drives_are_reset() {
     let mut bench = Bench::single();
@@ -200,7 +201,7 @@ fn drives_are_reset() {
     assert_eq!((bench.read(47), bench.position()), (value(0), 65_536));
 }
 
-/// Reference 6 and 9: a request stays until its answer has come, and the answer as long as the request.
+/// Reference 6 and 9: a request is repeated until its answer has arrived, and the answer stays as long as the request.
 #[test]
 fn parameter_words_are_answered() {
     let mut bench = Bench::hub();

@@ -8,27 +8,27 @@ use crate::app::Language;
 /// A request to the device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DriveRequest {
-    /// Parameters, by the numbers of drive 1, are written through a plan that does not save.
+    /// Write parameters, by the numbers of drive 1, through a plan that does not save.
     Try(Vec<(u16, i64)>),
-    /// The place where the drive stands gets this position, which is not saved.
+    /// Set the position at the present place of the drive, without saving it.
     SetPosition(i32),
-    /// The user has confirmed the limits.
+    /// Confirm the limits for the user.
     ConfirmLimits,
-    /// The drive moves slowly.
+    /// Move the drive slowly.
     Move(i32),
-    /// The cyclic connection is opened.
+    /// Open the cyclic connection.
     Take,
-    /// It is closed.
+    /// Close the cyclic connection.
     Give,
-    /// Everything is saved.
+    /// Save everything.
     Save,
-    /// Writes the previous values back, without saving them.
+    /// Write the previous values back, without saving them.
     Restore(Vec<(u16, i64)>),
-    /// Its fault is acknowledged.
+    /// Acknowledge a fault.
     Acknowledge,
-    /// A person says that the supply was off.
+    /// Note that the supply was off, as stated by the user.
     BelieveRestart,
-    /// The virtual device's supply goes and comes back.
+    /// Switch the virtual device's supply off and on.
     PowerCycle,
 }
 
@@ -37,23 +37,23 @@ pub enum DriveRequest {
 pub enum Button {
     /// The task of the step: request, write, save.
     Do,
-    /// The limits are right.
+    /// Confirm the limits.
     Confirm,
-    /// The limits are to be as wide as the drive turns.
+    /// Widen the limits to the travel of the drive.
     Widen,
-    /// A test move.
+    /// Start a test move.
     Go(TestTarget),
-    /// The cyclic connection.
+    /// Take control over the cyclic connection.
     Take,
-    /// It is closed.
+    /// Give up control.
     Give,
-    /// The virtual supply.
+    /// Switch the virtual supply off and on.
     PowerCycle,
-    /// The supply was off, as a person says.
+    /// State that the supply was off.
     Restarted,
-    /// The fault of the drive.
+    /// Acknowledge the fault of the drive.
     Acknowledge,
-    /// Back to what was saved.
+    /// Restore the saved values.
     Recall,
 }
 
@@ -65,17 +65,17 @@ pub enum AxisAction {
     /// Something was typed.
     Edit(Box<Entries>),
     Press(Button),
-    /// The place where the axis is becomes the limit of the step.
+    /// Take the present position as the limit of the step.
     TakePlace,
-    /// To the next step.
+    /// Go to the next step.
     Next,
-    /// To the next one without this one.
+    /// Skip this step.
     Skip,
-    /// To the one before.
+    /// Go to the previous step.
     Back,
-    /// End it: the drive stops.
+    /// Cancel: the drive stops.
     Cancel,
-    /// Ask where to save the report of a run that is over.
+    /// Ask where to save the report of a finished run.
     AskReport,
     SaveReport(PathBuf, Language),
 }

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
 pub struct Difference {
     /// The parameter.
     pub number: u16,
-    /// As it was saved.
+    /// Saved value.
     pub saved: i64,
     pub now: i64,
 }
@@ -24,13 +24,13 @@ impl DriveFacts {
     }
 }
 
-/// The position that is set is known to be another than the saved one.
+/// Returns whether the position that is set is known to differ from the saved one.
 pub(super) fn is_place_other(seen: &DriveFacts) -> bool {
     seen.differences().iter().any(|own| own.number == REFERENCE)
 }
 
-/// Returns the values to write so that everything is as before. The reference is set by the user, at its place: writing
-/// it gives that number to the present place of the axis (manual, 198), which at any other place would be a wrong zero.
+/// Returns the values to write to restore the previous state. The reference is set by the user, at its place: writing it
+/// gives that number to the present place of the axis (manual, 198), which at any other place would be a wrong zero.
 pub(super) fn to_write_back(seen: &DriveFacts) -> Vec<(u16, i64)> {
     let differences = seen.differences().into_iter().filter(|own| own.number != REFERENCE);
     differences.map(|own| (own.number, own.saved)).collect()

@@ -7,25 +7,25 @@ use crate::devices::hiperdrive::protocol::{Actual, Direction, ErrorCode, Family,
 use crate::devices::hiperdrive::state::ruler::Ruler;
 use crate::units::Moment;
 
-/// The known facts of the drive at a moment.
+/// Known facts of the drive at a moment.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DriveFacts {
     /// The device answers.
     pub connected: bool,
-    /// It is asked for something, or a review is open.
+    /// A job is running, or a review is open.
     pub busy: bool,
-    /// Its parameters may be others than those that were read.
+    /// Its parameters may differ from those that were read.
     pub stale: bool,
     pub is_virtual: bool,
     /// The cyclic connection is open.
     pub controlled: bool,
     /// Something moves, or is about to.
     pub moves: bool,
-    /// The act of a pad that is held, and which way the drive turns by it.
+    /// The act of a held jog button, and its direction.
     pub held: Option<(u64, Direction)>,
     /// The data received last.
     pub actual: Option<Actual>,
-    /// When it said that, on the clock of the session; `None` where that is not known.
+    /// Time of that report, on the clock of the session; `None` if it is not known.
     pub actual_at: Option<Moment>,
     /// Its position. The first packets after taking control do not contain it.
     pub position: Option<i32>,
@@ -33,13 +33,13 @@ pub struct DriveFacts {
     pub values: BTreeMap<u16, i64>,
     /// The saved values known to differ from those written since, by the same numbers.
     pub unsaved: BTreeMap<u16, i64>,
-    /// How often its position was set from here.
+    /// Number of times its position was set by this program.
     pub times_set: u32,
     /// Parameter 152.
     pub requested: Option<bool>,
     /// Parameters 154 and 156.
     pub scale: Option<PositionScale>,
-    /// The pitch of the spindle, where a person has confirmed one.
+    /// Pitch of the spindle, if confirmed by the user.
     pub pitch: Option<Length>,
     /// Parameters 158 and 160.
     pub limits: Option<(i32, i32)>,
@@ -47,9 +47,9 @@ pub struct DriveFacts {
     pub family: Option<Family>,
     /// Why it may not move.
     pub locks: Vec<Lock>,
-    /// The last act of a person that is over.
+    /// The user's last act that has ended.
     pub ended: Option<(u64, Ended)>,
-    /// Its latest error since the acknowledgement, where it was read.
+    /// Its latest error since the acknowledgement, if it was read.
     pub error: Option<ErrorCode>,
 }
 
@@ -59,7 +59,7 @@ impl DriveFacts {
         self.connected && !self.busy && !self.stale
     }
 
-    /// The drive has failed, and does not move until that is acknowledged.
+    /// Returns whether the drive has failed, and does not move until that is acknowledged.
     pub fn has_failed(&self) -> bool {
         self.actual.is_some_and(|actual| matches!(actual.status.state(), State::Fault | State::Locked))
     }

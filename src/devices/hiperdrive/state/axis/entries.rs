@@ -11,11 +11,11 @@ use crate::devices::hiperdrive::state::ruler::{Measure, PositionRangeError, Rule
 /// The entered text, in millimetres.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Entries {
-    /// Of the spindle, a turn.
+    /// Pitch of the spindle, per turn.
     pub pitch: String,
-    /// Of a step.
+    /// Length of a step.
     pub resolution: String,
-    /// Of the place where the axis stands.
+    /// Position of the axis at its present place.
     pub reference: String,
     /// The lower limit.
     pub lower: String,
@@ -30,7 +30,7 @@ pub struct Preview {
     pub scale: PositionScale,
     /// The new ruler.
     pub ruler: Ruler,
-    /// The limits that hold for the set-up: as far as the drive turns.
+    /// Limits for the set-up: the travel of the drive.
     pub lower: i32,
     /// As `lower`.
     pub upper: i32,
@@ -41,9 +41,9 @@ pub struct Preview {
 /// The result of setting a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
-    /// As typed.
+    /// Position as entered.
     pub asked: i32,
-    /// As the drive takes it: a multiple of 64 steps.
+    /// Position as the drive takes it: a multiple of 64 steps.
     pub becomes: i32,
 }
 
@@ -59,7 +59,7 @@ impl Entries {
         Entries { pitch, resolution, reference: "0".to_owned(), ..Entries::default() }
     }
 
-    /// The same with the language's decimal sign, in which numbers are shown beside them.
+    /// Returns the entries with the decimal sign of the language, as in the numbers beside them.
     pub fn shown(&self, language: Language) -> Self {
         let shown = |text: &String| signed(text, language);
         Entries {
@@ -74,7 +74,7 @@ impl Entries {
     /// Returns the pitch of the spindle.
     ///
     /// # Errors
-    /// A text.
+    /// Why the entry is invalid.
     pub fn pitch(&self) -> Result<Length, Text> {
         length("hd_axis.pitch", &self.pitch, 1000.0)
     }
@@ -82,13 +82,13 @@ impl Entries {
     /// Returns the result of pitch and resolution.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entries are invalid.
     pub fn preview(&self, seen: &DriveFacts) -> Result<Preview, Text> {
         let (pitch, step) = (self.pitch()?, length("hd_axis.resolution", &self.resolution, 100.0)?);
         let scale = PositionScale::for_spindle(pitch, step).map_err(|why| words::scale(&why))?;
         let ruler = Ruler { scale, pitch: Some(pitch) };
         let turns = seen.family.unwrap_or(Family::Short).factory_turns();
-        // Steps too fine for 32 bits leave a part of the way out.
+        // Steps too fine for 32 bits exclude a part of the travel.
         let lower = scale.steps_of_turns(-turns).unwrap_or(i32::MIN);
         let upper = scale.steps_of_turns(turns).unwrap_or(i32::MAX);
         let unchanged = seen.limits.and_then(|(low, high)| {
@@ -101,7 +101,7 @@ impl Entries {
     /// Returns the number that the present place of the axis would get.
     ///
     /// # Errors
-    /// In words, also where it is not within the limits.
+    /// Why it is invalid, also if it is outside the limits.
     pub fn reference(&self, ruler: Option<Ruler>, limits: Option<(i32, i32)>) -> Result<Reference, Text> {
         let asked = position("hd_axis.reference", &self.reference, ruler)?;
         let (low, high) = limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
@@ -113,30 +113,30 @@ impl Entries {
         Ok(Reference { asked, becomes })
     }
 
-    /// The lower limit.
+    /// Returns the lower limit.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entry is invalid.
     pub fn lower(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.lower", &self.lower, ruler)
     }
 
-    /// The upper limit.
+    /// Returns the upper limit.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entries are invalid.
     pub fn upper(&self, ruler: Option<Ruler>) -> Result<i32, Text> {
         position("hd_axis.upper", &self.upper, ruler)
     }
 }
 
-/// A number without zeros at its end.
+/// Returns a number without trailing zeros.
 fn trimmed(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Steps as they are typed: with as many decimals as tell one from another.
+/// Returns steps as an entry, with enough decimals to distinguish steps.
 pub(super) fn typed(ruler: Ruler, steps: i32) -> Option<String> {
     let decimals = ruler.decimals(Measure::Millimetres);
     Some(format!("{:.decimals$}", ruler.of(steps.into(), Measure::Millimetres)?))

@@ -15,7 +15,7 @@ impl Axis {
         }
     }
 
-    /// The position where the axis stands becomes the limit of this step.
+    /// Takes the present position of the axis as the limit of this step.
     pub(crate) fn take_limit(&mut self, seen: &DriveFacts) {
         if self.may_take_place(seen).is_err() {
             return;
@@ -50,7 +50,7 @@ impl Axis {
             return;
         }
         if self.step == AxisStep::Reference {
-            // The person has set it, or said that it is right.
+            // The user has set or confirmed it.
             self.unexplained = None;
         }
         let next = self.step.neighbour(1);
@@ -65,7 +65,7 @@ impl Axis {
         }
     }
 
-    /// Goes to the previous step, or to the one that has to be repeated. Values that were written stay.
+    /// Goes to the previous step, or to the one that must be repeated. Values that were written stay.
     pub(crate) fn back(&mut self, seen: &DriveFacts) {
         if self.over.is_some() || !self.may_go_back(seen) {
             return;
@@ -110,7 +110,7 @@ impl Axis {
         }
     }
 
-    /// A test move was begun by this act.
+    /// Notes that a test move was begun by this act.
     pub(crate) fn went(&mut self, place: TestTarget, target: i32, act: u64) {
         if let Some(outcome) = self.outcomes.get_mut(place as usize) {
             *outcome = None;
@@ -165,7 +165,7 @@ impl Axis {
             Some(DriveRequest::Try(values)) if begun => {
                 self.agree(&values, false);
                 self.changes.extend(values.into_iter().map(|(number, value)| AxisChange::Parameter(number, value)));
-                // The mark is never saved: without it everything else is as it was saved.
+                // The mark is never saved: apart from it everything is as saved.
                 if self.step != AxisStep::PowerCycle {
                     (self.partly, self.saved) = (true, false);
                 }
@@ -179,7 +179,7 @@ impl Axis {
         }
     }
 
-    /// The device has stopped answering.
+    /// Notes that the device has stopped answering.
     pub(crate) fn lose(&mut self) {
         self.not_written(true);
         self.going = None;
@@ -190,7 +190,7 @@ impl Axis {
         self.power = self.power.map(Power::gone);
     }
 
-    /// All parameters were read; `switched`: the virtual supply was off since.
+    /// Notes that all parameters were read; `switched`: the virtual supply was off since.
     pub(crate) fn surveyed(&mut self, seen: &DriveFacts, switched: bool) {
         self.power = self.power.map(|power| power.back(seen, switched));
     }
@@ -218,7 +218,7 @@ impl Axis {
         self.settle(seen);
     }
 
-    /// Lets fall what the drive does not have any more, and takes what it has.
+    /// Discards results that the drive no longer has, and takes those that it has.
     fn settle(&mut self, seen: &DriveFacts) {
         if !seen.is_settled() || self.asked.is_some() {
             return;

@@ -10,7 +10,7 @@ use crate::devices::hiperdrive::protocol::State;
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as explained;
 
-/// How long a step must be shown before it can be left.
+/// Minimum time for which a step is shown before it can be left.
 const SETTLES: Duration = Duration::from_millis(600);
 
 impl Axis {
@@ -129,7 +129,7 @@ impl Axis {
     /// Returns why the axis must not be moved.
     ///
     /// # Errors
-    /// In words.
+    /// Why it is not possible.
     pub fn may_move(&self, seen: &DriveFacts) -> Result<(), Text> {
         if !seen.connected {
             return Err(TEXTS.text("hd_axis.not_connected"));
@@ -157,7 +157,7 @@ impl Axis {
     /// Checks whether the present place of the axis can become a limit.
     ///
     /// # Errors
-    /// Why not, in words.
+    /// Why it is not possible.
     pub fn may_take_place(&self, seen: &DriveFacts) -> Result<(), Text> {
         if let Some(step) = self.fallen() {
             return Err(words::fallen(step));
@@ -171,11 +171,11 @@ impl Axis {
         seen.position.map(|_| ()).ok_or_else(|| TEXTS.text("hd_axis.no_position"))
     }
 
-    /// Checks whether a step that has been shown for this long can be left, forward or back: a second click is meant
-    /// for the step before.
+    /// Checks whether a step that has been shown for this long can be left, forward or back: a second click belongs to the
+    /// step before.
     ///
     /// # Errors
-    /// How much longer it has to be looked at.
+    /// The remaining time.
     pub fn may_leave(looked_at: Duration) -> Result<(), Duration> {
         match SETTLES.saturating_sub(looked_at) {
             Duration::ZERO => Ok(()),
@@ -244,7 +244,7 @@ impl Axis {
         }
     }
 
-    /// A person has agreed to the limits that the drive has, under the scale that it has.
+    /// Returns whether the user has confirmed the drive's present limits, with its present scale.
     pub(super) fn is_confirmed(&self, seen: &DriveFacts) -> bool {
         let (Some(own), Some((low, high))) = (&self.confirmed, seen.limits) else { return false };
         let (agreed, begun) = (own.agreed, own.begun.unwrap_or(own.agreed));
@@ -255,7 +255,7 @@ impl Axis {
     /// Returns the target of a test move.
     ///
     /// # Errors
-    /// Without limits.
+    /// The limits are not known.
     pub fn target(&self, place: TestTarget, seen: &DriveFacts) -> Result<i32, Text> {
         let (low, high) = seen.limits.ok_or_else(|| TEXTS.text("hd_axis.unread"))?;
         Ok(place.between(low, high))

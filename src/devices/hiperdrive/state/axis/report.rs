@@ -1,10 +1,10 @@
-//! The end of a run as it is written down, to be kept and printed: plain text that fits a page, lengths in millimetres.
+//! The report of a finished run, to be saved and printed: plain text that fits a page, lengths in millimetres.
 
 use super::{Axis, AxisStep, DriveFacts, End, Reached, TestTarget, words};
 use crate::app::{Language, Text};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// Whose axis it is, for a report.
+/// The device of the axis, for a report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Device {
     /// The name of the adapter or hub.
@@ -16,10 +16,10 @@ pub struct Device {
 
 /// Columns of a page.
 const COLUMNS: usize = 78;
-/// In front of what belongs to a step.
+/// Indentation of the lines of a step.
 const INDENT: &str = "   ";
 
-/// The report of a run that is over; `None` while it goes on. What was written back since is told as it is `now`.
+/// Returns the report of a finished run; `None` while it runs. Values written back since are reported as in `now`.
 pub fn report(axis: &Axis, now: &DriveFacts, device: &Device, language: Language) -> Option<String> {
     let over = axis.over()?;
     let seen = &over.seen;
@@ -90,7 +90,7 @@ impl Page {
         self.text.push('\n');
     }
 
-    /// A text, in as many lines as it takes.
+    /// Writes a text, in as many lines as it takes.
     fn line(&mut self, indent: &str, text: &Text) {
         let mut line = String::new();
         for word in text.words(self.language).split_whitespace() {

@@ -1,6 +1,6 @@
-//! The position of an axis at a standstill. Parameter 198 is the number that was written last, and no parameter shows
-//! the place where that was (manual, 198 and 107): a reference set again at the same number elsewhere shows only as a
-//! position that jumps although nothing moves. So two readings of a standing axis are compared.
+//! The position of an axis at a standstill. Parameter 198 is the number written last, and no parameter shows the place
+//! where that was (manual, 198 and 107): a reference set again to the same number elsewhere shows only as a position that
+//! jumps without motion. So two readings of an axis at a standstill are compared.
 
 use std::time::Duration;
 
@@ -11,28 +11,28 @@ use crate::devices::hiperdrive::procedures::dead_man::SETTLE;
 use crate::devices::hiperdrive::protocol::{PositionScale, StatusBit};
 use crate::units::Moment;
 
-/// The fastest a shaft turns: the largest value of parameter 166.
+/// Maximum speed of a shaft: the largest value of parameter 166.
 const FASTEST_RPM: f64 = 35.0;
 /// An axis that was not read for longer may have been moved meanwhile, and have come to rest.
 const UNREAD: Duration = Duration::from_secs(1);
 
-/// The axis as it stood last.
+/// The last standstill of the axis.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Standstill {
     last: Option<StandstillReading>,
-    /// The connection was lost since: the clock of a session counts for that session alone.
+    /// The connection was lost since: the clock of a session is valid for that session only.
     interrupted: bool,
 }
 
-/// A reading of an axis that stands.
+/// Reading of an axis at a standstill.
 #[derive(Clone, Copy, Debug)]
 struct StandstillReading {
-    /// `None`: read with everything else, behind a connection that was lost.
+    /// `None`: read with everything else, after a loss of the connection.
     at: Option<Moment>,
     position: i32,
     scale: PositionScale,
     origin: Origin,
-    /// The last act of a person that was over.
+    /// The user's last act that had ended.
     act: Option<u64>,
 }
 
@@ -46,12 +46,13 @@ pub(super) enum PositionChange {
 }
 
 impl Standstill {
-    /// The connection is gone.
+    /// Notes that the connection was lost.
     pub(super) const fn interrupt(&mut self) {
         self.interrupted = true;
     }
 
-    /// The drive was off, and may have been turned by hand meanwhile: the check over the supply compares that by itself.
+    /// Forgets the last standstill: the drive was off, and may have been turned by hand meanwhile. The check of the supply
+    /// compares the position itself.
     pub(super) fn forget(&mut self) {
         *self = Standstill::default();
     }
@@ -65,7 +66,7 @@ impl Standstill {
         let stands = !seen.moves && actual.status.has(StatusBit::StandingStill) && actual.speed == 0;
         let now = StandstillReading { at, position, scale, origin, act: seen.ended.map(|(act, _)| act) };
         let is_interrupted = std::mem::take(&mut self.interrupted);
-        // Behind a motion it stands elsewhere, which says nothing.
+        // After a motion a changed position means nothing.
         let before = std::mem::replace(&mut self.last, stands.then_some(now))?;
         let same_act = is_interrupted || stands && before.act == now.act;
         let is_comparable = same_act && before.scale == scale && before.origin == origin;
@@ -76,7 +77,7 @@ impl Standstill {
 fn shift(before: &StandstillReading, now: &StandstillReading, is_interrupted: bool) -> Option<PositionChange> {
     let way = i64::from(now.position) - i64::from(before.position);
     let allowed = |degrees: f64| way.abs() <= i64::from(now.scale.steps_of_degrees(degrees));
-    // Each session has a clock of its own.
+    // Each session has its own clock.
     let elapsed = now.at.zip(before.at).filter(|_| !is_interrupted).map(|(now, before)| now.since(before));
     let turned = |elapsed: Duration| FASTEST_RPM * 6.0 * (elapsed + SETTLE).as_secs_f64();
     match elapsed {

@@ -1,15 +1,15 @@
-//! The check over the supply: what was before it went, what is after it came back, and what proves that it was off at all. A
-//! connection that was lost and found again proves nothing.
+//! The check of the supply: the state before it was lost, the state after it returned, and the proof that it was off at
+//! all. A connection that was lost and restored proves nothing.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::protocol::drive_parameter::HAND_DRIVE_WAIT;
 use crate::devices::hiperdrive::protocol::{Factory, PARAMETERS, PositionScale};
 
-/// The parameter by which a restart of the drive can be read: it is never saved, so that only a restart restores its factory
-/// setting (manual, 182); nothing moves by it.
+/// Parameter that reveals a restart of the drive: it is never saved, so that only a restart restores its factory setting
+/// (manual, 182); it moves nothing.
 pub(super) const MARK: u16 = HAND_DRIVE_WAIT;
 
-/// Degrees by which a drive may readjust its position by itself, at power-up and behind a stop (manual, 8.3).
+/// Degrees by which a drive may readjust its position by itself, at power-up and after a stop (manual, 8.3).
 pub(super) const READJUSTS: f64 = 5.0;
 
 /// The facts before the supply is switched off.
@@ -25,15 +25,15 @@ pub struct StateBeforePowerOff {
 /// The evidence that the supply was off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Restart {
-    /// It was read: parameter 182 is as from the factory again.
+    /// By reading: parameter 182 has its factory setting again.
     Read,
     /// The virtual supply was switched from here.
     Switched,
-    /// A person said so; nothing was read that proves it.
+    /// By the user's statement; no reading proves it.
     Said,
-    /// Nothing: the connection was lost, which happens without that too.
+    /// Unproven: the connection was lost, which can have other causes.
     Unproven,
-    /// It was not off: parameter 182 still has what only a restart takes away.
+    /// It was not off: parameter 182 still has the value that only a restart removes.
     Disproved,
 }
 
@@ -45,11 +45,11 @@ pub enum Power {
     /// It has stopped answering, or its parameters were not read since.
     Gone(StateBeforePowerOff),
     Back {
-        /// As it was.
+        /// State before.
         before: StateBeforePowerOff,
         /// The saved values are present.
         kept: bool,
-        /// Steps between where it stood and where it stands; `None` where one of them is not known.
+        /// Steps between the positions before and after; `None` if one of them is not known.
         moved: Option<i64>,
         /// Allowed deviation in steps.
         allowed: i64,
@@ -63,8 +63,8 @@ impl Power {
         Power::On(StateBeforePowerOff::default()).followed(seen)
     }
 
-    /// Takes the latest values while the supply is on. As long as the mark is there, the supply was not off since it
-    /// was set.
+    /// Takes the latest values while the supply is on. As long as the mark is present, the supply was not off since it was
+    /// set.
     pub(super) fn followed(self, seen: &DriveFacts) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven }
@@ -100,7 +100,7 @@ impl Power {
         let Some(scale) = seen.scale else { return self };
         let restart = match (switched, before.marked, is_marked(seen)) {
             (true, ..) => Restart::Switched,
-            // Also where the line was lost before the mark was known to be set.
+            // Also if the connection was lost before the mark was known to be set.
             (_, _, Some(true)) => Restart::Disproved,
             (_, true, Some(false)) => Restart::Read,
             _ => Restart::Unproven,
@@ -116,7 +116,7 @@ impl Power {
         }
     }
 
-    /// A person says that the supply was off, where nothing proves or disproves it.
+    /// Takes the user's statement that the supply was off, if nothing proves or disproves it.
     pub(super) const fn confirmed_by_user(self) -> Self {
         match self {
             Power::Back { before, kept, moved, allowed, restart: Restart::Unproven } => {
@@ -126,14 +126,14 @@ impl Power {
         }
     }
 
-    /// Returns whether the saved values are present, the axis stands where it stood, and the supply was off.
+    /// Returns whether the saved values are present, the axis is where it was, and the supply was off.
     pub(super) fn is_survived(self) -> bool {
         matches!(self, Power::Back { kept: true, moved: Some(moved), allowed, restart, .. }
             if moved.abs() <= allowed && matches!(restart, Restart::Read | Restart::Switched | Restart::Said))
     }
 }
 
-/// [`MARK`] is not as from the factory; `None` where it was not read.
+/// Returns whether [`MARK`] differs from its factory setting; `None` if it was not read.
 pub(super) fn is_marked(seen: &DriveFacts) -> Option<bool> {
     Some(*seen.values.get(&MARK)? != from_the_factory()?)
 }

@@ -1,4 +1,4 @@
-//! How far an axis was moved by hand, and the three targets of the test.
+//! The distance that an axis was moved by jogging, and the three targets of the test.
 
 use super::DriveFacts;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
@@ -8,11 +8,11 @@ use crate::devices::hiperdrive::protocol::Direction;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum TestTarget {
-    /// In the middle of the range.
+    /// The middle of the range.
     Middle,
-    /// To the lower limit.
+    /// The lower limit.
     Lower,
-    /// To the upper limit.
+    /// The upper limit.
     Upper,
 }
 
@@ -28,24 +28,24 @@ pub struct Outcome {
     pub allowed: i64,
 }
 
-/// How far an axis was moved by hand, in steps. Only motion under a held pad counts.
+/// Distance that an axis was moved by jogging, in steps. Only motion while a button is held counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Travel {
-    /// The farthest up while a pad was held once; 0 until that can be told from nothing.
+    /// Farthest distance upward in one jog; 0 until it is significant.
     pub up: i64,
     /// The farthest down.
     pub down: i64,
-    /// Turning clockwise counts up; `None`: not seen yet.
+    /// Turning clockwise counts up; `None`: not observed yet.
     pub clockwise_is_up: Option<bool>,
-    /// The act that moves it, and where it was at its beginning.
+    /// The act that moves it, and the position at its start.
     from: Option<(u64, i32)>,
 }
 
 impl TestTarget {
-    /// All of them, as they are moved to.
+    /// All targets, in the order of the test.
     pub const ALL: [TestTarget; 3] = [TestTarget::Middle, TestTarget::Lower, TestTarget::Upper];
 
-    /// The steps between two limits.
+    /// Returns the number of steps between two limits.
     pub const fn between(self, low: i32, high: i32) -> i32 {
         match self {
             TestTarget::Middle => low.midpoint(high),
@@ -56,7 +56,7 @@ impl TestTarget {
 }
 
 impl Outcome {
-    /// Steps between target and position.
+    /// Returns the number of steps between target and position.
     pub fn missed(&self) -> i64 {
         i64::from(self.position) - i64::from(self.target)
     }
@@ -67,7 +67,7 @@ impl Outcome {
 }
 
 impl Travel {
-    /// The drive is somewhere. Less than a 64th of a turn is not told from nothing.
+    /// Takes the position of the drive. Less than a 64th of a turn is not significant.
     pub(super) fn note(&mut self, seen: &DriveFacts) {
         let (Some((act, direction)), Some(position), Some(scale)) = (seen.held, seen.position, seen.scale) else {
             self.from = None;

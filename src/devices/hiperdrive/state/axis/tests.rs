@@ -1,4 +1,4 @@
-//! The run against what a drive might say, step by step, without a drive.
+//! The run against possible reports of a drive, step by step, without a drive.
 
 mod facts;
 mod standstill;
@@ -12,13 +12,13 @@ use crate::app::{Language, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Ended, Lock};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, Family, StatusWord};
 
-/// A drive that nobody has asked for, as it comes from the factory.
+/// Returns the facts of a drive that is not requested, with factory settings.
 fn fresh() -> DriveFacts {
     DriveFacts {
         connected: true,
         actual: Some(Actual { status: StatusWord::new(0x2A30), speed: 0, position: 0 }),
         position: Some(0),
-        // 182 is 1000 from the factory, 198 is 0.
+        // The factory setting of 182 is 1000, of 198 it is 0.
         values: BTreeMap::from([(152, 0), (182, 1000), (198, 0)]),
         requested: Some(false),
         scale: Some(PositionScale::FACTORY),
@@ -40,7 +40,7 @@ fn at(seen: &mut DriveFacts, position: i32) {
     seen.position = Some(position);
 }
 
-/// The drive does what is asked for.
+/// Makes the drive do what is requested.
 #[track_caller]
 fn obey(axis: &mut Axis, seen: &mut DriveFacts, ask: DriveRequest) {
     axis.begin(ask.clone(), seen);
@@ -92,17 +92,17 @@ fn next(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
 }
 
 fn go_on(axis: &mut Axis, seen: &DriveFacts) {
-    // The pitch that is typed is confirmed with that.
+    // This also confirms the entered pitch.
     let pitch = axis.entries().pitch().ok().filter(|_| axis.step() >= AxisStep::Scale);
     axis.go_on(&DriveFacts { pitch: pitch.or(seen.pitch), ..seen.clone() }, "2026-11-23 06:00");
 }
 
-/// The step with the spindle: 4 mm a turn, a step 0.01 mm.
+/// Enters the spindle: 4 mm per turn, a step of 0.01 mm.
 fn type_spindle(axis: &mut Axis) {
     axis.edit(Entries { pitch: "4".to_owned(), ..axis.entries().clone() });
 }
 
-/// Past it: what was confirmed measures from then on.
+/// Goes past the step with the spindle: the confirmed pitch applies from then on.
 #[track_caller]
 fn confirm_spindle(axis: &mut Axis, seen: &mut DriveFacts) {
     next(axis, seen, AxisStep::Confirm);
@@ -123,7 +123,7 @@ fn a_step_is_looked_at_for_a_while_before_it_is_left() {
     assert!(!axis.may_go_back(&seen), "nothing is before the first step");
 }
 
-/// A step that is proposed reads as the numbers beside it do, and is taken in either language.
+/// A proposed step has the same decimal sign as the numbers beside it, and is accepted in either language.
 #[test]
 fn what_is_proposed_has_the_decimal_sign_of_the_language() {
     for (language, step) in [(Language::English, "0.01"), (Language::German, "0,01")] {
@@ -134,7 +134,7 @@ fn what_is_proposed_has_the_decimal_sign_of_the_language() {
     }
 }
 
-/// A limit that was written twice is told once, as the drive has it.
+/// A limit that was written twice is reported once, with its present value.
 #[test]
 fn what_was_written_again_is_told_as_it_is_now() {
     let mut axis = run();
@@ -144,7 +144,7 @@ fn what_was_written_again_is_told_as_it_is_now() {
     assert_eq!(said, "Written: 158 = 9, 160 = 250.");
 }
 
-/// From the beginning to the step with the slow jog: 4 mm a turn, a step 0.01 mm.
+/// Goes from the beginning to the step with the slow jog: 4 mm per turn, a step of 0.01 mm.
 fn until_jog() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = (run(), fresh());
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(152, 1)]));
@@ -230,7 +230,7 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
     // Reading without switching off proves nothing.
     axis.surveyed(&seen, false);
     assert!(matches!(axis.power(), Some(Power::On(_))));
-    // By hand: 182 is 1000 from the factory.
+    // Worked out by hand: the factory setting of 182 is 1000.
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(182, 1001)]));
     axis.lose();
     seen.connected = false;
@@ -245,7 +245,7 @@ fn from_a_new_drive_to_an_axis_that_survives_the_supply() {
     go_on(&mut axis, &seen);
     assert_eq!(axis.end(), Some(End::Done));
     assert!(AxisStep::ALL.into_iter().all(|step| axis.reached(step) == Reached::Done));
-    // By hand, in the order in which they were written.
+    // Worked out by hand, in the order in which they were written.
     let numbers = [(152, 1), (154, 400), (156, 256), (158, -204_400), (160, 204_400)];
     let mut changes: Vec<AxisChange> = numbers.map(|(number, value)| AxisChange::Parameter(number, value)).to_vec();
     changes.push(AxisChange::Position(128));
@@ -295,7 +295,7 @@ fn nothing_is_pressed_that_cannot_be_done() {
     assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.not_virtual");
     seen.is_virtual = true;
     assert_eq!(why(&axis, &seen, Button::PowerCycle), "hd_axis.give_first");
-    // While a write is under way nothing else is done.
+    // During a write nothing else is done.
     axis.begin(DriveRequest::Save, &seen);
     assert_eq!(why(&axis, &seen, Button::Go(TestTarget::Lower)), "hd_axis.busy");
     go_on(&mut axis, &seen);
@@ -338,7 +338,7 @@ fn a_test_that_did_not_arrive_does_not_count() {
     assert!(axis.outcome(TestTarget::Middle).unwrap().is_good());
     let DriveRequest::Move(target) = axis.ask(Button::Go(TestTarget::Upper), &seen).unwrap() else { panic!("no move") };
     axis.went(TestTarget::Upper, target, 9);
-    // An earlier act says nothing of this one.
+    // An earlier act does not count for this one.
     axis.look(&seen);
     assert_eq!((axis.going(), axis.outcome(TestTarget::Upper)), (Some(TestTarget::Upper), None));
     seen.ended = Some((9, Ended::Stopped));
@@ -355,7 +355,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     assert_eq!(axis.ask(Button::Go(TestTarget::Lower), &seen).unwrap_err().id(), "hd_axis.over");
     seen.unsaved = BTreeMap::from([(152, 0)]);
     assert_eq!(press(&mut axis, &mut seen, Button::Recall), DriveRequest::Restore(vec![(152, 0)]));
-    // The place has the position that it got.
+    // The place has the position that was set.
     assert_eq!(axis.changes(), [AxisChange::Position(128)]);
     let told = |axis: &Axis| end_lines(axis, &seen).iter().map(Text::id).collect::<Vec<_>>();
     assert_eq!(told(&axis), ["hd_axis.was_written", "hd_axis.returned", "hd_axis.not_saved", "hd_axis.place_left"]);
@@ -363,7 +363,7 @@ fn who_cancels_is_told_what_was_written_and_that_nothing_is_saved() {
     axis.cancel(&seen, "");
     assert_eq!(told(&axis), ["hd_axis.nothing_written"]);
     assert!(axis.changes().is_empty());
-    // A write that did not begin has changed nothing; one that was cut off may have.
+    // A write that did not begin has changed nothing; an interrupted one may have.
     for (begun, changes) in [(false, 0), (true, 1)] {
         let mut axis = run();
         axis.begin(DriveRequest::Try(vec![(152, 1)]), &fresh());
@@ -400,7 +400,7 @@ fn pitch_and_step_are_seen_before_they_are_written() {
     // 33488896 steps of 0.01 mm.
     let (low, high) = own.unchanged.unwrap();
     assert!((low + 334_888.96).abs() < 1e-6 && (high - 334_888.96).abs() < 1e-6);
-    // 2 mm in tenths: 20 steps a turn; 16000 turns of them.
+    // 2 mm in tenths: 20 steps per turn; 16000 turns of them.
     let own = preview("2", "0.1", Family::Long).unwrap();
     assert_eq!((own.scale.numerator(), own.upper), (20, 320_000));
     for (pitch, resolution, id) in [

@@ -71,7 +71,7 @@ pub fn found(axis: &Axis, step: AxisStep, seen: &DriveFacts) -> Option<Text> {
         AxisStep::Request => match (seen.requested?, seen.actual.map(|own| own.status.is_present())) {
             (true, Some(true)) => Some(TEXTS.text("hd_axis.found_drive")),
             (true, Some(false)) => Some(TEXTS.text("hd_axis.found_no_drive")),
-            // Nothing was heard of the drive: that says nothing of its cable.
+            // Without data from the drive, nothing is known of its cable.
             (true, None) => None,
             (false, _) => Some(TEXTS.text("hd_axis.found_unrequested")),
         },
@@ -158,7 +158,7 @@ pub fn fallen(step: AxisStep) -> Text {
     text.with_text("step", title(step)).with_text("why", why)
 }
 
-/// The fault of the drive, with its code where that was read; `None`: it has none.
+/// Returns the fault of the drive, with its code if it was read; `None` if it has none.
 pub fn fault(seen: &DriveFacts) -> Option<Text> {
     if !seen.has_failed() {
         return None;
@@ -177,7 +177,7 @@ pub fn effort(id: &'static str) -> Text {
     TEXTS.text(id).with("speed", speed.get()).with("torque", torque.get())
 }
 
-/// Returns the outcome of a test move in words.
+/// Returns the outcome of a test move as text.
 pub fn outcome(outcome: &Outcome, seen: &DriveFacts) -> Text {
     let mm = |steps: i64| millimetres(seen.ruler(), steps);
     if outcome.ended == Ended::Arrived {
@@ -209,14 +209,14 @@ pub fn returned(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     Some(text.with("all", axis.returned.len()))
 }
 
-/// The position is left as it was set, although parameters were written back; `None`: that is not so.
+/// Returns a message if the position is left as set although parameters were written back; `None` otherwise.
 pub fn place_left(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let is_set = axis.changes().iter().any(|own| matches!(own, AxisChange::Position(_)));
     let is_left = !axis.returned.is_empty() && (is_set || super::differences::is_place_other(seen));
     is_left.then(|| TEXTS.text("hd_axis.place_left"))
 }
 
-/// The position changed while it was not read; `None`: not since the reference.
+/// Returns a message if the position changed while it was not read; `None` if it did not since the reference.
 pub fn unexplained(axis: &Axis, seen: &DriveFacts) -> Option<Text> {
     let way = axis.unexplained?;
     Some(TEXTS.text("hd_axis.unexplained").with_text("way", millimetres(seen.ruler(), way)))
@@ -231,7 +231,7 @@ pub fn place(place: TestTarget) -> Text {
     })
 }
 
-/// All that was changed, where something was: of a parameter that was written again what it has now.
+/// Returns all changes, if any; for a parameter that was written again, its present value.
 pub fn changes(axis: &Axis) -> Text {
     let number = |own: &AxisChange| match own {
         AxisChange::Parameter(number, _) => *number,

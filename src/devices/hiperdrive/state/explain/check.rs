@@ -1,4 +1,4 @@
-//! The device check in words.
+//! Texts of the device check.
 
 use super::names::{error, state, variant};
 use crate::app::Text;
@@ -98,7 +98,7 @@ fn finding(finding: &CheckFinding) -> Text {
     }
 }
 
-/// Returns the setting of the address switches in words.
+/// Returns the setting of the address switches as text.
 pub fn switch(switch: AddressSwitch) -> Text {
     match switch {
         AddressSwitch::Object => TEXTS.text("hd_switch.object"),
@@ -109,7 +109,7 @@ pub fn switch(switch: AddressSwitch) -> Text {
     }
 }
 
-/// Returns the source of the address in words.
+/// Returns the source of the address as text.
 pub fn source(source: AddressSource) -> Text {
     match source {
         AddressSource::Stored => TEXTS.text("hd_switch.source_stored"),

@@ -1,4 +1,4 @@
-//! Why a profile is refused.
+//! Reasons for refusing a profile.
 
 use super::error::out_of_range;
 use super::names::parameter;

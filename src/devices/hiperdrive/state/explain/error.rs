@@ -1,4 +1,4 @@
-//! Errors of an adapter, a hub or a drive in words: what happened, and what to do.
+//! Errors of an adapter, a hub or a drive as text: what happened, and what to do.
 
 use super::names::parameter;
 use super::status;
@@ -74,7 +74,7 @@ pub fn device(error: &Error) -> Text {
     }
 }
 
-/// A number that a parameter may not be, with those that it may.
+/// Returns the text for a number that a parameter may not be, with those that it may.
 pub fn out_of_range(error: &OutOfRange) -> Text {
     match error.range {
         Range::OneOf([]) => named("hd_said.a_text", error.number),
@@ -82,7 +82,7 @@ pub fn out_of_range(error: &OutOfRange) -> Text {
     }
 }
 
-/// A number that came with another length than its type has.
+/// Returns the text for a number with another length than its type.
 pub fn wrong_length(error: &WrongLength) -> Text {
     named("hd_said.length", error.number).with("expected", error.expected).with("got", error.got)
 }
@@ -104,7 +104,7 @@ fn ranged(id: &'static str, error: &OutOfRange) -> Text {
     named(id, error.number).with("value", error.value).with_text("range", range(error.range))
 }
 
-/// About a parameter, with its number and its name.
+/// Returns a text about a parameter, with its number and its name.
 pub(super) fn named(id: &'static str, number: ParameterNumber) -> Text {
     TEXTS.text(id).with("number", number).with_text("name", parameter(number))
 }

@@ -1,4 +1,4 @@
-//! Motion in words: why a drive may not move, why an act was refused, how one ended.
+//! Motion as text: why a drive may not move, why an act was refused, how one ended.
 
 use super::names::state;
 use crate::app::explain::link;
@@ -88,7 +88,7 @@ pub const fn weight(ended: Ended) -> Severity {
     }
 }
 
-/// A state that a drive can be led to.
+/// Returns the text for a state that a drive can be led to.
 pub fn goal(goal: Goal) -> Text {
     state(match goal {
         Goal::Off => State::NotReady,
@@ -109,7 +109,7 @@ pub fn phase(phase: Phase) -> Text {
     }
 }
 
-/// Ids of the texts of [`lost`]: they end once control is taken again.
+/// Ids of the texts of [`lost`]: these notices end once control is taken again.
 pub const LOST: [&str; 6] =
     ["hd_lost.silent", "hd_lost.port", "hd_lost.does_not_stand", "hd_lost.session", "hd_lost.failed", "hd_end.lost"];
 

@@ -1,11 +1,11 @@
-//! The names of parts of a HIPERDRIVE: states, bits of its words, errors with cause and remedy, parameters.
+//! Names of a HIPERDRIVE: states, bits of its words, errors with cause and remedy, parameters.
 
 use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::hiperdrive::protocol::{ControlBit, ErrorCode, ParameterNumber, State, StatusBit, Variant};
 use crate::devices::hiperdrive::state::TEXTS;
 
-/// A state of the drive.
+/// Returns the text for a state of the drive.
 pub fn state(state: State) -> Text {
     TEXTS.text(match state {
         State::NotReady => "hd_state.not_ready",
@@ -67,7 +67,7 @@ pub struct ErrorWords {
     pub remedy: Text,
 }
 
-/// An error of the buffer: its name, what brings it about, what to do.
+/// Returns the texts of an error of the buffer: name, cause, remedy.
 pub fn error(code: ErrorCode) -> ErrorWords {
     let (name, cause, remedy) = match code {
         ErrorCode::OVER_CURRENT => ("hd_error.over_current", "hd_cause.over_current", "hd_remedy.over_current"),
@@ -95,7 +95,7 @@ pub fn error(code: ErrorCode) -> ErrorWords {
     ErrorWords { name: TEXTS.text(name), cause: TEXTS.text(cause), remedy: TEXTS.text(remedy) }
 }
 
-/// A parameter, without its number and drive.
+/// Returns the name of a parameter, without its number and drive.
 pub fn parameter(number: ParameterNumber) -> Text {
     match number.base() {
         base @ (24..=42) if base % 2 == 0 => TEXTS.text("hd_parameter.register").with("number", (base - 22) / 2),
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::devices::hiperdrive::protocol::PARAMETERS;
 
-    /// Names stand in the catalogue by the number of their parameter.
+    /// The catalogue has a name for each parameter, by its number.
     #[test]
     fn each_parameter_has_a_name_and_each_name_a_parameter() {
         let other = |number| parameter(number).id() == "hd_parameter.other";

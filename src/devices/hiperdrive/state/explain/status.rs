@@ -160,7 +160,7 @@ mod tests {
             let refused = refused(0x01, vec![row.code]);
             in_both_languages(&refusal(&refused), &refused);
         }
-        // A name for each row, of no other row.
+        // One name per row, and none for other rows.
         let unknown = TEXTS.text(UNKNOWN).words(German);
         let mut names: Vec<String> = GENERAL_STATUS.iter().map(|row| general(row.code).words(German)).collect();
         names.extend(ENCAPSULATION_STATUS.iter().map(|row| frame(row.code).words(German)));

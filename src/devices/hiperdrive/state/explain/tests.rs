@@ -1,4 +1,4 @@
-//! What is said of HIPERDRIVE drives: a sentence on what happened and one on what to do, in both languages.
+//! The texts about HIPERDRIVE drives: a sentence on what happened and one on what to do, in both languages.
 
 use std::time::Duration;
 
@@ -97,7 +97,7 @@ fn errors_say_what_happened_and_what_to_do() {
     ] {
         assert!(wrong_length(&length).words(language).starts_with(said), "{}", wrong_length(&length).words(language));
     }
-    // Where more time may help, the command line says how to give it, and the window speaks of no link.
+    // If more time may help, the command line tells how to set it, and the window does not mention a link.
     for late in [None, Some(late)] {
         let text = device(&Error::NoReply { requested: RequestedItem::Session, tries: 5, late });
         assert!(text.terminal().contains("timeout=2000 in the link"), "{}", text.terminal());

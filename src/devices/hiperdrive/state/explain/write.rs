@@ -1,5 +1,4 @@
-//! Writes in words: changes, operations of a plan, why there is no plan, warnings, results, and why a write ended
-//! early.
+//! Writes as text: changes, operations of a plan, why there is no plan, warnings, results, and why a write ended early.
 
 use std::path::Path;
 
@@ -15,7 +14,7 @@ use crate::devices::hiperdrive::profile::{Item, NetworkSettings, Op, OtherType, 
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::network::refused;
 
-/// A change in words.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
@@ -44,7 +43,7 @@ pub fn service(service: Service) -> Text {
     }
 }
 
-/// An operation in words.
+/// Returns an operation as text.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Write { number, old, new } => {
@@ -75,12 +74,12 @@ fn network(settings: &NetworkSettings) -> Text {
         .with("gateway", interface.gateway)
 }
 
-/// A parameter with its number, its drive and its name.
+/// Returns the name of a parameter with its number and its drive.
 pub fn item(item: Item) -> Text {
     TEXTS.text("hd_op.parameter").with("number", item).with_text("name", parameter(item.0))
 }
 
-/// A profile that goes onto another type of device or drive.
+/// Returns the text for a profile for another type of device or drive.
 pub fn other_type(types: &OtherType) -> Text {
     of_types(types, "hd_review.other_kind", "hd_review.other_variant")
 }
@@ -158,14 +157,14 @@ pub fn warning(warning: &Warning) -> Text {
     }
 }
 
-/// A write that is done.
+/// Returns the text for a write that is done.
 pub fn written(written: &Written) -> Text {
-    // Of what a device does nothing is read back.
+    // An action of the device is not read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// A write that was cut off: how far it came and why, and where the state before is.
+/// Returns the text of an interrupted write: how far it got and why, and where the backup is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let (Interrupted { done, cause, .. }, unclear) = (interrupted, interrupted.unclear());
     let mut texts = vec![if cause.is_cancelled() {

@@ -1,71 +1,71 @@
-//! The edits: what each makes of what is wanted, and why it may not be.
+//! The edits: the effect of each on the edited values, and why one is refused.
 
 use super::{BaseSource, Families, is_editable, travel};
 use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// A change. Each is one step, however much it changes.
+/// Edit. Each is one step, however much it changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edit {
     Set(ParameterNumber, i64),
-    /// A parameter stays as it is, or as the profile says.
+    /// Return a parameter to the value of the device or the profile.
     Revert(ParameterNumber),
-    /// The profile is to say nothing about a parameter.
+    /// Remove a parameter from the profile.
     Leave(ParameterNumber),
-    /// Both limits of a drive at once, where one after the other would not go.
+    /// Set both limits of a drive at once, if they cannot be set one after the other.
     Limits {
-        /// Whose.
+        /// Drive of the limits.
         drive: DriveNumber,
-        /// In steps as they are wanted to be scaled.
+        /// In steps of the edited scale.
         lower: i64,
         /// Likewise.
         upper: i64,
     },
     /// Another scale of a drive's positions.
     Scale {
-        /// Whose.
+        /// Drive of the scale.
         drive: DriveNumber,
-        /// Steps a turn.
+        /// Steps per turn.
         scale: PositionScale,
         /// How its limits change.
         limits: LimitsPolicy,
     },
 }
 
-/// How limits change when the size of a step does.
+/// How limits change with the size of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LimitsPolicy {
-    /// They stay where they are: their numbers become other ones.
+    /// They keep their positions: their numbers change.
     InPlace,
-    /// Their numbers stay: they lie elsewhere.
+    /// They keep their numbers: their positions change.
     AsNumbers,
 }
 
-/// Why something cannot be changed. Nothing has changed then.
+/// Why an edit is refused. Nothing has changed then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// Nothing is known of the device.
+    /// No values of the device were read.
     #[error("nothing has been read yet")]
     NothingRead,
     /// The manual has no such parameter.
     #[error("there is no parameter {0}")]
     Unknown(ParameterNumber),
-    /// Nothing is known of this one.
+    /// The value of this parameter was not read.
     #[error("parameter {0} has not been read")]
     NotRead(ParameterNumber),
-    /// It can only be read, or does something and keeps nothing.
+    /// Read-only, or an action without a stored value.
     #[error("parameter {0} is not set as a value")]
     NotAValue(ParameterNumber),
-    /// Beyond what it may be.
+    /// Out of range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// The upper limit has to be above the lower one.
     #[error("the lower limit {lower} is not below the upper limit {upper}")]
     Crossed {
-        /// As given.
+        /// As entered.
         lower: i64,
-        /// As given.
+        /// As entered.
         upper: i64,
     },
 }

@@ -5,49 +5,49 @@ use crate::devices::hiperdrive::profile::Image;
 use crate::devices::hiperdrive::protocol::{DriveNumber, OutOfRange, ParameterNumber, PositionScale, Travel};
 use crate::devices::hiperdrive::state::ruler::Ruler;
 
-/// Something that a person should look at. An edit may lead here: another scale moves limits.
+/// Finding that the user should check. An edit may cause it: another scale moves limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mark {
-    /// A number that a parameter may not be; from a profile or of an earlier time.
+    /// A number that is not allowed, from a profile or an earlier edit.
     OutOfRange(OutOfRange),
     /// The upper limit is not above the lower one.
     Crossed {
-        /// Whose.
+        /// Drive of the limits.
         drive: DriveNumber,
-        /// As wanted.
+        /// As edited.
         lower: i64,
-        /// As wanted.
+        /// As edited.
         upper: i64,
     },
-    /// The drive stands outside of its limits as they are wanted: it refuses them.
+    /// The drive is outside its edited limits, which it would refuse.
     Outside {
-        /// Whose.
+        /// Drive of the limits.
         drive: DriveNumber,
         /// Its position in the new scale.
         position: i64,
-        /// As wanted.
+        /// As edited.
         lower: i64,
-        /// As wanted.
+        /// As edited.
         upper: i64,
     },
-    /// The scale is another one, and the limits have the same numbers: they lie elsewhere.
+    /// The scale has changed and the limits have the same numbers: they mean other positions.
     LimitsMove {
-        /// Whose.
+        /// Drive of the limits.
         drive: DriveNumber,
         /// Turns, from and to.
         lower: (f64, f64),
         /// Likewise.
         upper: (f64, f64),
     },
-    /// Parameter 186 is 255: the drive would continue after a lost connection, so it is not moved from here.
+    /// Parameter 186 is 255: the drive would continue after a lost connection, so it is not moved by this program.
     NoTimeout {
-        /// Whose.
+        /// Drive of the parameter.
         drive: DriveNumber,
     },
 }
 
 impl Mark {
-    /// The parameters that it is about, by the numbers of their drive.
+    /// Returns the parameters that it concerns, by the numbers of their drive.
     pub fn numbers(&self) -> Vec<ParameterNumber> {
         let of = |drive, numbers: &[u16]| {
             numbers.iter().filter_map(|own| ParameterNumber::of_drive(*own, drive)).collect::<Vec<_>>()
@@ -62,7 +62,7 @@ impl Mark {
 }
 
 impl Staged {
-    /// All that is not right; `position` tells where a drive stands, in steps as it is scaled now.
+    /// Returns all findings; `position` gives the position of a drive, in steps of its present scale.
     pub fn marks(&self, position: impl Fn(DriveNumber) -> Option<i64>) -> Vec<Mark> {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return Vec::new() };
         let mut of_drives = Vec::new();

@@ -15,7 +15,7 @@ fn image(values: &[(u16, i64)]) -> Image {
     Image { values: values.iter().map(|(own, value)| (number(*own), *value)).collect() }
 }
 
-/// A drive with factory scaling and limits of 511 turns, a speed, and a step of its own keys.
+/// Returns the image of a drive with factory scaling and limits of 511 turns, a speed, and a step of its own keys.
 fn read() -> Image {
     image(&[(24, 0), (154, 256), (156, 1), (158, -33_488_896), (160, 33_488_896), (166, 350), (170, 4096), (186, 20)])
 }
@@ -64,8 +64,8 @@ fn what_cannot_be_is_refused_with_its_reason() {
     assert!(!staged.is_dirty());
 }
 
-/// Issue 21.10: what a drive's turns bound is refused as it is typed, and marked where a scale or a profile leads beyond:
-/// ±512 turns of an HDA30 are 33554432 steps of 65536 a turn, and 204800 of 400.
+/// Issue 21.10: a value beyond a drive's travel is refused when entered, and marked if a scale or a profile causes it: ±512
+/// turns of an HDA30 are 33554432 steps of 65536 per turn, and 204800 of 400.
 #[test]
 fn limits_beyond_the_turns_of_the_drive_are_refused() {
     let mut staged = staged();
@@ -142,7 +142,7 @@ fn a_scale_takes_the_limits_along_or_moves_them() {
     along.edit(&Edit::Scale { drive: ONE, scale: hundredths, limits: LimitsPolicy::InPlace }).unwrap();
     // 511 turns of 400 steps.
     assert_eq!(along.edited(), image(&[(154, 400), (156, 256), (158, -204_400), (160, 204_400)]));
-    // 600 turns of 65536 steps, scaled to 400 are 240 000: inside no more.
+    // 600 turns of 65536 steps, scaled to 400 are 240 000: no longer inside.
     assert!(along.marks(|_| Some(0)).is_empty());
     let outside = along.marks(|_| Some(600 * 65536));
     let expected = Mark::Outside { drive: ONE, position: 240_000, lower: -204_400, upper: 204_400 };

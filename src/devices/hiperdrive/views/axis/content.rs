@@ -1,4 +1,4 @@
-//! The contents of the single steps of the set-up of an axis: entries, their results, buttons to hold.
+//! The contents of the steps of the set-up of an axis: entries, their results, jog buttons.
 
 use egui::{RichText, Ui, vec2};
 
@@ -74,7 +74,7 @@ fn buttons(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Ve
     super::skip(ui, theme, shown, actions);
 }
 
-/// Draws the results of the entries and of the step so far. Nothing of it can be clicked.
+/// Draws the results of the entries and of the step so far, without clickable widgets.
 pub(super) fn messages_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     let step = shown.axis.step();
     if step.jogs() {
@@ -111,7 +111,7 @@ fn may_jog(shown: &AxisPicture<'_>, direction: Direction) -> Result<(), Text> {
     shown.axis.may_move(shown.seen).and_then(|()| shown.unit.may_jog(shown.axis.drive(), direction))
 }
 
-/// Draws why the pads do nothing, or what they do.
+/// Draws why the jog buttons are blocked, or what they do.
 fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     let blocked = [Direction::Counterclockwise, Direction::Clockwise].map(|own| may_jog(shown, own).err());
     if let Some(outside) = shown.unit.outside_words(shown.axis.drive()) {
@@ -131,7 +131,7 @@ fn availability_ui(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>) {
     }
 }
 
-/// The two buttons that are held, slow and weak.
+/// Draws the two buttons that are held, slow and weak.
 fn pads(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let width = ((ui.available_width() - theme.space.between) / 2.0).max(0.0);
     let caption = theme.words(&words::effort("hd_axis.jog_hold"));
@@ -154,7 +154,7 @@ fn number(ui: &mut Ui, theme: &Theme, id: &'static str, text: &mut String) {
     entry(ui, theme, &word, |ui| text_entry(ui, text, NUMBER, &word, ""));
 }
 
-/// Pitch and resolution, and what they come to before they are written.
+/// Draws pitch and resolution, and the resulting values before they are written.
 fn scale(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entries) {
     if entries.pitch.trim().is_empty() {
         return;
@@ -214,7 +214,7 @@ fn reference(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, entries: &Entr
     }
 }
 
-/// Three places, and whether they were reached.
+/// Draws three places, and whether they were reached.
 fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     let mm = |steps: i32| theme.words(&words::millimetres(shown.seen.ruler(), steps.into()));
     for own in TestTarget::ALL {
@@ -241,7 +241,7 @@ fn test(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<A
     }
 }
 
-/// The supply: of a virtual device it is switched here, of a real one by hand.
+/// Draws the supply: of a virtual device it is switched here, of a real one by hand.
 fn power(ui: &mut Ui, theme: &Theme, shown: &AxisPicture<'_>, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         let word = theme.words(&words::button(AxisStep::PowerCycle));

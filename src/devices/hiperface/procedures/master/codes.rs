@@ -1,26 +1,26 @@
-//! The queue of status codes. 50h takes a code out of the encoder, so that a lost reply may have carried one: late
-//! replies are accepted as well, and possibly lost codes are counted.
+//! The queue of status codes. 50h removes a code from the encoder, so a lost reply may have contained one: late replies are
+//! accepted as well, and possibly lost codes are counted.
 
 use super::Master;
 use crate::devices::hiperface::procedures::Error;
 use crate::devices::hiperface::protocol::{Answer, Reply, Request, StatusCode};
 
-/// Codes in an encoder's queue at most, and one more to see its end.
+/// Maximum number of codes in an encoder's queue, and one more to detect its end.
 const MOST_CODES: usize = 5;
-/// Replies that bring nothing new, until the queue is left as it is.
+/// Replies without a new code after which the queue is left as it is.
 const MOST_REPEATED: u32 = 5;
 /// Bytes of a reply to 50h: address, command, one to four codes, checksum.
 const REPLY: std::ops::RangeInclusive<usize> = 4..=7;
 
-/// A reply to 50h: its codes, and whether more wait behind them.
+/// Reply to 50h: its codes, and whether more follow.
 type Codes = (Vec<StatusCode>, bool);
 
 impl Master<'_> {
-    /// Reads the whole queue into the station: 50h until the error bit is gone.
+    /// Reads the whole queue into the station: 50h until the error bit is cleared.
     ///
     /// # Errors
-    /// When every try failed, or when the user wished an end. Codes that came until then are in the station, and what may
-    /// have been lost is counted there.
+    /// If every attempt failed, or the user cancelled. Codes received until then are in the station, and those possibly
+    /// lost are counted there.
     pub(in super::super) fn collect_codes(&mut self) -> Result<(), Error> {
         let (mut seen, mut repeated) = (Vec::new(), 0);
         while seen.len() < MOST_CODES && repeated < MOST_REPEATED {
@@ -31,13 +31,13 @@ impl Master<'_> {
             repeated += u32::from(seen.len() == before);
         }
         if repeated == MOST_REPEATED {
-            // No old reply comes so often: the encoder announces the same again as soon as it is read.
+            // An old reply does not come this often: the encoder announces the same code again as soon as it is read.
             self.station.codes_unheard = self.station.codes_unheard.saturating_sub(repeated);
         }
         Ok(())
     }
 
-    /// Takes the next codes out of the queue; true if more follow. `seen`: the codes of each reply so far.
+    /// Takes the next codes out of the queue; returns true if more follow. `seen`: the codes of each reply so far.
     fn next_codes(&mut self, seen: &mut Vec<Vec<StatusCode>>) -> Result<bool, Error> {
         self.learn_echo()?;
         let mut tries = 0;
@@ -46,13 +46,13 @@ impl Master<'_> {
             self.line.keep_passed();
             let sent = self.station.line.quality.requests;
             let attempt = self.attempt(&Request::ReadStatus);
-            // A wish to end is heard before it is sent, and so is a line that is never silent.
+            // Cancellation, or a line that is never silent, is detected before it is sent.
             if self.station.line.quality.requests > sent {
                 self.station.codes_unheard += 1;
             }
             let (answered, ended) = match attempt? {
                 Ok(answered) => {
-                    // Behind a repetition, the replies to the tries before it may still come.
+                    // After a repetition, the replies to earlier attempts may still arrive.
                     let ended = if tries > 1 { self.hear_late(tries) } else { Ok(()) };
                     (Some(codes(answered.answer)), ended)
                 }
@@ -76,8 +76,8 @@ impl Master<'_> {
         }
     }
 
-    /// Takes a reply to 50h. One equal to an earlier one in the same queue may be a late duplicate: its codes are
-    /// known, and the reply to the present request may be missing.
+    /// Takes a reply to 50h. One equal to an earlier one in the same queue may be a late duplicate: its codes are known,
+    /// and the reply to the present request may be missing.
     fn meet_reply(&mut self, codes: Vec<StatusCode>, seen: &mut Vec<Vec<StatusCode>>) {
         if seen.contains(&codes) {
             return;
@@ -107,8 +107,8 @@ impl Master<'_> {
         found
     }
 
-    /// The reply to 50h that bytes begin with, and what is behind it. The checksum fits the first bytes of some replies as well
-    /// (01h and 11h from address 40h): one that ends with the bytes, or before the next reply, goes first.
+    /// Returns the reply to 50h at the start of the bytes, and the rest. The checksum also matches the first bytes of some
+    /// replies (01h and 11h from address 40h): one that ends with the bytes, or before the next reply, takes precedence.
     fn reply_at<'b>(&self, bytes: &'b [u8]) -> Option<(Codes, &'b [u8])> {
         let replies = REPLY.filter_map(|length| bytes.split_at_checked(length)).filter_map(|(frame, behind)| {
             let answer = Request::ReadStatus.parse_reply(self.station.address, frame).ok()?;

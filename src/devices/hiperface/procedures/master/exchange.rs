@@ -1,7 +1,7 @@
-//! One exchange, in the protocol's rhythm (manual, "Dialog Timing"): dead time, request, reply, dead time.
+//! One exchange, with the timing of the protocol (manual, "Dialog Timing"): dead time, request, reply, dead time.
 //!
-//! A reply ends with its last byte where its length is known, else with silence. The dead time after it is spent
-//! listening: a byte there means that the frame was longer than it should be, and nothing of it is shown.
+//! A reply ends with its last byte if its length is known, else with silence. The host listens during the dead time after
+//! it: a byte there means that the frame was longer than expected, and none of it is shown.
 
 use std::time::Duration;
 
@@ -18,19 +18,19 @@ const DAMAGED_REQUEST: [StatusCode; 3] = [StatusCode::PARITY, StatusCode::CHECKS
 
 /// An exchange that gave no answer.
 pub(in super::super) enum ExchangeFailure {
-    /// Nothing came back but, maybe, our own bytes.
+    /// No reply, except possibly the echo.
     Silence {
-        /// Our own bytes came back.
+        /// The sent bytes came back.
         echo_heard: bool,
     },
-    /// Something came back and is broken.
+    /// A reply arrived damaged.
     Damage(Damage),
 }
 
 /// An answer and when it began.
 pub(in super::super) struct ReceivedAnswer {
     pub(in super::super) answer: Answer,
-    /// The address it came from.
+    /// Address of the sender.
     pub(in super::super) sender: u8,
     pub(super) at: Moment,
 }
@@ -61,11 +61,11 @@ impl Master<'_> {
         let heard = self.listen(request, &frame, sent_at)?;
         let (first_at, reply) = (heard.first_at, heard.reply.clone());
         let judgement = self.judge(request, heard);
-        // A damaged reply to a frame with an access code may be our own bytes echoed: none of it is shown.
+        // A damaged reply to a frame with an access code may be the echo: none of it is shown.
         let secret = judgement.is_err() && frame.is_secret();
         let shown = if secret { MaskedBytes::hidden(reply.len()) } else { MaskedBytes::clear(&reply) };
         self.line.show(first_at, shown);
-        // In what is broken there may be a whole reply. What came too late or too long was let pass; an echo is none.
+        // Damaged bytes may contain a whole reply. A reply that was too late or too long is skipped; an echo is none.
         if let Err(ExchangeFailure::Damage(Damage::Reply(_))) = judgement {
             self.line.pass(&reply);
         }
@@ -75,7 +75,7 @@ impl Master<'_> {
         }))
     }
 
-    /// Makes sure that it is known whether the line gives our own bytes back.
+    /// Determines whether the line echoes, if not known yet.
     pub(super) fn learn_echo(&mut self) -> Result<(), Error> {
         if self.station.line.echo == Echo::Unknown {
             self.ask(&Request::ReadTypeLabel)?;
@@ -83,18 +83,18 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// Prepares an exchange: checks for a request to end, then waits for the dead time and for silence on the line.
+    /// Prepares an exchange: checks for cancellation, then waits for the dead time and for silence on the line.
     pub(super) fn begin(&mut self) -> Result<(), Error> {
         let quiet = self.quiet();
         Ok(self.line.begin(&mut self.station.line, quiet)?)
     }
 
-    /// Sends a frame, and shows of it what may be shown.
+    /// Sends a frame, and traces the part of it that may be shown.
     pub(super) fn send(&mut self, frame: &SecretFrame, sent_at: Moment) -> Result<(), LinkError> {
         self.line.send(frame.bytes(), frame.masked(), sent_at)
     }
 
-    /// tT has to be greater than the time-out: one bit more.
+    /// Returns tT, which must be greater than the time-out: one bit more.
     fn dead_time(&self) -> Duration {
         self.station.timing().timeout + self.station.format.baud.time_of_bits(1)
     }
@@ -142,7 +142,7 @@ impl Master<'_> {
         Ok(self.take_apart(&line, request, frame, first_at, intrusion))
     }
 
-    /// The dead time, listening. True when something came that belongs to no reply.
+    /// Listens during the dead time. Returns true if bytes arrived that belong to no reply.
     fn hear_the_dead_time(&mut self, line: &mut Vec<u8>, frame: &SecretFrame) -> Result<bool, Error> {
         let before = line.len();
         let quiet_until = self.now() + self.dead_time();
@@ -157,7 +157,7 @@ impl Master<'_> {
         Ok(trailing)
     }
 
-    /// The reply as far as it has come; `None` while it may still be the echo.
+    /// Returns the reply received so far; `None` while it may still be the echo.
     fn without_echo<'l>(&self, line: &'l [u8], frame: &SecretFrame) -> Option<&'l [u8]> {
         self.station.line.echo.strip(line, frame.bytes())
     }
@@ -176,7 +176,7 @@ impl Master<'_> {
         let is_reply = |rest: &[u8]| request.parse_reply(self.station.address, rest).is_ok();
         let wrong_echo = match self.station.line.echo {
             Echo::On => !echo_heard && !line.is_empty(),
-            // An echo and a reply have a right checksum together as well: to 50h that is a reply with four codes.
+            // An echo and a reply together also have a right checksum: after 50h that looks like a reply with four codes.
             Echo::Off => line.strip_prefix(sent).is_some_and(is_reply),
             Echo::Unknown => false,
         };
@@ -197,7 +197,7 @@ impl Master<'_> {
         if let Answer::Rejected { codes, .. } = &answer
             && let Some(code) = codes.iter().find(|code| DAMAGED_REQUEST.contains(code))
         {
-            // The request was right when it left: the line damaged it.
+            // The request was right when it was sent: the line damaged it.
             return Err(ExchangeFailure::Damage(Damage::AtEncoder(*code)));
         }
         self.station.line.answered();

@@ -1,10 +1,10 @@
-//! What a person writes is read, what is written is read again, and what is wrong is named.
+//! The user's text is parsed, the written text is parsed again, and errors are named.
 
 use super::*;
 use crate::profile::testing::{changed_in_place, edited};
 use crate::profile::{Document, ProfileError};
 
-/// A profile as a person may write it.
+/// Profile as a user may write it.
 const SHORT: &str = r#"(
     schema: 1, device: "hiperface",
     identity: (serial_number: "A1", encoder_type: 0x37),
@@ -12,7 +12,7 @@ const SHORT: &str = r#"(
     fields: [(number: 0, status: 0xC8, bytes: "00 01 02 03 04 05 06 07 08 09 0A 0B 0C 0D 0E 0F")],
 )"#;
 
-/// The same, as another one wrote it, with comments; on a computer whose lines end with both letters.
+/// Returns the same profile as written by another user, with comments; with CR LF line ends.
 fn commented() -> String {
     include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/hiperface.ron")).replace('\n', "\r\n")
 }
@@ -98,7 +98,7 @@ fn a_wrong_profile_is_told_where() {
     }
 }
 
-/// Issue 22.17: people's own entries stand in `extra`, in any structure.
+/// Issue 22.17: the user's own entries are in `extra`, in any structure.
 #[test]
 fn entries_of_ones_own_are_kept() {
     let text = SHORT
@@ -118,7 +118,7 @@ fn entries_of_ones_own_are_kept() {
     assert!(matches!(&error, ProfileError::Shape { path, .. } if path == "extra"), "{error}");
 }
 
-/// Issue 22.17: what a file of before `extra` holds beyond the schema is taken into it, and named.
+/// Issue 22.17: entries outside the schema in a file from before `extra` are moved into it, and named.
 #[test]
 fn what_older_files_hold_beyond_the_schema_is_taken_over() {
     let text = SHORT.replace("schema: 1,", "schema: 1, owner: \"CK\",").replace("number: 0,", "number: 0, label: 3,");
@@ -143,14 +143,14 @@ fn a_newer_schema_is_only_looked_at() {
     assert_eq!(zero, Err(ProfileError::Schema { found: 0, known: 1 }));
 }
 
-/// Issue 22.26: one value changed is one place changed.
+/// Issue 22.26: one changed value changes one place in the text.
 #[test]
 fn a_change_touches_nothing_else() {
     let edit = |own: &mut HiperfaceProfile| own.interface.address = 0x41;
     changed_in_place(&commented(), edit, "address: 64", "address: 0x41");
 }
 
-/// Issue 22.26: bytes that a person keeps in lines of another length are written anew, which is said; the rest stays.
+/// Issue 22.26: bytes in lines of another length are rewritten, which is reported; the rest stays.
 #[test]
 fn bytes_in_lines_of_a_persons_own_are_written_anew() {
     let (_, carried) = edited(&commented(), |_, own: &mut HiperfaceProfile| {

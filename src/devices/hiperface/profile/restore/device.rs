@@ -3,8 +3,7 @@
 use super::{PlanError, RestoreOptions};
 use crate::devices::hiperface::profile::HiperfaceProfile;
 
-/// Refuses an encoder that the profile was not read from. Encoders that do not tell their serial number are never the
-/// same one.
+/// Refuses an encoder that the profile was not read from. Encoders without a serial number are never the same one.
 ///
 /// # Errors
 /// [`PlanError::OtherDevice`], [`PlanError::OtherType`].
@@ -15,7 +14,7 @@ pub fn check_device(profile: &HiperfaceProfile, serial_number: &str, encoder_typ
             device: serial_number.to_owned(),
         });
     }
-    // Two types may count their serial numbers apart.
+    // Two types may count their serial numbers separately.
     if profile.identity.encoder_type != encoder_type {
         return Err(PlanError::OtherType { profile: profile.identity.encoder_type, device: encoder_type });
     }

@@ -1,4 +1,4 @@
-//! Why a profile cannot be restored, or an edit not be planned.
+//! Why a profile cannot be restored, or an edit cannot be planned.
 
 use crate::devices::hiperface::protocol::CodeNumber;
 
@@ -47,7 +47,7 @@ pub enum PlanError {
         /// Bytes that are free.
         free: usize,
     },
-    /// A field has to be created again and its content cannot be read.
+    /// A field must be created again and its content cannot be read.
     #[error("field {field} has to be created again and its content cannot be read: access code {code} is not known")]
     WouldLose {
         /// The field.

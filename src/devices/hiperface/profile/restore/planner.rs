@@ -26,8 +26,8 @@ pub(super) struct Planner<'a> {
 }
 
 impl Planner<'_> {
-    /// A field whose bytes are left alone is not wanted, unless values of the mounting go into it. One that the encoder
-    /// does not have is created without content where another one has to be created after it.
+    /// Removes a field whose bytes are left alone from the targets, unless values of the mounting are written to it. One
+    /// that the encoder does not have is created without content if another one must be created after it.
     pub(super) fn leave_unknown(&mut self) {
         let (profile, device, with_mounting) = (self.profile, self.device, self.with_mounting);
         let left = std::mem::take(&mut self.left);
@@ -76,7 +76,7 @@ impl Planner<'_> {
         }
     }
 
-    /// Fields that are to be created have to follow each other.
+    /// Checks that fields to be created follow each other.
     pub(super) fn check_order(&self) -> Result<(), PlanError> {
         let mut next = self.device.memory.fields;
         for field in self.wanted.iter().filter(|field| field.number >= self.device.memory.fields) {
@@ -88,7 +88,7 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// The first field whose size has to change although fields follow it.
+    /// Returns the first field whose size must change although fields follow it.
     pub(super) fn first_to_recreate(&self, allowed: bool) -> Result<Option<u8>, PlanError> {
         let last = self.device.fields.last().map(|field| field.number);
         for target in &self.wanted {
@@ -131,8 +131,8 @@ impl Planner<'_> {
         self.wanted.iter().find(|field| field.number == number)
     }
 
-    /// The fields as they are to be: those of the profile, and, where fields are created again, the encoder's own that
-    /// the profile does not have.
+    /// Returns the target fields: those of the profile, and, if fields are created again, the encoder's own that the
+    /// profile does not have.
     pub(super) fn targets(&self, recreated: Option<u8>) -> Vec<FieldImage> {
         let mut targets = self.wanted.clone();
         if let Some(first) = recreated {
@@ -192,7 +192,7 @@ impl Planner<'_> {
             stores.extend(self.allowed(now.number, run).into_iter().map(|range| (range, true)));
         }
         if new.len() > old.len() {
-            // The part that the last field grows by: its content is not known.
+            // The part by which the last field grows: its content is not known.
             stores.extend(self.allowed(now.number, old.len()..new.len()).into_iter().map(|range| (range, false)));
         }
         self.unchanged += u64::from(now.status == target.status);
@@ -213,7 +213,7 @@ impl Planner<'_> {
         }
     }
 
-    /// The parts of a range that may be written: all, or all but the values of the mounting.
+    /// Returns the parts of a range that may be written: all, or all but the values of the mounting.
     fn allowed(&mut self, field: u8, range: Range<usize>) -> Vec<Range<usize>> {
         if !self.is_other {
             return vec![range];

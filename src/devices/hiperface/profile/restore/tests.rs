@@ -48,7 +48,7 @@ fn device(free_blocks: u8, fields: Vec<FieldImage>) -> DeviceState {
     }
 }
 
-/// Operations in short: `C9>A9` define, `@3+2` store.
+/// Returns the operations in short: `C9>A9` define, `@3+2` store.
 fn ops(profile: &HiperfaceProfile, device: &DeviceState, options: RestoreOptions) -> Result<Vec<String>, PlanError> {
     let restore = plan_restore(profile, device, options)?.common;
     let short = |op: &Op| match op {
@@ -152,14 +152,14 @@ fn another_encoder_keeps_its_mounting() {
     assert_eq!(ops(&wanted, &now, other.clone()).unwrap(), ["0@2+1", "0@20+1"]);
     let restore = plan_restore(&wanted, &now, other.clone()).unwrap().common;
     assert_eq!((restore.mounting_left, restore.mounting_written), (vec![FieldRange::new(0, 3, 2)], vec![]));
-    // Issue 22.7: what goes onto the other encoder is named as well.
+    // Issue 22.7: values written to the other encoder are named as well.
     let with_mounting = RestoreOptions { with_mounting: true, ..other };
     assert_eq!(ops(&wanted, &now, with_mounting.clone()).unwrap(), ["0@2+3", "0@20+1"]);
     let restore = plan_restore(&wanted, &now, with_mounting).unwrap().common;
     assert_eq!((restore.mounting_left, restore.mounting_written), (vec![], vec![FieldRange::new(0, 3, 2)]));
 }
 
-/// Issue 22.8: bytes of unknown meaning go onto another encoder only where that was answered, field by field.
+/// Issue 22.8: bytes of unknown meaning are written to another encoder only after an answer, field by field.
 #[test]
 fn bytes_of_unknown_meaning_are_left_unless_they_are_to_be_copied() {
     let mut wanted =
@@ -195,26 +195,26 @@ fn bytes_of_unknown_meaning_are_left_unless_they_are_to_be_copied() {
     for (label, copy, with_mounting, expected) in cases {
         assert_eq!(ops(&wanted, &now, options(copy, with_mounting)).unwrap(), expected, "{label}");
     }
-    // A field that is left is created without content where another one has to come after it.
+    // A field that is left out is created without content if another one must come after it.
     let empty = device(10, vec![]);
     assert_eq!(
         ops(&wanted, &empty, options(&[(2, true)], false)).unwrap(),
         ["0:new C8", "1:new 88", "2:new C8", "2@0+16"]
     );
-    // Beside values of the mounting, which are allowed, unknown bytes of the same field stay, and so does its protection.
+    // In a field with values of the mounting, which are allowed, unknown bytes stay, and so does its protection.
     let mixed = FieldRange::new(0, 0, 2);
     let mut wanted = profile("B", vec![field(0, 0x88, &[(0, 1), (1, 2), (9, 9)])]);
     wanted.mounting.push(MountingMark { item: mixed, meaning: String::new(), unknown: Default::default() });
     let now = device(10, vec![field(0, 0xC8, &[])]);
     assert_eq!(ops(&wanted, &now, options(&[(0, false)], true)).unwrap(), ["0@0+2"]);
     assert_eq!(ops(&wanted, &now, options(&[(0, false)], false)).unwrap(), [""; 0]);
-    // On the encoder itself nothing is asked.
+    // On the encoder itself no answer is needed.
     let own = device(10, vec![field(0, 0xC8, &[])]);
     let own = DeviceState { serial_number: "B".to_owned(), ..own };
     assert_eq!(plan_restore(&wanted, &own, RestoreOptions::default()).unwrap().unknown_fields, []);
 }
 
-/// Issue 22.9: another type needs a permit of its own; the one for another serial number is not enough.
+/// Issue 22.9: another type needs its own permission; the one for another serial number is not enough.
 #[test]
 fn another_type_needs_a_permit_of_its_own() {
     let mut wanted = profile("B", vec![]);
@@ -232,7 +232,7 @@ fn another_type_needs_a_permit_of_its_own() {
         let options = RestoreOptions { allow_other_device, allow_other_type, ..RestoreOptions::default() };
         assert_eq!(ops(&wanted, &now, options), expected, "{allow_other_device} {allow_other_type}");
     }
-    // Two types may count their serial numbers apart: the same number on another type is another encoder.
+    // Two types may count their serial numbers separately: the same number on another type is another encoder.
     let mut wanted = profile("A", vec![field(0, 0xC8, &[(0, 1)])]);
     wanted.identity.encoder_type = 0x32;
     let options = RestoreOptions { allow_other_type: true, ..RestoreOptions::default() };
@@ -266,8 +266,8 @@ fn what_stays_is_counted() {
     assert_eq!(restore.plan.write_cycles(), 1);
 }
 
-/// Issue 22.12: a before-image takes back what the write created, from the last field on, and only where it is as it was
-/// written. Any other file leaves surplus fields.
+/// Issue 22.12: a before-image deletes the fields that the write created, from the last one on, and only if they are
+/// unchanged. Any other file leaves surplus fields.
 #[test]
 fn a_before_image_deletes_what_its_write_created() {
     let wanted = profile("A", vec![field(0, 0xC9, &[(0, 1)]), field(1, 0xA8, &[(3, 7)]), field(2, 0xC8, &[])]);
@@ -287,7 +287,7 @@ fn a_before_image_deletes_what_its_write_created() {
     assert_eq!((undone.created_left, undone.common.missing), (vec![], vec![]));
     assert_eq!(undone.common.plan.base.field_count, 3);
     assert_eq!(undone.common.plan.base.fields.len(), 3, "all of them are read again before anything is deleted");
-    // Changed since: it is left, and so is what stands before it.
+    // Changed since: it is left in place, and so are the fields before it.
     let mut changed = wanted.fields.clone();
     changed[2].bytes.as_mut().unwrap()[5] = 9;
     let now = after(vec![field(0, 0xC8, &[]), changed[1].clone(), changed[2].clone()]);

@@ -4,8 +4,8 @@ use super::DeviceState;
 use crate::devices::hiperface::profile::{FieldImage, HiperfacePlan, HiperfaceProfile, Op};
 use crate::devices::hiperface::protocol::FreeMemory;
 
-/// Fields to be deleted, because the write that a before-image was kept for created them: those that are still as it wrote
-/// them, from the last one on. With the numbers of the others.
+/// Returns the fields to delete, because the write of this before-image created them: those that are unchanged since, from
+/// the last one on. Also returns the numbers of the others.
 pub(super) fn undo_created(profile: &HiperfaceProfile, device: &DeviceState) -> (Vec<FieldImage>, Vec<u8>) {
     let (mut undone, mut left) = (Vec::new(), Vec::new());
     for now in device.fields.iter().rev() {
@@ -24,7 +24,7 @@ pub(super) fn undo_created(profile: &HiperfaceProfile, device: &DeviceState) -> 
     (undone, left)
 }
 
-/// The encoder after its last fields were deleted.
+/// Returns the encoder without its last fields.
 pub(super) fn without(device: &DeviceState, deleted: &[FieldImage]) -> DeviceState {
     let blocks = deleted.iter().fold(device.memory.blocks, |sum, own| sum.saturating_add(own.status.size().blocks()));
     let count = u8::try_from(deleted.len()).unwrap_or(u8::MAX);
@@ -37,7 +37,7 @@ pub(super) fn delete(field: &FieldImage) -> Op {
     Op::Define { field: field.number, from: Some(field.status), to: field.status.deleted() }
 }
 
-/// The fields that a plan creates, as it writes them; those of which it writes every byte.
+/// Returns the fields that a plan creates, as it writes them; only those of which it writes every byte.
 pub fn created_by(plan: &HiperfacePlan) -> Vec<FieldImage> {
     let mut created: Vec<(FieldImage, usize)> = Vec::new();
     let had = |number: u8| plan.base.fields.iter().any(|field| field.number == number);

@@ -1,18 +1,18 @@
-//! Data fields of another encoder whose bytes have no known meaning: they may hold an offset between encoder and motor.
+//! Data fields of another encoder whose bytes have no known meaning: they may contain an offset between encoder and motor.
 
 use super::{DeviceState, RestoreOptions};
 use crate::devices::hiperface::profile::{FieldImage, FieldRange, HiperfaceProfile};
 use crate::profile::difference::runs;
 
-/// A data field of which bytes differ that have no known meaning, where profile and encoder are not of one device. They may
-/// hold an offset between encoder and motor.
+/// Data field with differing bytes of no known meaning, if profile and encoder are not of one device. They may contain an
+/// offset between encoder and motor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownField {
-    /// Its number.
+    /// Number of the field.
     pub field: u8,
     /// Such bytes.
     pub bytes: usize,
-    /// Copied or left, as a person has answered; without an answer they are left.
+    /// Copied or left out, as answered by the user; without an answer they are left out.
     pub answer: Option<bool>,
 }
 
@@ -28,7 +28,7 @@ impl UnknownField {
     }
 }
 
-/// Data fields of another encoder's profile with bytes that differ and do not belong to the mounting.
+/// Returns the data fields of another encoder's profile with bytes that differ and do not belong to the mounting.
 pub(super) fn unknown_fields(
     profile: &HiperfaceProfile,
     device: &DeviceState,
@@ -38,7 +38,7 @@ pub(super) fn unknown_fields(
         let new = target.bytes.as_ref()?;
         let now = device.fields.iter().find(|field| field.number == target.number);
         let old = match now {
-            // An unreadable field is left alone anyway.
+            // An unreadable field is left alone regardless.
             Some(now) => now.bytes.as_deref()?,
             None => &[],
         };

@@ -1,16 +1,16 @@
-//! The golden vectors as typed values: what the host means, the bytes on the line, and what the encoder's bytes mean.
+//! The golden vectors as typed values: the host's request, the bytes on the line, and the meaning of the encoder's bytes.
 
 use super::bytes;
 use crate::devices::hiperface::protocol::*;
 
 /// A request with the replies known for it.
 pub(super) struct Vector {
-    /// Whom it is sent to.
+    /// Address of the request.
     pub(super) address: u8,
     pub(super) request: Request,
     /// Its bytes on the line.
     pub(super) bytes: &'static str,
-    /// Bytes of a reply, and what it says.
+    /// Bytes of a reply, and its meaning.
     pub(super) replies: Vec<(&'static str, Answer)>,
 }
 
@@ -26,13 +26,13 @@ fn ask(request: Request, bytes: &'static str) -> Vector {
 }
 
 impl Vector {
-    /// A reply without the error bit.
+    /// Returns a reply without the error bit.
     fn says(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: false, reply }));
         self
     }
 
-    /// A reply with the error bit.
+    /// Returns a reply with the error bit.
     fn warns(mut self, bytes: &'static str, reply: Reply) -> Self {
         self.replies.push((bytes, Answer::Reply { pending: true, reply }));
         self
@@ -96,7 +96,7 @@ fn type_label(encoder_type: u8) -> Reply {
     Reply::TypeLabel(TypeLabel { settings, encoder_type, eeprom_units: 0x80, options: 0x01 })
 }
 
-/// Every request of the reference with its replies.
+/// Returns every request of the reference with its replies.
 #[rustfmt::skip]
 pub(super) fn vectors() -> Vec<Vector> {
     let serial = SerialLabel {
@@ -212,7 +212,7 @@ fn requests_and_replies_mean_what_the_table_says() {
     }
 }
 
-/// Access codes show themselves nowhere, so the equality above has to be told apart from a blind one.
+/// Access codes are never shown, so this checks that the equality above really compares them.
 #[test]
 fn requests_with_other_codes_are_other_requests() {
     assert_ne!(read(1, 5, 2, CODE), read(1, 5, 2, CODE_66));

@@ -1,11 +1,11 @@
-//! What a host sees of the encoder at the serial line of the virtual adapter.
+//! The encoder at the serial line of the virtual adapter, as seen by a host.
 
 use crate::buses::bridge::protocol::*;
 use crate::buses::bridge::sim::tests::Host;
 use crate::devices::hiperface::sim::AtAdapter;
 
-/// The reference's question for the status and its answer; the times are those of HIPERFACE: eleven bits a character,
-/// 44 bits of silence, half of the five milliseconds that the command may take.
+/// The reference's status request and its reply; the times are those of HIPERFACE: eleven bits per character, 44 bits of
+/// silence, half of the five milliseconds that the command may take.
 #[test]
 fn the_serial_line_leads_to_a_hiperface_encoder() {
     let mut host = Host::to("uart=hiperface", &[&AtAdapter]);
@@ -22,11 +22,11 @@ fn the_serial_line_leads_to_a_hiperface_encoder() {
     };
     assert_eq!(rx, [0x40, 0x50, 0x00, 0x10]);
     assert_eq!(t_us - sent, 3_437 + 4_583 + 2_500);
-    // Nobody is at another address: the wait ends with the time-out, after three characters.
+    // No encoder has the other address: the wait ends with the time-out, after three characters.
     let sent = host.now.since_start().as_micros() as u64;
     let nothing = Reply::UartTransfer { t_us: sent + 3_437 + 20_000, rx: vec![] };
     host.expect(transfer(&[0x41, 0x50, 0x11]), nothing);
-    // At another speed there is nothing but silence either.
+    // At another speed there is no reply either.
     host.ask(Request::UartConfig { baud: 19_200, parity: 2, turnaround_us: 0 });
     let Some(Message::Reply(Reply::UartTransfer { rx, .. })) = host.ask(transfer(&[0x40, 0x50, 0x10])) else {
         panic!()

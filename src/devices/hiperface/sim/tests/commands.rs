@@ -180,7 +180,7 @@ fn heat_warns_once_and_again_after_a_reset() {
 
 #[test]
 fn a_moving_shaft_is_sampled_when_the_reply_starts() {
-    // 60/min are 4096 steps a second: 4.096 steps a millisecond.
+    // 60/min are 4096 steps per second: 4.096 steps per millisecond.
     let mut host = Host::with("rpm=60&position=0");
     // 3 characters, 44 bits of silence, 3.7 ms: the reply starts after 11.72 ms, at step 48.004.
     host.expect("40 42 02", "40 42 00 00 00 30 32");

@@ -1,4 +1,4 @@
-//! Noise, silence, a dying power supply; and that nothing whatever brings the line down.
+//! Noise, silence, a failing supply; and no input stops the line from working.
 
 use proptest::prelude::{Just, Strategy, any, prop_oneof, proptest};
 
@@ -86,7 +86,7 @@ fn power_is_lost_in_the_second_store() {
     host.expect("40 42 02", POSITION);
     host.expect("40 4B 00 00 03 55 01 02 03 5D", "40 4B 00 00 03 08");
     host.bus.connect(host.now);
-    host.expect("40 42 02", POSITION); // its power was there all the time
+    host.expect("40 42 02", POSITION); // its power was on all the time
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn what_arrived_before_the_link_was_opened_has_no_reader() {
     host.expect("40 50 10", "40 50 00 10");
 }
 
-/// Random bytes, and now and then a good beginning or a whole request.
+/// Returns random bytes, and sometimes a valid beginning or a whole request.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     prop_oneof![
         proptest::collection::vec(any::<u8>(), 0..200),

@@ -53,7 +53,7 @@ fn a_store_takes_effect_at_the_end_of_its_processing() {
 fn bytes_arrive_one_character_after_the_other() {
     let mut host = Host::with("");
     host.send("40 42 02");
-    assert_eq!(host.bus.poll(host.now + ms(12.8)), [0u8; 0]); // the first is through at 12.87 ms
+    assert_eq!(host.bus.poll(host.now + ms(12.8)), [0u8; 0]); // the first has passed at 12.87 ms
     assert_eq!(host.bus.poll(host.now + ms(13.0)), [0x40]);
     assert_eq!(host.bus.poll(host.now + ms(15.3)), [0x42, 0x00]);
     assert_eq!(host.receive().0, "0E 05 31 38");
@@ -73,7 +73,7 @@ fn a_gap_of_the_time_out_makes_two_frames() {
     let mut host = Host::with("");
     host.send("40 42");
     host.wait(CHARACTER * 2 + ms(4.6));
-    // The rest falls into the time in which the first half is judged, and is lost.
+    // The rest arrives while the first half is checked, and is lost.
     host.expect("02", "40 50 0A 1A");
     host.expect("40 42 02", POSITION);
 }
@@ -176,7 +176,7 @@ fn one_long_poll_equals_many_short_ones() {
     }
 }
 
-/// Issue 22.18: what no UART holds is lost, so that the line is not busy for longer than its buffer lasts.
+/// Issue 22.18: bytes beyond the buffer of a UART are lost, so that the line is not busy for longer than its buffer lasts.
 #[test]
 fn a_flood_of_bytes_does_not_make_it_deaf() {
     let mut host = Host::with("");

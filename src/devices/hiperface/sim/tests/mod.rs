@@ -1,5 +1,5 @@
-//! What a host sees of the virtual encoder, in virtual time. Expected bytes are the manual's and the reference's; none
-//! is computed by the code under test.
+//! The virtual encoder as seen by a host, in virtual time. Expected bytes are the manual's and the reference's; none is
+//! computed by the code under test.
 
 mod at_adapter;
 mod commands;
@@ -15,7 +15,7 @@ use crate::devices::hiperface::protocol::LineSettings;
 use crate::sim::ByteDevice;
 use crate::units::{CharacterFormat, Moment};
 
-/// A host at the line: it waits for everything that comes by itself, then keeps the dead time.
+/// Host at the line: it receives until the line is idle, then keeps the dead time.
 struct Host {
     bus: Bus,
     now: Moment,
@@ -33,7 +33,7 @@ impl Host {
         Host { bus: Bus::new(config), now: Moment::START }
     }
 
-    /// With the query of a `sim:` link.
+    /// Creates a host with the query of a `sim:` link.
     fn with(query: &str) -> Self {
         let pair = |item: &str| item.split_once('=').map(|(key, value)| (key.to_owned(), value.to_owned()));
         let pairs: Vec<_> = query.split('&').filter_map(pair).collect();
@@ -44,7 +44,7 @@ impl Host {
         self.bus.on_bytes(self.now, &parse_hex(request).unwrap());
     }
 
-    /// Everything that arrives until nothing more will, as hex, and when the last byte arrived.
+    /// Returns everything that arrives until nothing more will, as hex, and when the last byte arrived.
     fn receive(&mut self) -> (String, Moment) {
         let (mut bytes, mut last) = (Vec::new(), self.now);
         while let Some(at) = self.bus.poll_at() {
@@ -70,7 +70,7 @@ impl Host {
         assert_eq!(self.ask(request), reply, "reply to {request}");
     }
 
-    /// From the first bit of the request to the last of the reply.
+    /// Returns the time from the first bit of the request to the last of the reply.
     fn duration(&mut self, request: &str) -> Duration {
         let start = self.now;
         self.send(request);
@@ -96,7 +96,7 @@ impl Host {
     }
 }
 
-/// An encoder with eight blocks of memory and no field, as in the manual's example.
+/// Returns an encoder with eight blocks of memory and no field, as in the manual's example.
 fn blank() -> Config {
     let mut config = Config::default();
     config.model.user_blocks = 8;

@@ -1,10 +1,10 @@
-//! Figure 38: deaf, listening with factory settings, deaf, listening with the stored ones; 57h and 67h.
+//! Figure 38: not listening, listening with factory settings, not listening, listening with the stored ones; 57h and 67h.
 
 use super::*;
 
 const POSITION: &str = "40 42 00 0E 05 31 38";
 
-/// An encoder with 19200 8E1 stored, power-cycled just now.
+/// Returns an encoder with 19200 8E1 stored, power-cycled just now.
 fn restarted() -> Host {
     let mut host = Host::with("settings=0xE5");
     host.bus.power_cycle(host.now);
@@ -120,7 +120,7 @@ fn what_is_stored_survives_a_power_cycle() {
 fn power_cut_in_the_middle_of_a_reply() {
     let mut host = Host::with("");
     host.send("40 42 02");
-    host.wait(ms(14.0)); // the reply started at 11.7 ms: one character is through, one under way
+    host.wait(ms(14.0)); // the reply started at 11.7 ms: one character has passed, one is in transit
     host.bus.power_cycle(host.now);
     assert_eq!(host.receive().0, "40 42");
 }

@@ -25,7 +25,7 @@ impl Encoder {
             CommutationAction::Store => match self.commutation.bytes(self.geometry(), &self.staged) {
                 Ok((field, address, bytes)) => {
                     self.put(field, address, &bytes, services);
-                    // Putting it there once more keeps the place, whatever is empty then.
+                    // Storing it there again keeps the place, whatever is empty then.
                     (self.commutation.form.field, self.commutation.form.address) = (Some(field), address.to_string());
                     let is_there = |(at, byte): (usize, &u8)| self.staged.byte(field, at) == Some(*byte);
                     if (address..).zip(&bytes).all(is_there) {

@@ -7,14 +7,14 @@ use crate::app::number::{MOST_PERIODS, whole, within};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
-/// The form of the assistant. An empty number of periods is that of the encoder's type.
+/// Entries of the assistant. An empty number of periods means that of the encoder's type.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
-    /// Ticked: the controller is disabled.
+    /// The user has confirmed that the controller is disabled.
     pub disabled: bool,
-    /// Ticked: the motor is uncoupled, without load.
+    /// The user has confirmed that the motor is uncoupled, without load.
     pub uncoupled: bool,
-    /// Ticked: the brake is released.
+    /// The user has confirmed that the brake is released.
     pub released: bool,
     /// Current limit in amperes, as typed.
     pub current_a: String,
@@ -22,11 +22,11 @@ pub struct Form {
     pub time_s: String,
     /// The vector that is energised.
     pub vector: Vector,
-    /// Its angle in electrical degrees, as typed, where it is another.
+    /// Its angle in electrical degrees, as entered, if it is another one.
     pub vector_deg: String,
     /// Pole pairs of the motor, as typed.
     pub pole_pairs: String,
-    /// Signal periods a revolution, as typed.
+    /// Signal periods per revolution, as typed.
     pub periods: String,
     /// The position falls while the electrical angle rises.
     pub reversed: bool,
@@ -42,9 +42,9 @@ pub struct Form {
     pub typed: [String; 3],
     /// How the offset is stored.
     pub storage: Storage,
-    /// The data field that gets it; `None` is the one that is proposed.
+    /// The data field for it; `None` for the proposed one.
     pub field: Option<u8>,
-    /// Its first byte there, as typed; empty is the one that is proposed.
+    /// Its first byte there, as entered; empty for the proposed one.
     pub address: String,
     /// The period that the position is to have by method 2, as typed.
     pub period: String,
@@ -61,25 +61,25 @@ pub enum Slot {
     Second,
 }
 
-/// The vector that is energised while the position is read, as a person wires it.
+/// Vector that is energised while the position is read, by its wiring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vector {
-    /// Current into U, back out of V and W: 0°.
+    /// Current into U, returning from V and W: 0°.
     UAgainstBoth,
-    /// Into U, out of V: −30°.
+    /// Into U, returning from V: −30°.
     UAgainstV,
-    /// Into U, out of W: 30°.
+    /// Into U, returning from W: 30°.
     UAgainstW,
-    /// Another, whose angle is typed.
+    /// Another one, whose angle is entered.
     Other,
 }
 
 /// The source of the position within a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The encoder's analogue channels, where it has them, else the absolute position.
+    /// The encoder's analogue channels, if it has them, else the absolute position.
     Signals,
-    /// Typed: the drive or a voltmeter measured it.
+    /// Entered: measured by the drive or a voltmeter.
     Typed,
     /// The absolute position alone, 1/32 period.
     Absolute,
@@ -99,7 +99,7 @@ pub enum Storage {
 pub struct Inputs {
     /// The motor with the encoder on it.
     pub motor: Motor,
-    /// Signal periods a revolution.
+    /// Signal periods per revolution.
     pub periods: u32,
     pub pole_pairs: u32,
     /// The position falls while the electrical angle rises.
@@ -114,7 +114,7 @@ pub struct Inputs {
 const MOST_POLE_PAIRS: u32 = 500;
 
 impl Slot {
-    /// In the order in which they are read.
+    /// All readings in order.
     pub const ALL: [Slot; 3] = [Slot::OneSide, Slot::OtherSide, Slot::Second];
 }
 
@@ -145,16 +145,16 @@ impl Default for Form {
 }
 
 impl Form {
-    /// Current and time, in amperes and seconds.
+    /// Returns the current and time, in amperes and seconds.
     ///
     /// # Errors
-    /// In words.
+    /// What is missing.
     pub fn limits(&self) -> Result<(f64, f64), Text> {
         let (current, time) = self.each_limit();
         Ok((current?, time?))
     }
 
-    /// Returns what is wrong with the entered current and time, in words; an empty entry is not wrong yet.
+    /// Returns what is wrong with the entered current and time; an empty entry is not wrong yet.
     pub fn limit_problems(&self) -> (Option<Text>, Option<Text>) {
         let typed = |text: &str| !text.trim().is_empty();
         let (current, time) = self.each_limit();
@@ -166,10 +166,10 @@ impl Form {
         (current, within(TEXTS.text("commutation.time"), &self.time_s, 0.1, 600.0))
     }
 
-    /// All that has to be so before the motor is energised is ticked and written down.
+    /// Checks that everything required before the motor is energised is confirmed and recorded.
     ///
     /// # Errors
-    /// What is not, in words.
+    /// What is missing.
     pub fn prepared(&self) -> Result<(), Text> {
         let ticks = [
             (self.disabled, "commutation.disabled"),
@@ -184,10 +184,10 @@ impl Form {
         self.vector_deg().map(|_| ())
     }
 
-    /// Angle of the energised vector in electrical degrees.
+    /// Returns the angle of the energised vector in electrical degrees.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entry is invalid.
     pub fn vector_deg(&self) -> Result<f64, Text> {
         match self.vector {
             Vector::UAgainstBoth => Ok(0.0),
@@ -197,26 +197,26 @@ impl Form {
         }
     }
 
-    /// Returns the lead of the second vector in electrical turns: below ½, or the shaft may go the other way round.
+    /// Returns the lead of the second vector in electrical turns: below ½, or the shaft may take the other way round.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entry is invalid.
     pub fn second_turns(&self) -> Result<f64, Text> {
         Ok(within(TEXTS.text("commutation.second_angle"), &self.second_deg, 1.0, 170.0)? / 360.0)
     }
 
-    /// The position inside a period that was typed.
+    /// Returns the position inside a period that was typed.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entry is invalid.
     pub fn phase(&self) -> Result<Phase, Text> {
         phase(&self.phase)
     }
 
-    /// The fine position in periods that was typed for a slot.
+    /// Returns the fine position in periods that was typed for a slot.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entry is invalid.
     pub fn fine(&self, slot: Slot) -> Result<f64, Text> {
         let [one, other, second] = &self.typed;
         let text = match slot {
@@ -227,10 +227,10 @@ impl Form {
         within(TEXTS.text("commutation.fine"), text, 0.0, f64::from(1_u32 << 27))
     }
 
-    /// Signal periods a revolution: as typed, or else as the encoder's type has them.
+    /// Returns the signal periods per revolution: as entered, or else of the encoder's type.
     ///
     /// # Errors
-    /// In words.
+    /// Why the entry is invalid.
     pub fn periods(&self, geometry: Option<Geometry>) -> Result<u32, Text> {
         match (self.periods.trim().is_empty(), geometry) {
             (_, Some(Geometry::Linear { .. })) => Err(TEXTS.text("commutation.linear")),
@@ -239,17 +239,17 @@ impl Form {
         }
     }
 
-    /// The number of periods that is typed is not that of the encoder's type, in words.
+    /// The number of periods that is typed is not that of the encoder's type, as text.
     pub fn other_periods(&self, geometry: Option<Geometry>) -> Option<Text> {
         let Some(Geometry::Rotary { periods: own, .. }) = geometry else { return None };
         let typed = self.periods(geometry).ok().filter(|typed| *typed != own.max(1))?;
         Some(TEXTS.text("commutation.other_periods").with("own", own).with("typed", typed))
     }
 
-    /// All numbers that the offset needs.
+    /// Returns all numbers that the offset needs.
     ///
     /// # Errors
-    /// The first that is none, in words.
+    /// Why the first invalid one is invalid.
     pub fn inputs(&self, geometry: Option<Geometry>) -> Result<Inputs, Text> {
         let pole_pairs = whole(TEXTS.text("commutation.pole_pairs"), &self.pole_pairs, 1, MOST_POLE_PAIRS)?;
         let periods = self.periods(geometry)?;
@@ -268,7 +268,7 @@ fn missing(what: &'static str) -> Text {
     Text::new("entry.missing").with_text("what", TEXTS.text(what))
 }
 
-/// A typed position inside a period.
+/// Returns a typed position inside a period.
 pub(super) fn phase(text: &str) -> Result<Phase, Text> {
     let periods = within(TEXTS.text("commutation.phase"), text, 0.0, 0.999_999_999)?;
     Phase::of_periods(periods).ok_or_else(|| missing("commutation.phase"))

@@ -1,5 +1,5 @@
-//! The location of the offset in the memory: an empty one is proposed, and the content of another one is shown before
-//! it is replaced. Nothing here changes the memory.
+//! The location of the offset in the memory: an empty one is proposed, and the content of another one is shown before it is
+//! replaced. Nothing here changes the memory.
 
 use super::{Commutation, Storage};
 use crate::app::Text;
@@ -8,7 +8,7 @@ use crate::devices::hiperface::profile::{CommutationRecord, FieldImage};
 use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::{Staged, TEXTS, rules};
 
-/// Bytes that hold nothing: erased, or never written.
+/// Bytes that count as empty: erased, or never written.
 const FILLERS: [u8; 2] = [0x00, 0xFF];
 
 /// A place for an offset.
@@ -21,11 +21,11 @@ pub struct OffsetLocation {
 }
 
 impl Commutation {
-    /// The place that is chosen and typed; what is left open is proposed: a stored record of the same kind, or else the
-    /// last writable field that has room.
+    /// Returns the selected or entered location; otherwise the proposed one: a stored record of the same kind, or else the
+    /// last writable field with enough space.
     ///
     /// # Errors
-    /// In words, where nothing has room or what is typed is no address.
+    /// Why there is none: no field has enough space, or the entry is not an address.
     pub fn place(&self, staged: &Staged) -> Result<OffsetLocation, Text> {
         let no_room = || TEXTS.text("commutation.no_room").with("bytes", CommutationRecord::BYTES);
         let form = &self.form;
@@ -48,7 +48,7 @@ impl Commutation {
         let (field, address, bytes) = self.bytes(geometry, staged).ok()?;
         let places = address..address + bytes.len();
         let wanted: Vec<u8> = places.clone().filter_map(|at| staged.byte(field, at)).collect();
-        // Once it is put there, what the encoder still has is what goes.
+        // Once it is stored there as an edit, the content that will be replaced is the encoder's.
         let there = match wanted == bytes {
             true => places.filter_map(|at| staged.on_device(field, at)).collect(),
             false => wanted,
@@ -61,7 +61,8 @@ impl Commutation {
     }
 }
 
-/// The first block of a field of which something holds. For a bare number too: zeros among other numbers may be numbers.
+/// Returns the first block of a field that satisfies `holds`. For a bare number too: zeros among other numbers may be
+/// numbers.
 fn first(field: &FieldImage, holds: impl Fn(&[u8]) -> bool) -> Option<OffsetLocation> {
     let block = field.bytes.as_deref()?.chunks_exact(CommutationRecord::BYTES).position(holds)?;
     Some(OffsetLocation { field: field.number, address: block * CommutationRecord::BYTES })
@@ -71,12 +72,12 @@ fn is_filler(bytes: &[u8]) -> bool {
     FILLERS.iter().any(|filler| bytes.iter().all(|byte| byte == filler))
 }
 
-/// A record that is whole is there already: a new one takes its place.
+/// Returns whether a complete record is already there: a new one replaces it.
 fn is_kept(storage: Storage, bytes: &[u8]) -> bool {
     storage == Storage::Record && matches!(CommutationRecord::parse(bytes), Some(Ok(_)))
 }
 
-/// Bytes as the text that they may be.
+/// Returns the bytes as the text that they may be.
 fn ascii(bytes: &[u8]) -> String {
     let shown = |byte: &u8| if byte.is_ascii_graphic() || *byte == b' ' { char::from(*byte) } else { '·' };
     bytes.iter().map(shown).collect()

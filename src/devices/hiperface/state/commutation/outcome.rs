@@ -11,9 +11,9 @@ use crate::devices::hiperface::profile::{CommutationRecord, Damaged};
 use crate::devices::hiperface::protocol::{Geometry, STEPS_PER_PERIOD};
 use crate::devices::hiperface::state::{Allowed, Staged, TEXTS};
 
-/// Method 2 is refused where its step is this or more: the torque may have the wrong sign (U).
+/// Method 2 is refused if its step is at least this: the torque may have the wrong sign (U).
 const UNUSABLE_DEG: f64 = 90.0;
-/// It is warned of from here on: the torque falls to cos 30° and below (U).
+/// A warning is given from here on: the torque falls to cos 30° and below (U).
 const WEAK_DEG: f64 = 30.0;
 
 /// The offset between encoder and motor.
@@ -36,7 +36,7 @@ pub struct Offset {
 pub struct Setting {
     /// The position to be set.
     pub value: u32,
-    /// Absolute position and phase do not agree now: exactly this value makes them.
+    /// If set, absolute position and phase do not agree now: exactly this value makes them agree.
     pub exact: bool,
     /// Remaining offset in electrical degrees, −180 to 180.
     pub remaining_deg: f64,
@@ -44,7 +44,7 @@ pub struct Setting {
     pub verdict: Verdict,
 }
 
-/// A commutation offset in the memory, as it is wanted.
+/// Commutation offset in the edited memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stored {
     /// The data field.
@@ -52,15 +52,15 @@ pub struct Stored {
     /// Its first byte there.
     pub address: usize,
     pub record: Result<CommutationRecord, Damaged>,
-    /// It is an edit that is not written yet.
+    /// Set for an edit that is not written yet.
     pub edited: bool,
 }
 
 impl Commutation {
-    /// The offset.
+    /// Returns the offset.
     ///
     /// # Errors
-    /// What is missing, or why the readings cannot be used, in words.
+    /// What is missing, or why the readings cannot be used.
     pub fn offset(&self, geometry: Option<Geometry>) -> Result<Offset, Text> {
         let inputs = self.form.inputs(geometry)?;
         let (one, other) = (self.reading(Slot::OneSide), self.reading(Slot::OtherSide));
@@ -96,7 +96,7 @@ impl Commutation {
     /// Returns the result of the second vector with its verdict; `None` until it is read.
     ///
     /// # Errors
-    /// What is missing, in words.
+    /// What is missing.
     pub fn second(&self, geometry: Option<Geometry>) -> Option<Result<(Verdict, Text), Text>> {
         let reading = self.reading(Slot::Second)?;
         Some(self.judge_second(reading.fine_periods, geometry))
@@ -129,15 +129,15 @@ impl Commutation {
         Ok((Verdict::Fault, degrees(TEXTS.text(id)).with("pairs", second.pole_pairs)))
     }
 
-    /// The second vector was read and fits.
+    /// Returns whether the second vector was read and fits.
     pub fn is_confirmed(&self, geometry: Option<Geometry>) -> bool {
         matches!(self.second(geometry), Some(Ok((Verdict::Ok, _))))
     }
 
-    /// Method 1: data field, first byte, and the bytes to be stored there.
+    /// Method 1: returns data field, first byte, and the bytes to be stored there.
     ///
     /// # Errors
-    /// What is missing, in words.
+    /// What is missing.
     pub fn bytes(&self, geometry: Option<Geometry>, staged: &Staged) -> Result<(u8, usize, Vec<u8>), Text> {
         let (inputs, offset) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         // A failed check prevents storing, a missing one does not.
@@ -162,10 +162,10 @@ impl Commutation {
         Ok((field, address, bytes))
     }
 
-    /// Method 2: the position to be set where the shaft rests now.
+    /// Method 2: returns the position to be set where the shaft rests now.
     ///
     /// # Errors
-    /// What is missing, or why the method cannot be used, in words.
+    /// What is missing, or why the method cannot be used.
     pub fn setting(&self, geometry: Option<Geometry>) -> Result<Setting, Text> {
         let (inputs, _) = (self.form.inputs(geometry)?, self.offset(geometry)?);
         if let Some(Ok((Verdict::Fault, _))) = self.second(geometry) {
@@ -188,7 +188,7 @@ impl Commutation {
         let off_step = here.raw.map_or(0, |raw| (raw % STEPS_PER_PERIOD).abs_diff(value % STEPS_PER_PERIOD));
         Ok(Setting {
             value,
-            // One step is rounding.
+            // A difference of one step is due to rounding.
             exact: off_step.min(STEPS_PER_PERIOD - off_step) > 1,
             remaining_deg: if remaining > 180.0 { remaining - 360.0 } else { remaining },
             verdict: if step >= WEAK_DEG { Verdict::Warn } else { Verdict::Ok },
@@ -196,7 +196,7 @@ impl Commutation {
     }
 }
 
-/// Commutation offsets in a memory, as it is wanted.
+/// Returns the commutation offsets in an edited memory.
 pub fn stored(staged: &Staged) -> Vec<Stored> {
     let mut found = Vec::new();
     for field in staged.wanted() {
@@ -211,7 +211,7 @@ pub fn stored(staged: &Staged) -> Vec<Stored> {
     found
 }
 
-/// The position may be read: everything before it is done.
+/// Checks that the position may be read: everything before it is done.
 pub fn may_read(commutation: &Commutation, ready: bool) -> Allowed {
     commutation.form.prepared()?;
     if commutation.form.source == Source::Typed {
@@ -231,7 +231,7 @@ fn electrical_deg(periods: f64, inputs: &Inputs) -> f64 {
     periods * inputs.motor.electrical_step_deg()
 }
 
-/// The offset at a position at which the electrical angle is that of the vector.
+/// Returns the offset at a position at which the electrical angle is that of the vector.
 fn angle(fine_periods: f64, inputs: &Inputs) -> Option<ElectricalAngle> {
     let shaft = if inputs.reversed { -fine_periods } else { fine_periods };
     let vector = ElectricalAngle::from_turns(inputs.vector_turns)?;

@@ -1,4 +1,4 @@
-//! The run as it is written down: what was prepared, what was read, what came of it. A line each.
+//! The report of the run: preparation, readings, results. One line per item.
 
 use super::{Commutation, Kind, RestReading, Slot, Vector};
 use crate::app::Text;
@@ -6,7 +6,7 @@ use crate::devices::hiperface::protocol::Geometry;
 use crate::devices::hiperface::state::TEXTS;
 
 impl Commutation {
-    /// The lines of the report, for an encoder of that name.
+    /// Returns the lines of the report, for an encoder of that name.
     pub fn report(&self, name: &str, geometry: Option<Geometry>) -> Vec<Text> {
         let form = &self.form;
         let mut lines = vec![TEXTS.text("commutation.report_title").with("name", name)];
@@ -52,7 +52,7 @@ impl Commutation {
     }
 }
 
-/// Returns how a position was obtained, in words.
+/// Returns how a position was obtained, as text.
 pub fn kind_words(reading: &RestReading) -> Text {
     match reading.kind {
         Kind::Fine { residual_periods, .. } => {
@@ -75,7 +75,7 @@ impl Slot {
 }
 
 impl Vector {
-    /// All of them.
+    /// All vectors.
     pub const ALL: [Vector; 4] = [Vector::UAgainstBoth, Vector::UAgainstV, Vector::UAgainstW, Vector::Other];
 
     /// Returns the id of its text.

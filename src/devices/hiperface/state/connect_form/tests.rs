@@ -1,4 +1,4 @@
-//! The connection form: links in and out, and what is said about entries that cannot be used.
+//! The connection form: links in and out, and the messages about invalid entries.
 
 use super::*;
 use crate::app::Language;

@@ -1,11 +1,11 @@
-//! The changes in words: the title of a review, the name of a job.
+//! Texts of the changes: the title of a review, the name of a job.
 
 use super::words;
 use crate::app::Text;
 use crate::devices::hiperface::jobs::Change;
 use crate::devices::hiperface::state::{StagedError, TEXTS};
 
-/// A change in words.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => Text::new("change.restore").with("serial", &profile.identity.serial_number),

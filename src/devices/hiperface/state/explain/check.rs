@@ -1,4 +1,4 @@
-//! The device check in words.
+//! Texts of the device check.
 
 use super::encoder;
 use super::words::{field_status, position, raw_position, status_with_number};
@@ -25,7 +25,7 @@ fn step(step: CheckStep) -> Text {
     })
 }
 
-/// Returns the quality of a line in words.
+/// Returns the quality of a line as text.
 pub fn line_quality(quality: &LineQuality) -> Text {
     let [retries, damaged, silent, late] = quality.troubles();
     TEXTS

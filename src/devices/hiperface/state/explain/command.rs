@@ -1,4 +1,4 @@
-//! The commands in words.
+//! Texts of the commands.
 
 use crate::app::Text;
 use crate::devices::hiperface::protocol::Command;

@@ -1,4 +1,4 @@
-//! Damaged replies in words.
+//! Texts of damaged replies.
 
 use super::words::status_with_number;
 use crate::app::Text;

@@ -19,7 +19,7 @@ pub fn item(item: &Item) -> Text {
     }
 }
 
-/// A data field or a part of it.
+/// Returns the text of a data field or a part of it.
 pub fn field_range(range: &FieldRange) -> Text {
     let id = match range {
         FieldRange { count: Some(_), .. } => "hf_item.range",

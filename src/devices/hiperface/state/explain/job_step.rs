@@ -1,4 +1,4 @@
-//! The step that a job is at, in words.
+//! The step that a job is at, as text.
 
 use super::op;
 use crate::app::Text;

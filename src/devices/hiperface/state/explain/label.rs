@@ -1,4 +1,4 @@
-//! The extended type label, byte by byte, in words.
+//! The extended type label, byte by byte, as text.
 
 use crate::app::Text;
 use crate::bits::hex;
@@ -14,7 +14,7 @@ pub struct LabelRow {
     pub meaning: Text,
 }
 
-/// The rows of a label; limits that are not valid are left out. Nothing for what is no label.
+/// Returns the rows of a label; invalid limits are left out. Empty for bytes that are not a label.
 pub fn label(bytes: &[u8]) -> Vec<LabelRow> {
     let Ok(parts) = ExtendedLabel::parts(bytes) else { return Vec::new() };
     let flags = bytes.get(1).copied().unwrap_or(0);

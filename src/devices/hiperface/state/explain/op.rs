@@ -1,4 +1,4 @@
-//! The operations of a plan in words, for the review.
+//! The operations of a plan as text, for the review.
 
 use super::words::{field_access, field_code_required, field_status, line_settings};
 use crate::app::Text;
@@ -9,7 +9,7 @@ use crate::devices::hiperface::profile::Op;
 use crate::devices::hiperface::protocol::DataFieldStatus;
 use crate::devices::hiperface::state::TEXTS;
 
-/// An operation in words. An access code is not told.
+/// Returns the text of an operation. An access code is not shown.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Define { field, from, to } => define(*field, *from, *to),

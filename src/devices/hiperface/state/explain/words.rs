@@ -40,7 +40,7 @@ pub fn status(code: StatusCode) -> Text {
     TEXTS.text(id)
 }
 
-/// A status code with its number: "0Fh wrong access code".
+/// Returns a status code with its number: "0Fh wrong access code".
 pub fn status_with_number(code: StatusCode) -> Text {
     TEXTS.text("status.named").with("number", format!("{:02X}h", code.byte())).with_text("text", status(code))
 }
@@ -58,7 +58,7 @@ pub fn field_status(status: DataFieldStatus) -> Text {
         .with_text("required", field_code_required(status))
 }
 
-/// "writable" or "write protected".
+/// Returns "writable" or "write protected".
 pub fn field_access(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.is_writable() { "field.writable" } else { "field.write_protected" })
 }
@@ -67,7 +67,7 @@ pub fn field_code_required(status: DataFieldStatus) -> Text {
     TEXTS.text(if status.code_required() { "field.code_required" } else { "field.code_not_required" })
 }
 
-/// Periods and turns, or the length of a period.
+/// Returns the text of periods and turns, or the length of a period.
 pub fn geometry(geometry: Geometry) -> Text {
     match geometry {
         Geometry::Rotary { periods, turns: 1 } => TEXTS.text("geometry.singleturn").with("periods", periods),
@@ -83,7 +83,7 @@ pub fn geometry(geometry: Geometry) -> Text {
     }
 }
 
-/// Turn and degrees, or millimetres.
+/// Returns the turn and degrees, or millimetres.
 pub fn position(position: Position) -> Text {
     match (position.turns(), position.degrees(), position.millimetres()) {
         (Some(turn), Some(degrees), _) => {
@@ -94,7 +94,7 @@ pub fn position(position: Position) -> Text {
     }
 }
 
-/// A position word whose meaning is not known.
+/// Returns the text of a position word whose meaning is not known.
 pub fn raw_position(raw: u32) -> Text {
     TEXTS.text("position.steps").with("steps", raw)
 }

@@ -1,4 +1,4 @@
-//! What is recorded of positions whose times and values are known, over hours.
+//! Recordings of positions with known times and values, over hours.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::analysis::history::Flags;
 use crate::units::Moment;
 
-/// 32 steps a period, 4096 a turn; 4096 turns.
+/// 32 steps per period, 4096 per turn; 4096 turns.
 const SKM36: Geometry = Geometry::Rotary { periods: 128, turns: 4096 };
 const RANGE: i64 = 4096 * 4096;
 
@@ -29,7 +29,7 @@ fn line<'a>(record: &'a Record, heading: &str) -> &'a Series {
     record.track.recorder.lines().iter().find(|line| line.heading == heading).unwrap()
 }
 
-/// Time in nanoseconds, value in the samples' own unit, flags.
+/// Returns the time in nanoseconds, value in the samples' own unit, flags.
 fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
     let line = line(record, heading);
     let history = record.track.recorder.history(line).unwrap();
@@ -41,7 +41,7 @@ fn samples(record: &Record, heading: &str) -> Vec<(i64, f64, Flags)> {
 fn a_position_read_on_its_own_does_not_push_the_samples_before_it_away() {
     let mut record = Record::default();
     record.add((0..=10).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
-    // It was read in between, and is told after those.
+    // It was read in between, and is reported after those.
     record.add(vec![position(550_000, 550)], 0, Some(SKM36));
     record.add((11..=20).map(|at| position(at * 100_000, at as i64 * 100)).collect(), 0, Some(SKM36));
     let positions = samples(&record, "position");
@@ -65,7 +65,7 @@ fn nothing_is_joined_across_what_is_missing() {
     assert_eq!(breaks("position"), [false, false, true]);
     assert_eq!(breaks("temperature"), [false, false, true]);
     assert_eq!(record.track.dropped(), 7);
-    // The cable was out for an hour.
+    // The cable was disconnected for an hour.
     let began: Zoned = "2026-03-01T10:00:00[UTC]".parse().unwrap();
     let mut record = Record::default();
     record.watch(&[Watch::TEMPERATURE]);
@@ -76,7 +76,7 @@ fn nothing_is_joined_across_what_is_missing() {
     let hour = 3_600_000_000_000;
     assert_eq!(samples(&record, "position"), [(0, 5.0, Flags::NONE), (hour, 6.0, Flags::BREAK)]);
     assert_eq!(samples(&record, "temperature"), [(0, 40.0, Flags::NONE), (hour, 30.0, Flags::BREAK)]);
-    // A wall clock that was set back does not turn time round.
+    // A wall clock that was set back does not reverse time.
     record.begin(&"2026-03-01T09:00:00[UTC]".parse().unwrap());
     record.add(vec![position(0, 7)], 0, Some(SKM36));
     assert_eq!(samples(&record, "position").last().unwrap().0, hour + 1);
@@ -91,7 +91,7 @@ fn what_is_stopped_and_started_again_is_not_joined() {
     record.track.poll(None, false);
     record.track.poll(every, true);
     record.add(vec![position(150_000, 2), position(200_000, 3)], 0, Some(SKM36));
-    // Four intervals and 0.4 s later something is missing, stopped or not.
+    // After more than four intervals and 0.4 s a sample is missing, whether the shaft is stopped or not.
     record.add(vec![position(790_000, 4), position(1_400_000, 5)], 0, Some(SKM36));
     let breaks: Vec<bool> = samples(&record, "position").iter().map(|own| own.2.contains(Flags::BREAK)).collect();
     assert_eq!(breaks, [false, false, true, false, false, true]);
@@ -131,7 +131,7 @@ fn a_long_run_misses_no_break_and_no_wrap() {
         (speed.min.to_f64() * rpm - 600.0).abs() < 0.1 && (speed.max.to_f64() * rpm - 600.0).abs() < 0.1,
         "{speed:?}"
     );
-    // After each pause nothing is said until a quarter of a second is over.
+    // After each pause there is no speed until a quarter of a second has passed.
     assert_eq!(speed.bad, 60 * 250);
     // Four columns of eight bytes, and a third more for the pyramid and the block being filled.
     assert!(recorder.memory() < 600_000 * 32 * 4 / 3, "{}", recorder.memory());

@@ -65,7 +65,7 @@ pub(super) fn field_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, form: &mut
         number(ui, theme, "commutation.address", &mut form.address, &proposed);
         let bytes = encoder.commutation.bytes(encoder.geometry(), &encoder.staged);
         if let Ok((_, _, bytes)) = &bytes {
-            // Eight a line: sixteen do not fit beside the other column.
+            // Eight per line: sixteen do not fit beside the other column.
             let lines: Vec<String> = bytes.chunks(8).map(crate::bits::hex).collect();
             theme.sunken().show(ui, |ui| ui.label(theme.mono(lines.join("\n"))));
         }

@@ -1,8 +1,8 @@
-//! Words that are acknowledged (reference 4), and those whose echo looks like an encoder at work (reference 6.11a).
+//! Words that are acknowledged (reference 4), and those whose echo looks like a busy encoder (reference 6.11a).
 //!
-//! The echo of what sets cam 0, the mask, the shift or a program has code 0, as the processing word has, which may carry
-//! any data, those that were just sent included. It counts once it has stayed for longer than any processing that was seen
-//! of this encoder; an edge of cam 0 is read out as well before the program is left, since leaving it stores.
+//! The echo of a word that sets cam 0, the mask, the shift or a program has code 0, as has the processing word, which may
+//! contain any data, including those just sent. Such an echo counts once it has stayed longer than any processing of this
+//! encoder so far; an edge of cam 0 is also read out before the program is left, since leaving stores it.
 
 use std::time::Duration;
 
@@ -12,22 +12,23 @@ use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::procedures::handshake::is_echo;
 use crate::devices::interbus::protocol::{Command, Reply, Value};
 
-/// The word of an encoder at work without anything beside it: also the echo of cam 0's start at 0.
+/// The word of a busy encoder without other bits: also the echo of cam 0's start at 0.
 const BUSY: u32 = 0xC000_0000;
-/// How often an edge of cam 0 is set until it reads back. None of this stores.
+/// Number of attempts to set an edge of cam 0 until it reads back. None of them stores.
 const TRIES: u32 = 4;
 
 impl Master<'_> {
-    /// Sends a word that is acknowledged, until its exact echo stands.
+    /// Sends a word that is acknowledged, until its exact echo is stable.
     ///
     /// # Errors
-    /// [`Error::Illegal`], and nothing is sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; the way.
+    /// [`Error::Illegal`], with nothing sent; [`Error::Refused`], [`Error::OtherMaster`], [`Error::TimeOut`]; errors of the
+    /// exchange.
     pub(in crate::devices::interbus::procedures) fn set(&mut self, command: Command) -> Result<(), Error> {
         self.set_again(command, 0)
     }
 
-    /// Sets like [`set`](Self::set), for a word whose echo proves nothing: `question` reads the value back, and the
-    /// word is repeated until it is there, each time with a longer wait.
+    /// Sets like [`set`](Self::set), for a word whose echo proves nothing: `question` reads the value back, and the word is
+    /// repeated until it has been accepted, each time with a longer wait.
     ///
     /// # Errors
     /// As [`set`](Self::set); [`Error::NotTaken`] with the name `item`.
@@ -57,7 +58,7 @@ impl Master<'_> {
         self.acknowledged(command, tried, false)
     }
 
-    /// Sets like [`set`](Self::set), for a word that an encoder may also take without a reply, and goes on (`U`).
+    /// Sets like [`set`](Self::set), for a word that an encoder may also accept without a reply (`U`).
     pub(super) fn tell_to(&mut self, command: Command) -> Result<(), Error> {
         self.ensure_legal(command)?;
         self.leave_value()?;
@@ -80,13 +81,13 @@ impl Master<'_> {
                     Some(Err(Error::Refused { sent: command, error }))
                 }
                 _ if may_run && rests.is_settled() => Some(Ok(())),
-                // The echo of an earlier word may stand or come late, with other data than were sent (manual 5.3).
+                // The echo of an earlier word may still be there or arrive late, with other data than sent (manual 5.3).
                 _ => None,
             }
         })
     }
 
-    /// Returns how long an echo must stay that looks like an encoder at work; `None` if it does not.
+    /// Returns how long an echo that looks like a busy encoder must stay; `None` if it does not look so.
     fn holds(&self, command: Command, tried: u32) -> Option<Duration> {
         let echo = Reply::echo_of(command);
         let most = self.patience / 2;

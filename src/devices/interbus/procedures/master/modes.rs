@@ -8,17 +8,17 @@ use crate::devices::interbus::procedures::Error;
 use crate::devices::interbus::procedures::error::Awaited;
 use crate::devices::interbus::protocol::{Command, ReadOut, Reply, StartupMode};
 
-/// How long the value of a question about a cam may stay `00000000` before `80000000` is tried (`U`).
+/// How long the value of a cam request may stay `00000000` before `80000000` is tried (`U`).
 const VALUE_STAYS: Duration = Duration::from_millis(300);
-/// An old word may still stand when one looks for the first time: so many looks after it.
+/// Number of further readings: the first one may still return an old word.
 const LOOKS: u32 = 2;
-/// From one to the next.
+/// Interval between them.
 const LOOK: Duration = Duration::from_millis(10);
 /// How long a mode that was read stays valid between two steps of a job; both lead it back.
 const STILL: Duration = Duration::from_secs(1);
 
 impl Master<'_> {
-    /// Runs `work` and returns the encoder to its previous mode, whatever happens.
+    /// Runs `work` and returns the encoder to its previous mode, even after an error.
     ///
     /// # Errors
     /// Those of `work`; [`Error::NotRunning`] before it begins; [`Error::NotLedBack`].
@@ -27,13 +27,13 @@ impl Master<'_> {
         self.end(ended)
     }
 
-    /// Leads the encoder back to what it did before [`begin`](Self::begin), however the work between the two has ended.
+    /// Returns the encoder to its state before [`begin`](Self::begin), however the work in between has ended.
     ///
     /// # Errors
-    /// That of the work; [`Error::NotLedBack`].
+    /// The error of the work; [`Error::NotLedBack`].
     pub(in crate::devices::interbus::procedures) fn end<T>(&mut self, ended: Result<T, Error>) -> Result<T, Error> {
         let led = match &ended {
-            // Nothing can be sent any more.
+            // Nothing more can be sent.
             Err(error @ Error::Link(_)) => Err(error.clone()),
             _ => self.shielded(Self::lead_back),
         };
@@ -50,12 +50,12 @@ impl Master<'_> {
         Err(Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Ends a state left by another program: parameterisation, an error, a read-out. Returns the encoder's mode
-    /// afterwards. Values set and not stored are stored by that: one store, which is counted. An error that stays is
-    /// left to the reader of the IN word: the encoder can be read and set regardless.
+    /// Ends a state left by another program: parameterisation, an error, a read-out. Returns the encoder's mode afterwards.
+    /// Values set and not stored are stored by that: one store, which is counted. A persistent error is left to the reader
+    /// of the IN word: the encoder can be read and set regardless.
     ///
     /// # Errors
-    /// The handshake and the way.
+    /// Errors of the handshake and the exchange.
     pub fn end_what_was_left(&mut self) -> Result<StartupMode, Error> {
         let ended = self.shielded(|master| {
             master.let_go_of_run()?;
@@ -80,10 +80,10 @@ impl Master<'_> {
         ended.map_err(|cause: Error| Error::NotLedBack { cause: Box::new(cause), standing: self.standing() })
     }
 
-    /// Sends the encoder into a mode, and asks whether it is there.
+    /// Sends the encoder into a mode, and checks that it is in it.
     ///
     /// # Errors
-    /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; the handshake and the way.
+    /// [`Error::NoMode`], [`Error::NotSelectable`], [`Error::UnknownMode`]; errors of the handshake and the exchange.
     pub(in crate::devices::interbus::procedures) fn go(&mut self, wanted: StartupMode) -> Result<(), Error> {
         use StartupMode::{Cams, K2, K3, Unknown, Velocity};
         match (self.is, wanted) {
@@ -110,7 +110,7 @@ impl Master<'_> {
         self.found = self.is;
     }
 
-    /// Looks at the encoder, and asks what it does: so nothing is sent that it would take for something else.
+    /// Reads the encoder's state and mode, so that no word is sent that it would interpret differently.
     pub(in crate::devices::interbus::procedures) fn begin(&mut self) -> Result<(), Error> {
         let begun = self.data.now();
         let mut looks = 0;
@@ -149,7 +149,7 @@ impl Master<'_> {
         if self.known.kept == Some(mode) || self.known.hold.is_some_and(|(held, _)| held == mode) {
             return Ok(());
         }
-        // Whether this read-out has ended the mode. Words for cams do other things in another one.
+        // Checks whether this read-out has ended the mode. Words for cams have other effects in another one.
         self.rest()?;
         if does_the_same(self.ask_mode()?, mode) {
             self.known.kept = Some(mode);
@@ -171,8 +171,8 @@ impl Master<'_> {
         Ok(mode)
     }
 
-    /// A word that changes the mode; `00000000` behind it where the encoder keeps the mode then, or else the word that
-    /// keeps it (`U`: the manual does not say which does). The encoder is asked which it was.
+    /// Sends a word that changes the mode; then `00000000` if the encoder keeps the mode with it, or else the word that
+    /// keeps it (`U`: the manual does not say which). The encoder is queried for the result.
     fn switch(&mut self, command: Command, wanted: StartupMode) -> Result<(), Error> {
         let of_cams = matches!(command, Command::Cams(_));
         let keeps = if of_cams { Command::Run } else { command };
@@ -207,7 +207,7 @@ impl Master<'_> {
             return Ok(());
         }
         let Some(found) = self.found else {
-            // It never said what it does, so that it was asked that and nothing else.
+            // It never reported its mode, so only read-outs were sent.
             self.cycle(Command::Normal)?;
             return Ok(());
         };
@@ -235,7 +235,7 @@ impl Master<'_> {
         self.rest()
     }
 
-    /// `80000000` may stand already: its edge is what counts.
+    /// Removes `80000000`, which may already be the OUT word: its edge is what counts.
     fn let_go_of_run(&mut self) -> Result<(), Error> {
         for _ in 0..LOOKS {
             self.cycle(Command::Normal)?;
@@ -243,7 +243,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// The word that stands while nothing is asked of the encoder.
+    /// Sends the word used while nothing is requested of the encoder.
     fn rest(&mut self) -> Result<(), Error> {
         self.leave_value()?;
         let word = self.resting_word();
@@ -255,7 +255,7 @@ impl Master<'_> {
         hold.map_or(Command::Normal, |(_, word)| word)
     }
 
-    /// Waits until no value stands any more: the next one would look the same.
+    /// Waits until no value is present: the next one would look the same.
     pub(super) fn leave_value(&mut self) -> Result<(), Error> {
         let asks = self.out.is_some_and(is_question);
         let stands = matches!(Reply::parse(self.input), Reply::ReadOut(_) | Reply::UnknownReadOut(_));
@@ -277,8 +277,8 @@ impl Master<'_> {
         }
     }
 
-    /// `00000000` until no value stands, while something is being set: `80000000` would store it. A value that stays is
-    /// told from the echo that comes next.
+    /// Sends `00000000` until no value is present, during a setting: `80000000` would store it. A value that stays is
+    /// distinguished from the next echo.
     fn stop_asking(&mut self) -> Result<(), Error> {
         let patience = VALUE_STAYS.min(self.patience);
         let ended = self.until(Command::Normal, Awaited::Run, patience, |CycleResult { word, same, .. }| {

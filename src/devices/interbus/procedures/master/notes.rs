@@ -12,14 +12,14 @@ pub(super) struct Notes<'a> {
     journal: Option<Box<dyn Journal + 'a>>,
     serial_number: Option<String>,
     excursion: Option<Excursion>,
-    /// Cam programs that were left as they were: the encoder may have stored each (reference 5).
+    /// Cam programs that were left unchanged: the encoder may have stored each (reference 5).
     left: u64,
-    /// Something was set in the program that runs: its store is the write's.
+    /// The running program was changed: its store belongs to the write.
     is_set: bool,
 }
 
 impl<'a> Master<'a> {
-    /// Notes in `journal` what outlasts this job.
+    /// Records facts that outlast this job in `journal`.
     #[must_use]
     pub fn noting(mut self, journal: impl Journal + 'a) -> Self {
         self.notes.journal = Some(Box::new(journal));
@@ -28,7 +28,7 @@ impl<'a> Master<'a> {
 }
 
 impl Master<'_> {
-    /// An encoder said its serial number.
+    /// Notes the serial number of an encoder.
     pub(super) fn said_serial_number(&mut self, serial_number: u32) {
         self.notes.serial_number = Some(serial_number.to_string());
     }
@@ -59,7 +59,7 @@ impl Master<'_> {
         let Some(journal) = &mut self.notes.journal else { return Ok(()) };
         let Some(excursion) = journal.excursion(&serial_number) else { return Ok(()) };
         if does_the_same(mode, excursion.found) || !excursion.sent.contains(&mode) {
-            // It has been led back, or another mode was selected since.
+            // It was returned, or another mode was selected since.
             journal.is_back(&serial_number);
             return Ok(());
         }
@@ -104,7 +104,7 @@ impl Master<'_> {
         Ok(())
     }
 
-    /// A step of the job has ended; the encoder does what it did before, or not.
+    /// Notes the end of a step of the job, and whether the encoder is back in its state.
     pub(super) fn conclude_notes(&mut self, is_back: bool) {
         let Notes { journal: Some(journal), serial_number: Some(serial_number), excursion, left, .. } = &mut self.notes
         else {

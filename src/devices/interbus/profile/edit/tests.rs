@@ -1,4 +1,4 @@
-//! Plans of edits: what is written, in which order, and what is refused.
+//! Plans of edits: the writes, their order, and refusals.
 
 use super::super::test_profiles::{cam, edges, image, item, program, value, with};
 use super::super::{Direction, ItemValue};
@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{GearError, OutOfRange, WindowShift};
 
 use ItemValue::Number;
 
-/// Parameters that are sent, in their order.
+/// Returns the parameters that are sent, in their order.
 fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
     match plan_edits(device, wanted).unwrap().ops.as_slice() {
         [Op::Parameterise(changes)] => changes.iter().map(|change| (change.parameter, change.to)).collect(),
@@ -19,13 +19,13 @@ fn sent(device: &Image, wanted: &Image) -> Vec<(Parameter, u32)> {
 fn what_is_so_already_costs_nothing() {
     let plan = plan_edits(&image(), &image()).unwrap();
     assert_eq!(plan, InterbusPlan { base: Base::default(), ops: vec![] });
-    // Of what is not wanted nothing has to be known.
+    // Values that are not wanted need not be known.
     let nothing = Image::of(image().parameters);
     assert!(plan_edits(&image(), &nothing).unwrap().is_empty());
     assert!(plan_edits(&nothing, &nothing).unwrap().is_empty());
 }
 
-/// Issue 22.6: a zero shift is a place within the measuring range; one beyond the range that is to be goes first.
+/// Issue 22.6: a zero shift is a position within the measuring range; one beyond the new range is changed first.
 #[test]
 fn a_zero_shift_lies_within_the_measuring_range() {
     let device = Image::of(Parameters { steps: 255, revolutions: 1, preset: 0, zero_shift: 0, ..image().parameters });
@@ -38,18 +38,18 @@ fn a_zero_shift_lies_within_the_measuring_range() {
     let refused = plan_edits(&device, &with(&|own| own.zero_shift = 255));
     assert_eq!(refused, Err(PlanError::OutOfRange(beyond)));
     assert_eq!(sent(&device, &with(&|own| own.zero_shift = 254)), [(Parameter::ZeroShift, 254)]);
-    // One that stays has to lie within the range that is to be, as the preset has.
+    // One that stays must be within the new range, as the preset must.
     let full = with(&|own| own.zero_shift = 254);
     let shorter = |zero_shift| with(&|own| (own.steps, own.zero_shift) = (100, zero_shift));
     assert!(matches!(plan_edits(&full, &shorter(254)), Err(PlanError::OutOfRange(_))));
     assert_eq!(sent(&full, &shorter(99)), [(Parameter::ZeroShift, 99), (Parameter::Steps, 100)]);
-    // Into a longer one it follows.
+    // For a longer range it follows.
     let longer = with(&|own| (own.steps, own.zero_shift) = (1000, 999));
     assert_eq!(sent(&device, &longer), [(Parameter::Steps, 1000), (Parameter::ZeroShift, 999)]);
 }
 
-/// The issue: a full set (64 cams, 8 masks) into an encoder that has 60 of the cams already touches what differs, and costs
-/// a store for each program that changes.
+/// By the issue: a full set (64 cams, 8 masks) written to an encoder that already has 60 of the cams changes only the
+/// differences, and costs a store for each program that changes.
 #[test]
 fn a_full_set_touches_only_what_differs() {
     let device = image();
@@ -170,7 +170,7 @@ fn what_cannot_be_is_refused_with_both_limits() {
     assert_eq!(refusal(&[("revolutions", Number(4097))]), GearError::Turns { turns: 4097 }.into());
     let preset = OutOfRange { parameter: Parameter::Preset, value: 3600, low: 0, high: 3599 };
     assert_eq!(refusal(&[("preset", Number(3600))]), preset.into());
-    // It stays, and the range is too short for it then.
+    // It stays, and the range is then too short for it.
     let stays = OutOfRange { value: 500, high: 359, ..preset };
     let short: Vec<(String, ItemValue)> =
         ProgramNumber::all().map(|number| (format!("cam-mask:{}", number.get()), ItemValue::Mask(0))).collect();
@@ -184,7 +184,7 @@ fn what_cannot_be_is_refused_with_both_limits() {
     assert!(plan_edits(&device, &with(&device, &[("cam:2:5", ItemValue::Cam(edges(3599, 10)))])).is_ok());
 }
 
-/// Cams that are not written may lie where they cannot be on; those that work may not be left there.
+/// Cams that are not written may be beyond the range; active ones may not be left there.
 #[test]
 fn a_shorter_range_leaves_no_working_cam_beyond_it() {
     let device = image();
@@ -192,7 +192,7 @@ fn a_shorter_range_leaves_no_working_cam_beyond_it() {
     // Cam 7 of program 1 ends at 750; those of program 8 at 757.
     let beyond = PlanError::CamBeyondRange { item: item("cam:1:7"), edge: Edge::Stop, position: 750, last: 749 };
     assert_eq!(plan_edits(&device, &shorter), Err(beyond.clone()));
-    // Also where nothing is said about the programs.
+    // Also if the image has no programs.
     let parameters = Image::of(shorter.parameters);
     assert_eq!(plan_edits(&device, &parameters), Err(beyond));
     let mut resting = shorter;

@@ -53,11 +53,11 @@ fn another_encoder_is_refused_and_keeps_its_mounting() {
     let restore = plan_restore(&of, &other, with_it).unwrap();
     assert_eq!(operations(&restore), ["preset: 7 → 500, zero-shift: 9 → 0", "cam-mask:1: 0x00 → 0xFF"]);
     assert!(restore.mounting_left.is_empty());
-    // Issue 22.7: what comes from another mounting is named where it is written.
+    // Issue 22.7: values from another mounting are named if they are written.
     assert_eq!(restore.mounting_written, [Item::Preset, Item::ZeroShift]);
 }
 
-/// What stands in the file counts, not what usually belongs to a mounting.
+/// The marks in the file count, not the usual ones of a mounting.
 #[test]
 fn marks_are_what_belongs_to_the_mounting() {
     let mut of = profile(MINE);
@@ -71,7 +71,7 @@ fn marks_are_what_belongs_to_the_mounting() {
     assert_eq!((operations(&restore), restore.mounting_left.len()), (vec!["preset: 7 → 500".to_owned()], 1));
 }
 
-/// A profile that somebody wrote by hand is of no encoder: it may go onto any, but for the mounting.
+/// A profile written by hand is of no particular encoder: it may be written to any, except the mounting.
 #[test]
 fn a_profile_of_no_encoder_is_refused_by_none() {
     let options = RestoreOptions::default();
@@ -88,8 +88,8 @@ fn a_preset_that_is_left_has_to_fit() {
     assert!(plan_restore(&profile(MINE), &other, RestoreOptions { with_mounting: true, ..options }).is_ok());
 }
 
-/// Issue 22.9: an encoder that gives its steps less one, or that counts no turns, is of another type, which needs a permit of
-/// its own; another serial number needs the other one beside it.
+/// Issue 22.9: an encoder that reports its steps minus one, or that counts no turns, is of another type, which needs its
+/// own permission; another serial number needs the other one as well.
 #[test]
 fn another_type_needs_a_permit_of_its_own() {
     let mut own = device(MINE, &[("preset", Number(7))]);
@@ -112,7 +112,7 @@ fn another_type_needs_a_permit_of_its_own() {
         let both = RestoreOptions { allow_other_type: true, ..device_only };
         assert!(plan_restore(&profile(MINE), &two, both).is_ok());
     }
-    // Bits of which nothing is known make no type.
+    // Unknown bits do not make another type.
     own.identity.flags = Some(Flags::new(value(6)));
     assert!(plan_restore(&profile(MINE), &own, RestoreOptions::default()).is_ok());
     own.identity.flags = None;
@@ -132,7 +132,7 @@ fn programs_are_read_as_far_as_they_are_needed() {
     assert_eq!(numbers(&of), [1]);
     of.image.shift = None;
     assert!(numbers(&of).is_empty());
-    // What it says nothing about is left alone.
+    // Items that it does not contain are left alone.
     let restore = plan_restore(&of, &device(MINE, &[("cam-mask:2", Mask(0))]), RestoreOptions::default()).unwrap();
     assert_eq!((restore.plan.is_empty(), restore.unchanged), (true, 5));
 }
@@ -146,7 +146,7 @@ fn what_the_encoder_does_not_have_is_named() {
     assert_eq!(restore.missing[..3], ["shift", "cam-mask:3", "cam:3:0"]);
 }
 
-/// Onto an encoder whose programs are those of the tests.
+/// Written to an encoder with the programs of the tests.
 #[test]
 fn the_ready_made_profiles_do_what_they_say() {
     let read = |name: &str| {
@@ -167,7 +167,7 @@ fn the_ready_made_profiles_do_what_they_say() {
         after.collect::<Vec<_>>(),
         [("carton 120 mm", 1 << 2), ("carton 180 mm", 1 << 2), ("set-up, glue off", 0)]
     );
-    // 100 steps a millimetre over 2.5 m; the preset is not within the range that the encoder has.
+    // 100 steps per millimetre over 2.5 m; the preset is not within the encoder's range.
     let spindle = read("scaled-encoder.ron");
     assert_eq!(spindle.image.parameters.gear().map(|gear| gear.steps()), Ok(250_000));
     let with_it = RestoreOptions { with_mounting: true, ..RestoreOptions::default() };

@@ -33,7 +33,7 @@ impl Columns {
         }
         let has = |column| places.iter().any(|(own, _)| *own == column);
         let has_edge = has(Column::Start) || has(Column::Stop);
-        // A column of cams beside one of names has numbers alone.
+        // A column of cams in addition to one of names contains only numbers.
         let cam_or_name = has(Column::Cam) && !has(Column::Name);
         has_edge.then_some(Columns { places, cam_or_name })
     }
@@ -69,12 +69,12 @@ pub(super) fn delimiter(text: &str) -> Delimiter {
     };
     let count = |sign| text.lines().filter(|line| has(line, sign)).count();
     let all = [(Delimiter::Comma, ','), (Delimiter::Semicolon, ';'), (Delimiter::Tab, '\t')];
-    // Of equals, the last one counts.
+    // Of equal ones, the last counts.
     let most = all.into_iter().map(|(delimiter, sign)| (delimiter, count(sign))).max_by_key(|(_, count)| *count);
     most.filter(|(_, count)| *count > 0).map_or(Delimiter::Comma, |(delimiter, _)| delimiter)
 }
 
-/// The unit that a header's cell names.
+/// Returns the unit that a header's cell names.
 pub(super) fn unit(cell: &str) -> Option<Unit> {
     let cell = cell.to_lowercase();
     let parts = cell.split(|c: char| !c.is_alphanumeric() && c != '°').filter(|part| !part.is_empty()).skip(1);
@@ -86,7 +86,7 @@ pub(super) fn unit(cell: &str) -> Option<Unit> {
     })
 }
 
-/// The first word of a cell.
+/// Returns the first word of a cell.
 fn word(cell: &str) -> String {
     let cell = cell.trim().trim_start_matches('\u{FEFF}').to_lowercase();
     cell.split(|c: char| !c.is_alphanumeric()).next().unwrap_or_default().to_owned()

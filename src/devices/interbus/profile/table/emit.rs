@@ -1,4 +1,4 @@
-//! Cams as a table: those that work, which is what a table that is read says of them.
+//! Active cams as a table: reading it makes the same cams active.
 
 use std::fmt::Write;
 
@@ -6,8 +6,8 @@ use super::{Names, Scale, Unit};
 use crate::devices::interbus::profile::Image;
 use crate::devices::interbus::protocol::CamNumber;
 
-/// The cams of all known programs that work, in units of a machine. With a decimal comma the columns are separated by
-/// semicolons, else by commas. Reading it again gives the same steps.
+/// Returns the active cams of all known programs as a table in units of a machine. With a decimal comma the columns are
+/// separated by semicolons, else by commas. Reading it again gives the same steps.
 pub fn emit(image: &Image, names: &Names, scale: &Scale, decimal_comma: bool) -> String {
     let separator = if decimal_comma { ';' } else { ',' };
     let unit = match scale.unit() {
@@ -46,7 +46,7 @@ fn line(table: &mut String, cells: &[&str], separator: char) {
             table.push(separator);
         }
         if cell.contains([separator, '"', '\n', '\r']) {
-            // Writing into a text cannot fail.
+            // Writing to a string cannot fail.
             let _ = write!(table, "\"{}\"", cell.replace('"', "\"\""));
         } else {
             table.push_str(cell);

@@ -1,4 +1,4 @@
-//! A table's text to rows: split by csv-core, columns by their header, each edge to the nearest step.
+//! Parses the text of a table to rows: split by csv-core, columns by their header, each edge to the nearest step.
 
 use csv_core::{ReadRecordResult, Reader, ReaderBuilder};
 
@@ -10,9 +10,9 @@ use crate::analysis::capture::Delimiter;
 use crate::devices::interbus::profile::{Outside, Placed, Unit};
 use crate::devices::interbus::protocol::{CamNumber, Program, ProgramNumber};
 
-/// Most rows of a table of cams: eight programs of eight, with room for errors.
+/// Maximum number of rows in a table of cams: eight programs of eight, with a reserve for errors.
 const MOST_ROWS: usize = 1000;
-/// Letters of a wrong cell that are told.
+/// Maximum number of characters of a wrong cell in a message.
 const SHOWN: usize = 24;
 
 /// A line, split.
@@ -22,7 +22,7 @@ struct TableLine {
     cells: Vec<String>,
 }
 
-/// A row whose cam may be open still.
+/// Row whose cam may still be undetermined.
 struct Draft {
     line: u64,
     /// The column that named the cam, or the first one.
@@ -64,11 +64,11 @@ pub(super) fn read(options: &TableOptions, text: &str) -> CamTable {
 }
 
 impl CamTable {
-    /// The columns, from the first line where it is a header.
+    /// Determines the columns, from the first line if it is a header.
     fn columns(&mut self, options: &TableOptions, first: &TableLine, lines: &[TableLine]) -> Columns {
         let cells: Vec<&str> = first.cells.iter().map(String::as_str).collect();
         let count = lines.iter().map(|line| line.cells.len()).max().unwrap_or_default();
-        // A line without any number names something.
+        // A line without any number is a header.
         self.header = !cells.iter().any(|cell| number(cell, true).is_some());
         if !self.header {
             return Columns::of_count(count);
@@ -94,7 +94,7 @@ impl CamTable {
         columns
     }
 
-    /// Gives each row its cam: those that name one first, then the others what is left.
+    /// Assigns a cam to each row: first to those that name one, then to the others from the rest.
     fn place(&mut self, drafts: Vec<Draft>) {
         let mut taken: Vec<(ProgramNumber, CamNumber, u64)> = Vec::new();
         let mut rows: Vec<Option<CamNumber>> = vec![None; drafts.len()];
@@ -145,11 +145,11 @@ impl CamTable {
     }
 }
 
-/// The lines with something in them.
+/// Returns the lines with something in them.
 fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     let mut lines = Vec::new();
     for (line, number) in text.lines().zip(1..) {
-        // A line is a row: a quote that is never closed takes one line with it, not all.
+        // A line is a row: an unclosed quote affects one line only.
         let cells = cells(&mut ReaderBuilder::new().delimiter(delimiter.byte()).build(), line);
         if cells.iter().any(|cell| !cell.is_empty()) {
             lines.push(TableLine { number, cells });
@@ -158,9 +158,9 @@ fn split(text: &str, delimiter: Delimiter) -> Vec<TableLine> {
     lines
 }
 
-/// The cells of a line, without quotes and blanks around them.
+/// Returns the cells of a line, without quotes and blanks around them.
 fn cells(reader: &mut Reader, line: &str) -> Vec<String> {
-    // Quotes are left out: there is never more than there was, nor more ends than characters.
+    // Quotes are removed: the output is never longer than the input, nor has it more ends than characters.
     let (mut out, mut ends) = (vec![0; line.len() + 1], vec![0; line.len() + 2]);
     let (mut read, mut written, mut ended) = (0, 0, 0);
     loop {
@@ -221,7 +221,7 @@ fn draft(options: &TableOptions, columns: &Columns, line: &TableLine, comma: boo
     Ok(Draft { line: line.number, column, program, cam, name, start, stop })
 }
 
-/// Returns both edges in steps. A pulse around the whole range ends right before it begins.
+/// Returns both edges in steps. A pulse around the whole range ends right before its start.
 fn edges(
     options: &TableOptions,
     start: f64,
@@ -243,28 +243,28 @@ fn edges(
     Ok((edge(start, first), edge(stop, last)))
 }
 
-/// A number with a point, or a comma where that stands between no columns; a unit may follow it.
+/// Parses a number with a decimal point, or a comma if that does not separate columns; a unit may follow it.
 fn number(text: &str, comma: bool) -> Option<f64> {
     let text = text.trim();
     let text =
         ["°", "mm", "deg", "Grad", "grad"].iter().find_map(|unit| text.strip_suffix(unit)).unwrap_or(text).trim_end();
     let text = text.replace('−', "-");
     let text = if comma { text.replace(',', ".") } else { text };
-    // The parser would take words for infinity.
+    // The parser would accept words such as `inf`.
     let is_plain = text.bytes().all(|c| c.is_ascii_digit() || matches!(c, b'.' | b'-' | b'+' | b'e' | b'E'));
     text.parse().ok().filter(|value: &f64| is_plain && value.is_finite())
 }
 
-/// A whole number, with or without one of these words before it.
+/// Returns a whole number, with or without one of these words before it.
 fn whole(text: &str, words: &[&str]) -> Option<u64> {
     let text = text.trim().to_lowercase();
     let bare = words.iter().find_map(|word| text.strip_prefix(word)).map_or(text.as_str(), str::trim);
-    // Digits alone: a track may well be called 1e3.
+    // Digits only: a track may be called 1e3.
     let is_whole = !bare.is_empty() && bare.bytes().all(|c| c.is_ascii_digit());
     bare.parse().ok().filter(|_| is_whole)
 }
 
-/// The beginning of a cell.
+/// Returns the beginning of a cell.
 fn excerpt(text: &str) -> String {
     let mut excerpt: String = text.chars().filter(|c| !c.is_control()).take(SHOWN).collect();
     if text.chars().count() > SHOWN {

@@ -1,4 +1,4 @@
-//! Tables as they come: from spreadsheets, from drawings, with what is wrong in them.
+//! Tables from spreadsheets and drawings, with their errors.
 
 use super::{CamTable, Column, TableNote, TableOptions, TableProblem, TableProblemKind, emit_table};
 use crate::analysis::capture::Delimiter;
@@ -21,7 +21,7 @@ fn steps(text: &str) -> CamTable {
     options(Scale::default(), 1000).read(text)
 }
 
-/// Program, cam, name, start and stop of each row.
+/// Returns the program, cam, name, start and stop of each row.
 fn rows(table: &CamTable) -> Vec<(u8, u8, &str, u32, u32)> {
     let row = |row: &'_ super::TableRow| (row.program.get(), row.cam.get(), row.start.step, row.stop.step);
     table.rows.iter().map(|own| (row(own), own.name.as_str())).map(|((p, c, a, b), name)| (p, c, name, a, b)).collect()
@@ -62,14 +62,14 @@ fn numbers_have_a_comma_where_that_stands_between_no_columns() {
         assert_eq!(rows(&table), [(1, 0, "", 105, 203)], "{text}: {:?}", table.problems);
         assert_eq!(table.delimiter, Some(delimiter));
     }
-    // Between commas there is no decimal one: these are five columns.
+    // With commas as delimiters there is no decimal comma: these are five columns.
     assert_eq!(rows(&steps("1,2,3,20,25")), [(1, 2, "3", 20, 25)]);
 }
 
 #[test]
 fn what_an_edge_became_and_by_how_much_is_told() {
-    // 8192 steps a turn, the machine's 0 at 1000: 10° are 227.56 steps and 228 are 10.0195°; 350° are 7964.44, and
-    // 7964 349.9805°.
+    // 8192 steps per turn, the machine's 0 at 1000: 10° are 227.56 steps and 228 are 10.0195°; 350° are 7964.44, and 7964
+    // 349.9805°.
     let table = options(Scale::degrees(8192.0, 1000).unwrap(), 8192).read("feed;350;10\nplain;0;90");
     assert_eq!(rows(&table), [(1, 0, "feed", 772, 1228), (1, 1, "plain", 1000, 3048)]);
     let row = &table.rows[0];
@@ -98,7 +98,7 @@ fn two_pulses_on_one_track_take_two_cams_and_it_says_so() {
     assert_eq!(rows(&table), [(1, 0, "Glue", 10, 20), (1, 1, "feed", 0, 500), (1, 2, "glue", 40, 50)]);
     let cams = vec![cam(0), cam(2)];
     assert_eq!(table.notes, [TableNote::Pulses { program: number(1), name: "Glue".to_owned(), cams }]);
-    // Another program has a track of its own.
+    // Another program has its own track.
     assert_eq!(steps("1;glue;10;20\n2;glue;40;50").notes, []);
 }
 

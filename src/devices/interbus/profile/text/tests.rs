@@ -1,4 +1,4 @@
-//! The text there and back, as a person writes it, and what is wrong with it.
+//! The text, written and parsed, in the form of a user, and its errors.
 
 use super::super::test_profiles::{cam, edges, profile, program};
 use super::*;
@@ -14,7 +14,7 @@ fn parse(text: &str) -> Result<InterbusProfile, ProfileError> {
     Document::parse(text, InterbusProfile::FORMATS)?.body.into_profile()
 }
 
-/// As a person writes it, with the least that has to be there.
+/// Minimal profile as written by a user.
 const SHORT: &str = r#"(
     schema: 1,
     device: "interbus",
@@ -107,10 +107,10 @@ fn parse_document(text: &str) -> Document {
     Document::parse(text, InterbusProfile::FORMATS).unwrap()
 }
 
-/// As a person writes it, with comments.
+/// Profile as written by a user, with comments.
 const COMMENTED: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/commented/interbus.ron"));
 
-/// Issue 22.26: one value changed is one place changed.
+/// Issue 22.26: one changed value changes one place in the text.
 #[test]
 fn a_change_touches_nothing_else() {
     let edit = |own: &mut InterbusProfile| {
@@ -120,7 +120,7 @@ fn a_change_touches_nothing_else() {
     changed_in_place(COMMENTED, edit, "start: 10,", "start: 15,");
 }
 
-/// Issue 22.26: what comes and what goes takes its line and no other.
+/// Issue 22.26: an added or removed entry changes its own line only.
 #[test]
 fn entries_come_and_go() {
     let (_, carried) = edited(COMMENTED, |note, own: &mut InterbusProfile| {
@@ -138,7 +138,7 @@ fn entries_come_and_go() {
     assert_eq!(carried.lost, ["knife"]);
 }
 
-/// Issue 22.26: what the ready-made profiles say about their own values goes with the values.
+/// Issue 22.26: the comments of the ready-made profiles about their values change with the values.
 #[test]
 fn comments_of_the_program_follow_their_values() {
     let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/profiles/interbus/packaging-machine.ron"));
@@ -150,7 +150,7 @@ fn comments_of_the_program_follow_their_values() {
     assert!(carried.text.contains("mask: 0x03, // these cams work: 0, 1\n"));
 }
 
-/// Issue 22.25: what two people changed since they had the same profile.
+/// Issue 22.25: the changes of two users since a common profile.
 #[test]
 fn who_changed_what_is_told_entry_by_entry() {
     let base = parse_document(COMMENTED);

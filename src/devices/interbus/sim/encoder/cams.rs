@@ -30,7 +30,7 @@ impl Setting<'_> {
     }
 }
 
-/// An edge has to be a position that there is.
+/// Checks that an edge is an existing position.
 fn within(value: Value, gear: Gear) -> Result<Value, Fault> {
     if value.get() < gear.steps() { Ok(value) } else { Err(Fault::BeyondRange) }
 }
@@ -45,7 +45,7 @@ impl Encoder {
         self.set(now, taken);
     }
 
-    /// A read-out ends. What was set and not stored keeps the encoder setting: position and outputs do not count.
+    /// Ends a read-out. Values set and not stored keep the encoder in setting: position and outputs are invalid.
     pub(super) fn end_read_out(&mut self) {
         match self.unstored {
             None => self.turn_to(Activity::Running, InWordContent::Live),

@@ -1,5 +1,4 @@
-//! The position that an encoder makes of its shaft's place, and what else its IN word says while it runs (reference 1, 3
-//! and 5).
+//! The position that an encoder calculates from its shaft, and the other running IN words (reference 1, 3 and 5).
 
 use super::{Encoder, LOST};
 use crate::devices::interbus::protocol::{CamOutput, Class, Single, StartupMode, Value};
@@ -13,18 +12,18 @@ impl Encoder {
         let (steps, range) = (u64::from(gear.steps()), u64::from(gear.range()));
         let zero_shift = u64::from(self.memory.zero_shift) % steps;
         let wanted = (u64::from(self.memory.preset) + steps - zero_shift) % steps;
-        // The first place of the disc with this position.
+        // The first position of the disc with this position.
         let place = (wanted * range).div_ceil(steps);
         self.offset = place as i64 - self.turned(now);
     }
 
-    /// The shaft's place as its direction counts it.
+    /// Returns the shaft's position as counted in its direction.
     fn turned(&self, now: Moment) -> i64 {
         let place = self.shaft.place(now);
         if self.memory.counterclockwise { -place } else { place }
     }
 
-    /// The position at `now`, in steps.
+    /// Returns the position at `now`, in steps.
     fn position(&self, now: Moment) -> Value {
         let gear = self.memory.gear;
         let place = (self.turned(now) + self.offset).rem_euclid(i64::from(gear.range()));

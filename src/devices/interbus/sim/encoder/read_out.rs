@@ -6,19 +6,19 @@ use crate::units::Moment;
 
 const VALUE: u32 = 0xA000_0000;
 const UNKNOWN: u32 = 0xA400_0000;
-/// Of flags: it counts turns.
+/// Flag: it counts turns.
 const MULTITURN: u32 = 2;
-/// Of a register of the chip the upper part, chosen; the lower one is its number.
+/// The upper part of a register of the chip, chosen; the lower part is its number.
 const CHIP: u32 = 0x40;
 
 impl Encoder {
-    /// 2021xxxxh.
+    /// Handles 2021xxxxh.
     pub(super) fn read_out(&mut self, now: Moment, read_out: ReadOut) {
         let value = self.value(now, read_out);
         self.show(value);
     }
 
-    /// 2020xxxxh, of the program that runs.
+    /// Handles 2020xxxxh, of the program that runs.
     pub(super) fn read_cams(&mut self, command: Command) {
         let StartupMode::Cams(number) = self.mode else { return };
         let program = self.memory.program(number);

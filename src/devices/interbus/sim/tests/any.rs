@@ -1,4 +1,4 @@
-//! Whatever is sent: nothing panics, and what always holds, holds.
+//! With arbitrary input: no panic, and the invariants hold.
 
 use proptest::prelude::*;
 
@@ -7,7 +7,7 @@ use super::*;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::sim::ByteDevice;
 
-/// Words, more of them with a meaning than there would be by chance.
+/// Returns the words, with more valid ones than by chance.
 fn word() -> impl Strategy<Value = u32> {
     let of_parameters = (0_u32..16, 0_u32..0x3000).prop_map(|(code, data)| code << 25 | data);
     let of_cams = (0x20_u32..0x70, any::<u32>()).prop_map(|(code, data)| code << 24 | data & 0xFF_FFFF);
@@ -26,12 +26,12 @@ proptest! {
             master.wait(pause);
             master.read();
             let (encoder, memory) = (&master.encoder, master.encoder.memory());
-            // A word spends a store at most, and only one that leaves something does.
+            // A word uses at most one store, and only one that leaves something does.
             prop_assert!(encoder.stores() == before || encoder.stores() == before + 1 && word >> 29 != 0);
             prop_assert!(memory.gear().steps() <= 8192 * memory.gear().turns());
             prop_assert!(ProgramNumber::all().all(|number| memory.program(number).cams.iter().all(Option::is_some)));
         }
-        // Without power there is what was stored, and nothing else.
+        // Without power only stored values remain.
         master.encoder.disconnect();
         prop_assert!(master.encoder.memory() == master.encoder.stored());
     }
@@ -46,7 +46,7 @@ proptest! {
         }
     }
 
-    /// Every request of its frame gets one reply with its number, unit and function.
+    /// Every request in a frame gets one reply with its number, unit and function.
     #[test]
     fn requests(number in any::<u16>(), unit in any::<u8>(), pdu in prop::collection::vec(any::<u8>(), 1..60), function in 0_u8..20) {
         let mut host = Host::with("encoders=3");

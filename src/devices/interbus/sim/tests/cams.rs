@@ -41,19 +41,19 @@ fn cams_are_on_where_the_reference_says() {
     for (position, expected) in cases {
         assert_eq!(outputs(&mut master, position), expected, "{position}");
     }
-    // Only those of the mask.
+    // Only the cams in the mask.
     master.put(&[0x2040_0001, 0x8000_0000]);
     assert_eq!(outputs(&mut master, 5), 0);
 }
 
-/// Position 1ABCDEFh with cam 5 on, as the reference has it; all steps over all turns, a step is a place.
+/// Position 1ABCDEFh with cam 5 on, as in the reference; all steps over all turns, a step is a position.
 #[test]
 fn the_window_shows_the_bits_of_the_position_that_the_shift_says() {
     let cases = [(0, 0x01CD_EF20), (4, 0x00BC_DE20), (8, 0x01AB_CD20), (25, 0x0000_0020)];
     for (shift, expected) in cases {
         let mut master = Master::with("cams=none");
         master.put(&[0x2080_0001, 0x4A00_0000, 0x6BFF_FFFE, 0x2040_0020, 0x2010_0000 | shift, 0x8000_0000]);
-        // The gear of 1FFFFFFh steps over 2000000h places takes a step away here: (1ABCDEFh + 1) places less one.
+        // The gear of 1FFFFFFh steps over 2000000h positions drops a step here: (1ABCDEFh + 1) positions minus one.
         assert_eq!(master.position(0x1AB_CDF0), expected, "{shift}");
     }
 }

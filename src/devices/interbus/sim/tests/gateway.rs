@@ -13,12 +13,12 @@ impl Host {
         Host { gateway: Gateway::new(&config(&format!("stale=0&busy=0&{query}"))), now: Moment::START }
     }
 
-    /// Another client of the same gateway.
+    /// Returns another client of the same gateway.
     fn beside(&self) -> Host {
         Host { gateway: self.gateway.connection(), now: self.now }
     }
 
-    /// What comes back within ten milliseconds.
+    /// Sends a request and returns the bytes received within ten milliseconds.
     pub(super) fn ask(&mut self, request: &str) -> String {
         self.gateway.on_bytes(self.now, &bytes(request));
         self.now = self.now + Duration::from_millis(10);
@@ -45,7 +45,7 @@ const READ: &str = "00 01 00 00 00 06 01 04 00 00 00 02";
 
 #[test]
 fn words_are_two_registers_in_the_usual_order() {
-    // 1193046 is 123456h; the gear takes a step of 33554432 away: (123457h places).
+    // 1193046 is 123456h; the gear drops a step of 33554432: (123457h positions).
     let mut host = Host::with("position=1193047");
     host.exchange(&[
         (READ, "00 01 00 00 00 07 01 04 04 00 12 34 56"),
@@ -70,7 +70,7 @@ fn order_registers_and_unit_are_those_that_were_asked_for() {
     ]);
 }
 
-/// Function 6 writes half a word, which the encoder sees before the other half comes.
+/// Function 6 writes half a word, which the encoder sees before the other half is written.
 #[test]
 fn a_single_register_is_half_a_word() {
     let mut host = Host::with("position=0");
@@ -118,7 +118,7 @@ fn frames_come_in_pieces_and_several_at_once() {
         assert_eq!(host.ask(&hex(&all[cut..])), reply, "{cut}");
     }
     assert_eq!(host.ask(&format!("{READ} {READ}")), format!("{reply} {reply}"));
-    // What is no Modbus is thrown away, with what came with it.
+    // Bytes that are not Modbus are discarded, with those received with them.
     for nonsense in ["00 01 00 01 00 06 01 04 00 00 00 02", "00 01 00 00 00 00 01", "00 01 00 00 00 FF 01 04"] {
         assert_eq!(host.ask(nonsense), "", "{nonsense}");
         assert_eq!(host.ask(READ), reply, "{nonsense}");
@@ -144,14 +144,14 @@ fn clients_beside_each_other_say_words_to_the_same_encoder() {
     let mut host = Host::with("position=0");
     let mut other = host.beside();
     host.exchange(&[("00 01 00 00 00 0B 01 10 00 00 00 02 04 02 00 01 68", "00 01 00 00 00 06 01 10 00 00 00 02")]);
-    // Half a request of the one is nothing to the other.
+    // Half a request of one client does not affect the other.
     assert_eq!(host.ask("00 05 00 00 00 06"), "");
     other.exchange(&[
         (READ, "00 01 00 00 00 07 01 04 04 C2 00 01 68"),
         ("00 02 00 00 00 0B 01 10 00 00 00 02 04 04 00 00 01", "00 02 00 00 00 06 01 10 00 00 00 02"),
     ]);
     assert_eq!(host.ask("01 04 00 00 00 02"), "00 05 00 00 00 07 01 04 04 C4 00 00 01");
-    // Who goes and comes again finds the encoder as it was.
+    // A client that disconnects and reconnects finds the encoder unchanged.
     other.gateway.connect(other.now);
     assert_eq!(other.ask(READ), "00 01 00 00 00 07 01 04 04 C4 00 00 01");
 }
@@ -187,7 +187,7 @@ fn faults_are_those_asked_for() {
     assert_ne!(some(lossy), some("position=0&fault=drop:0.5&seed=8"));
 }
 
-/// What is not carried out leaves no trace; a cable can be mended.
+/// A request that is not carried out leaves no trace; a cable can be repaired.
 #[test]
 fn an_exception_of_the_gateway_keeps_the_word_from_the_encoder() {
     let mut host = Host::with("exception=1");
@@ -223,6 +223,6 @@ fn the_shaft_turns_as_its_motor_does() {
     motor.set_rpm(60.0);
     host.ask(READ);
     host.now = host.now + Duration::from_millis(490);
-    // Half a turn since the request before, which came 500 ms earlier.
+    // Half a turn since the previous request, 500 ms earlier.
     assert_eq!(host.ask(READ), "00 01 00 00 00 07 01 04 04 00 00 10 00");
 }

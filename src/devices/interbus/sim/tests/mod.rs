@@ -1,4 +1,4 @@
-//! What a master sees of the virtual encoder, in virtual time. Expected words are the reference's; none is computed by the
+//! The virtual encoder as seen by a master, in virtual time. Expected words are the reference's; none is computed by the
 //! code under test.
 
 mod any;
@@ -15,14 +15,14 @@ use super::*;
 use crate::devices::interbus::protocol::ProgramNumber;
 use crate::units::Moment;
 
-/// Somebody who writes OUT words and reads IN words, without any bus.
+/// Master that writes OUT words and reads IN words, without a bus.
 struct Master {
     encoder: Encoder,
     now: Moment,
 }
 
 impl Master {
-    /// With the query of a `sim:` link; without old words and busy ones, where it says nothing of them.
+    /// Creates a master with the query of a `sim:` link; without old and busy words, unless the query sets them.
     fn with(query: &str) -> Self {
         let config = config(&format!("stale=0&busy=0&{query}"));
         Master { encoder: Encoder::new(&config, 0), now: Moment::START }
@@ -64,7 +64,7 @@ impl Master {
         self.encoder.put_shaft(self.now, place);
     }
 
-    /// The position, at a place of the disc.
+    /// Returns the position, at a place of the disc.
     fn position(&mut self, place: i32) -> u32 {
         self.put_shaft(place);
         self.read()

@@ -11,7 +11,7 @@ fn the_worked_example_of_the_reference() {
         (0x0400_0001, [0xC200_00FF, 0xC400_0001]),
         (0x0600_0003, [0xC400_0001, 0xC600_0003]),
         (0x0800_0000, [0xC600_0003, 0xC800_0000]),
-        // 5000 of 8192 places in 255 steps: 155.6.
+        // 5000 of 8192 positions in 255 steps: 155.6.
         (0x8000_0000, [0xC800_0000, 155]),
         (0x0000_0000, [155, 155]),
         (0x4000_0000, [155, 0]),
@@ -39,13 +39,13 @@ fn busy_words_come_for_the_time_that_was_asked_for() {
         })
         .collect();
     assert_eq!(words, [7, 7, 0xC000_0000, 0xC000_0000, 0xC200_0168]);
-    // Cycles go on without readings.
+    // Cycles continue without readings.
     master.write(0x0200_00B4);
     master.wait(10);
     assert_eq!(master.read(), 0xC000_0000);
     master.wait(10);
     assert_eq!(master.read(), 0xC200_00B4);
-    // A position is there at once, behind what is old.
+    // A position is available at once, after the old words.
     master.write(0x8000_0000);
     assert_eq!([master.read(), master.read()], [0xC200_00B4, 0xC200_00B4]);
     assert_eq!(master.read() >> 31, 0);
@@ -53,7 +53,7 @@ fn busy_words_come_for_the_time_that_was_asked_for() {
 
 #[test]
 fn steps_turns_and_places_give_the_positions_of_the_reference() {
-    // Steps, turns, place of the disc, position.
+    // Steps, turns, position of the disc, position.
     let cases = [
         (255, 1, 0, 0),
         (255, 1, 4095, 127),
@@ -66,7 +66,7 @@ fn steps_turns_and_places_give_the_positions_of_the_reference() {
         (1000, 10, -1, 999),
     ];
     for (steps, turns, place, position) in cases {
-        // More turns first: so many steps need them.
+        // More turns first: this number of steps needs them.
         let mut master = Master::with("steps=1&revolutions=1");
         master.put(&[0x0400_0000 | turns, 0x0200_0000 | steps, 0x8000_0000, 0]);
         assert_eq!(master.position(place), position, "{steps} steps, {turns} turns, place {place}");
@@ -81,7 +81,7 @@ fn what_is_beyond_its_limits_is_wrong_data_and_changes_nothing() {
         master.exchange(&[(word, 0x8200_0000), (0x8000_0000, 0x0000_1456), (0, 0x0000_1456)]);
     }
     assert_eq!((master.encoder.stores(), master.encoder.memory()), (3, &config("steps=8192&revolutions=1").memory));
-    // With more turns there is room for more steps, and not for fewer turns afterwards.
+    // More turns allow more steps, which then do not allow fewer turns.
     master.exchange(&[(0x0400_0002, 0xC400_0002), (0x0200_4000, 0xC200_4000), (0x0400_0001, 0x8200_0000)]);
     master.exchange(&[(0x0800_3FFF, 0xC800_3FFF), (0x0A00_3FFF, 0xCA00_3FFF), (0x0600_0004, 0xC600_0004)]);
 }
@@ -92,12 +92,12 @@ fn codes_that_the_manual_does_not_have_are_unknown() {
     for code in [6, 8, 9, 10, 11, 12, 13, 14, 15] {
         master.exchange(&[(code << 25, 0x8400_0000), (0x8000_0000, 0), (0, 0)]);
     }
-    // Words that mean nothing get no reaction.
+    // Words without a meaning have no effect.
     for word in [0x0009_2021, 0x2041_0000, 0x2080_0009, 0x2040_0002, 0x2020_0000, 0xA000_0000] {
         master.exchange(&[(word, 0), (0, 0)]);
     }
     assert_eq!(master.encoder.stores(), 3);
-    // Outside of position mode a parameter is none.
+    // Outside of position mode a parameter is unknown.
     master.exchange(&[(0x2040_0001, 0), (0x0200_0168, 0x8400_0000), (0x8000_0000, 0)]);
 }
 
@@ -117,10 +117,10 @@ fn a_preset_is_fired_once_for_each_that_was_set() {
     master.exchange(&[(0x4000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0000), (0, 180)]);
     master.exchange(&[(0x0800_0064, 0xC800_0064), (0x8000_0000, 180), (0, 180), (0x2021_0006, 0xA000_0001), (0, 180)]);
     master.exchange(&[(0x4000_0000, 100), (0, 100), (0x2021_0006, 0xA000_0000), (0, 100)]);
-    // The shaft turns by a quarter, and nothing is fired any more.
+    // The shaft turns by a quarter, and nothing more is fired.
     assert_eq!(master.position(6144), 190);
     master.exchange(&[(0x4000_0000, 190), (0, 190)]);
-    // The FRABA preset as often as wanted.
+    // The FRABA preset can be repeated.
     for place in [0, 6144] {
         master.put_shaft(place);
         master.exchange(&[(0x6000_0000, 100), (0x8000_0000, 100), (0, 100)]);

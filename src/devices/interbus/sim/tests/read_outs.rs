@@ -1,4 +1,4 @@
-//! What is read out (reference 3 and 7).
+//! Read-outs (reference 3 and 7).
 
 use super::*;
 

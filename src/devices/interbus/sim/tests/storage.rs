@@ -1,4 +1,4 @@
-//! The EEPROM: what it keeps, what a loss of power takes, and its wear (reference 3, `U`).
+//! The EEPROM: what it stores, what a loss of power loses, and its wear (reference 3, `U`).
 
 use super::*;
 use crate::devices::interbus::protocol::StartupMode;
@@ -14,7 +14,7 @@ fn what_was_not_stored_is_forgotten_without_power() {
     assert_eq!((master.read(), master.encoder.stores()), (90, 4));
 }
 
-/// The gateway says the same as before, which the encoder takes as a new word.
+/// The gateway sends the same word as before, which the encoder takes as a new one.
 #[test]
 fn what_the_master_still_says_is_taken_when_power_comes_back() {
     let mut master = Master::with("steps=360&revolutions=1&position=4096");
@@ -43,7 +43,7 @@ fn power_lost_in_a_store_loses_what_was_stored() {
     assert_eq!((master.read(), master.encoder.stores()), (0x8600_0000, 5));
     assert_eq!((master.encoder.memory().gear().steps(), master.encoder.memory().direction()), (0x01FF_FFFF, 3));
     assert_eq!(master.encoder.memory().program(program(1)).mask, 0xFF);
-    // Set anew, it works again.
+    // Set again, it works.
     master.exchange(&[(0x0400_0001, 0x8200_0000), (0x0200_0168, 0xC200_0168), (0x0400_0001, 0xC400_0001)]);
     master.write(0x8000_0000);
     assert_eq!((master.read() >> 31, master.encoder.stores()), (0, 6));

@@ -1,5 +1,5 @@
-//! The golden vectors of reference 7 through the gateway's bytes: every OUT word is written as it stands there, and the IN
-//! word is its exact echo, or the value that the reference has.
+//! The golden vectors of reference 7 through the gateway's bytes: every OUT word is written as in the reference, and the IN
+//! word is its exact echo, or the value in the reference.
 
 use super::gateway::Host;
 
@@ -66,7 +66,7 @@ fn cams_are_echoed_with_both_upper_bits_set() {
             ("20400008", "E0400008"),
             ("20100008", "E0100008"),
             ("20100019", "E0100019"),
-            // One step beyond the range that 25 bits can name.
+            // One step beyond the range of 25 bits.
             ("4FFFFFFF", "98000004"),
             ("6FFFFFFF", "98000004"),
             ("4E000000", "CE000000"),
@@ -86,7 +86,7 @@ fn values_are_read_out() {
     walk(
         settings,
         &[
-            // 1193046 of 33554432 places in 4000 steps: 142.2.
+            // 1193046 of 33554432 positions in 4000 steps: 142.2.
             ("00000000", "0000008E"),
             ("20210001", "A0000FA0"),
             ("2021000C", "A00000FD"),
@@ -103,6 +103,6 @@ fn values_are_read_out() {
 
 #[test]
 fn a_k1_encoder_has_the_place_within_a_turn() {
-    // 1FFEh of 2000h places are FFFh of 1000h.
+    // 1FFEh of 2000h positions are FFFh of 1000h.
     walk("class=K1&position=24574", &[("00000000", "00000FFF"), ("02000168", "00000FFF")]);
 }

@@ -1,4 +1,4 @@
-//! The lines of a chart: round steps, and round units of the machine.
+//! The lines of a chart: at round steps, and round units of the machine.
 
 use super::VisibleRange;
 use crate::devices::interbus::profile::{Scale, Unit};
@@ -19,7 +19,7 @@ const DEGREES: [f64; 9] = [1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 45.0, 90.0, 180.0];
 /// More lines than a chart has room for.
 const MOST_TICKS: usize = 400;
 
-/// The least of 1, 2, 5, 10, 20, 50 … that is at least so much.
+/// Returns the smallest of 1, 2, 5, 10, 20, 50 … that is at least this value.
 pub fn rounded(at_least: f64) -> f64 {
     if !at_least.is_finite() || at_least <= 0.0 {
         return 1.0;
@@ -30,7 +30,7 @@ pub fn rounded(at_least: f64) -> f64 {
     nice * power
 }
 
-/// Lines that are at least so many steps apart.
+/// Returns lines at least this number of steps apart.
 pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<Tick> {
     let one = scale.steps_in_unit();
     let unit = round_units(scale.unit(), apart / one);
@@ -47,7 +47,7 @@ pub fn ticks(scale: &Scale, view: &VisibleRange, range: u32, apart: f64) -> Vec<
     (0..MOST_TICKS).map(at).take_while(|tick| tick.position <= to + 1e-9).collect()
 }
 
-/// The next line of that grid from a position on, or the one before it, in steps; lines go on beyond the range.
+/// Returns the next line of that grid from a position on, or the previous one, in steps; lines continue beyond the range.
 pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64 {
     let around = lines_around(scale, apart, f64::from(position), 2);
     let position = i64::from(position);
@@ -59,7 +59,7 @@ pub fn next_line(scale: &Scale, apart: f64, position: u32, forward: bool) -> i64
     }
 }
 
-/// The lines around a position, so many on each side, on whole steps and rising.
+/// Returns the lines around a position, this number on each side, at whole steps and rising.
 pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) -> Vec<f64> {
     let steps = scale.steps_in_unit() * round_units(scale.unit(), apart / scale.steps_in_unit());
     let zero = f64::from(scale.zero());
@@ -67,7 +67,7 @@ pub(super) fn lines_around(scale: &Scale, apart: f64, position: f64, each: i32) 
     (-each..=each + 1).map(|line| (zero + (own + f64::from(line)) * steps).round()).collect()
 }
 
-/// The least round number of units that is at least so much.
+/// Returns the smallest round number of units that is at least this value.
 fn round_units(unit: Unit, at_least: f64) -> f64 {
     match unit {
         Unit::Steps => rounded(at_least).max(1.0),
@@ -80,7 +80,7 @@ fn round_units(unit: Unit, at_least: f64) -> f64 {
     }
 }
 
-/// Within a range that goes round; its end is its beginning.
+/// Wraps a value into a range.
 fn turned(value: f64, span: f64) -> f64 {
     let turned = value.rem_euclid(span);
     if (span - turned).abs() < 1e-9 * span { 0.0 } else { turned }

@@ -1,5 +1,5 @@
-//! Changes of a cam when an edge is dragged, when it is moved as a whole, or drawn. The measuring range wraps: what is
-//! dragged over its end comes in at the other.
+//! Changes of a cam when an edge is dragged, or the cam is moved as a whole or drawn. The measuring range wraps: a part
+//! dragged over its end appears at the other.
 
 use super::of_edge;
 use crate::devices::interbus::profile::Edge;
@@ -10,7 +10,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, Value};
 pub enum Hold {
     Edge(CamNumber, Edge),
     Whole(CamNumber),
-    /// The empty lane of a cam: one is drawn there.
+    /// The empty lane of a cam, in which one can be drawn.
     New(CamNumber),
 }
 
@@ -40,7 +40,7 @@ pub fn pulled(cam: Cam, edge: Edge, by: i64, range: u32) -> Cam {
     with(cam, edge, i64::from(of_edge(cam, edge).get()) + by, whole)
 }
 
-/// The whole of it further along by so many steps. What lies beyond the range stays.
+/// Returns the whole cam moved by this number of steps. Parts beyond the range stay there.
 pub fn moved(cam: Cam, by: i64, range: u32) -> Cam {
     let whole = i64::from(range.max(1));
     if i64::from(cam.start.get()) >= whole || i64::from(cam.stop.get()) >= whole {

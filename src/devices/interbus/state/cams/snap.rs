@@ -4,12 +4,12 @@ use super::{Chart, Hold, grid, of_edge};
 use crate::devices::interbus::profile::{Edge, Scale};
 use crate::devices::interbus::protocol::{Cam, CamNumber};
 
-/// The targets of snapping, and its reach.
+/// Targets of snapping, and its reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Snap {
     /// Reach in steps.
     pub reach: f64,
-    /// The lines of a grid in round units, at least so many steps apart; `None`: they do not draw.
+    /// The lines of a grid in round units, at least this number of steps apart; `None`: no snapping to lines.
     pub apart: Option<f64>,
     /// Edges of other cams do.
     pub edges: bool,
@@ -55,14 +55,14 @@ pub fn snap(chart: &Chart, scale: &Scale, hold: Hold, cam: Cam, by: f64, snap: &
 /// Returns the possible targets of an edge, the strongest first.
 fn targets(chart: &Chart, scale: &Scale, own: CamNumber, edge: Edge, at: f64, snap: &Snap) -> Vec<f64> {
     let range = f64::from(chart.range.max(1));
-    // The same place in the turn that the pointer has come to.
+    // The same place in the turn that the pointer has reached.
     let turn = (at / range).floor() * range;
     let mut targets = Vec::new();
     if snap.edges {
         let others = chart.lanes.iter().filter(|lane| lane.cam != own && lane.on);
         for cam in others.filter_map(|lane| lane.edges) {
             let (start, stop) = (f64::from(cam.start.get()), f64::from(cam.stop.get()));
-            // On and off together with it, or right behind and before it.
+            // On and off together with it, or directly after and before it.
             let (same, next) = match edge {
                 Edge::Start => (start, stop + 1.0),
                 Edge::Stop => (stop, start - 1.0),

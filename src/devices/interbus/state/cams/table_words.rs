@@ -67,14 +67,14 @@ pub fn note(note: &TableNote) -> Text {
     }
 }
 
-/// A row whose edges are not where they were asked for.
+/// Returns the text of a row with rounded edges.
 pub fn rounding(row: &TableRow, scale: &Scale) -> Text {
     let text = TEXTS.text("camtable.rounded").with("line", row.line).with("program", row.program.get());
     let text = text.with("cam", row.cam.get());
     text.with_text("start", edge(row.start, scale)).with_text("stop", edge(row.stop, scale))
 }
 
-/// An edge as it was asked for, what it became, and by how much that differs.
+/// Returns the text of an edge: as requested, as rounded, and the difference.
 pub fn edge(edge: TableEdge, scale: &Scale) -> Text {
     let decimals = scale.decimals() + 1;
     let id = if edge.is_off() { "camtable.edge_off" } else { "camtable.edge" };
@@ -102,7 +102,7 @@ fn column(column: Column) -> Text {
     })
 }
 
-/// A unit by its name.
+/// Returns the name of a unit.
 pub fn unit(unit: Unit) -> Text {
     TEXTS.text(match unit {
         Unit::Steps => "camtable.steps",
@@ -136,7 +136,7 @@ mod tests {
         assert!(german.contains("350,000° → Schritt 772 (0,0195° weniger)"), "{german}");
     }
 
-    /// 10.05 steps lie 0.05 beyond step 10.
+    /// 10.05 steps are 0.05 beyond step 10.
     #[test]
     fn what_was_asked_for_stands_as_it_was_written() {
         let scale = Scale::default();

@@ -1,4 +1,4 @@
-//! Charts: what is on, what draws edges to itself, what comes of pulling.
+//! Charts: active positions, targets of snapping, results of dragging.
 
 mod session;
 
@@ -27,7 +27,7 @@ fn program() -> ProgramNumber {
     ProgramNumber::new(1).unwrap()
 }
 
-/// A profile of 1000 steps with these cams of program 1.
+/// Returns a profile of 1000 steps with these cams of program 1.
 fn staged(cams: &[(u8, u32, u32)]) -> Staged {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
@@ -174,7 +174,7 @@ fn edges_are_drawn_to_what_is_near() {
     let (first, steps) = (edges(100, 199), Scale::default());
     let pull = |edge, by, with: &Snap| snap(&chart, &steps, Hold::Edge(cam(0), edge), first, by, with);
     let on = Snap { reach: 6.0, apart: None, edges: true };
-    // Of the other cam: 403 to 555. A stop goes right before its start, or to its stop.
+    // Of the other cam: 403 to 555. A stop snaps to right before its start, or to its stop.
     assert_eq!(199 + pull(Edge::Stop, 200.3, &on), 402);
     assert_eq!(199 + pull(Edge::Stop, 351.0, &on), 555);
     assert_eq!(100 + pull(Edge::Start, 453.4, &on), 556);
@@ -185,9 +185,9 @@ fn edges_are_drawn_to_what_is_near() {
     assert_eq!(100 + pull(Edge::Start, 353.0, &grid), 450);
     assert_eq!(100 + pull(Edge::Start, -104.0, &grid), 0);
     assert_eq!(100 + pull(Edge::Start, -204.0, &grid), -100, "over the end of the range");
-    // Moved as a whole, either edge is drawn: 199 + 203 = 402.
+    // Moved as a whole, either edge snaps: 199 + 203 = 402.
     assert_eq!(snap(&chart, &steps, Hold::Whole(cam(0)), first, 199.0, &on), 203);
-    // 90° of 1000 steps is 250; the grid is of 30°, which is 83.3.
+    // 90° of 1000 steps is 250; the grid has 30°, which is 83.3.
     let degrees = Scale::degrees(1000.0, 0).unwrap();
     let units = Snap { reach: 6.0, apart: Some(80.0), edges: false };
     assert_eq!(100 + snap(&chart, &degrees, Hold::Edge(cam(0), Edge::Start), first, 146.5, &units), 250);

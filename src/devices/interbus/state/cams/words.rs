@@ -1,4 +1,4 @@
-//! The chart in words.
+//! Texts of the chart.
 
 use super::{Chart, Lamp, Lane};
 use crate::app::Text;
@@ -7,7 +7,7 @@ use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, P
 use crate::devices::interbus::state::TEXTS;
 use crate::devices::interbus::state::staged::{EditError, Mark};
 
-/// A cam by its number, and its name where it has one.
+/// Returns the text of a cam: its number, and its name if it has one.
 pub fn cam(lane: &Lane) -> Text {
     match &lane.name {
         Some(name) => TEXTS.text("cams.named").with("cam", lane.cam.get()).with("name", name),
@@ -19,7 +19,7 @@ pub fn bare(cam: CamNumber) -> Text {
     TEXTS.text("cams.cam").with("cam", cam.get())
 }
 
-/// An edge of a cam.
+/// Returns the text for an edge of a cam.
 pub fn edge(lane: &Lane, edge: Edge) -> Text {
     TEXTS
         .text(match edge {
@@ -29,7 +29,7 @@ pub fn edge(lane: &Lane, edge: Edge) -> Text {
         .with_text("cam", bare(lane.cam))
 }
 
-/// A position: in steps, and in units of the machine where it has others.
+/// Returns the text of a position: in steps, and in units of the machine if it has others.
 pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     match scale.unit() {
         Unit::Steps if scale.zero() == 0 => TEXTS.text("cams.steps").with("step", step),
@@ -40,12 +40,12 @@ pub fn position(step: u32, scale: &Scale, range: u32) -> Text {
     }
 }
 
-/// A number of units, as a ruler says it.
+/// Returns the text of a number of units for a ruler.
 pub fn tick(value: f64, decimals: usize, unit: Unit) -> Text {
     TEXTS.text("cams.tick").with_number("value", value, decimals).with("unit", unit.symbol())
 }
 
-/// Returns the place and length of a cam in words.
+/// Returns the place and length of a cam as text.
 pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     let (start, stop) = (cam.start.get(), cam.stop.get());
     let text = TEXTS.text(if cam.wraps() { "cams.stretch_over" } else { "cams.stretch" });
@@ -54,7 +54,7 @@ pub fn stretch(cam: Cam, scale: &Scale, range: u32) -> Text {
     text.with("count", (i64::from(stop) - i64::from(start)).rem_euclid(whole) + 1)
 }
 
-/// A lane in a sentence: where its cam is and whether it works.
+/// Returns the text of a lane: the place of its cam and whether it is active.
 pub fn lane(own: &Lane, scale: &Scale, range: u32) -> Text {
     let Some(edges) = own.edges else { return TEXTS.text("cams.no_edges") };
     let id = if own.on { "cams.works" } else { "cams.works_not" };
@@ -81,7 +81,7 @@ pub fn lamp(lamp: Lamp) -> Text {
     }
 }
 
-/// Returns the problems in words; the cams of a program that are beyond the measuring range are combined.
+/// Returns the problems as text; the cams of a program that are beyond the measuring range are combined.
 pub fn marks(marks: &[Mark]) -> Vec<Text> {
     let beyond_in = |own: &Mark| matches!(own, Mark::Beyond { .. }).then(|| own.program()).flatten();
     let mut named = Vec::new();

@@ -1,4 +1,4 @@
-//! The device check in words.
+//! Texts of the device check.
 
 use super::{encoder, implausible, refusal, startup, word};
 use crate::app::Text;

@@ -1,4 +1,4 @@
-//! Requests to a gateway, its refusals and damaged replies in words.
+//! Texts of requests to a gateway, its refusals and damaged replies.
 
 use crate::app::Text;
 use crate::devices::interbus::procedures::{Damage, Exception, RequestedItem};

@@ -1,4 +1,4 @@
-//! Every error says what happened and what to do, in both languages and with the facts in it.
+//! Every error tells what happened and what to do, in both languages and with the facts in it.
 
 use std::path::Path;
 
@@ -174,7 +174,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
     assert!(lines[1].contains("lead-back"), "{lines:?}");
 }
 
-/// Issue 22.5: whatever completes it comes behind leading the encoder back.
+/// Issue 22.5: the remedy comes after returning the encoder to its mode.
 #[test]
 fn what_completes_a_write_comes_after_leading_back() {
     let standing = LeftState { out: 0, parameterising: true, found: None, is: None };
@@ -191,7 +191,7 @@ fn what_completes_a_write_comes_after_leading_back() {
     }
 }
 
-/// Issue 22.4: a count that is not known is told with what opens it.
+/// Issue 22.4: an unknown count is reported with the option that permits the write.
 #[test]
 fn a_write_that_cannot_be_counted_says_what_opens_it() {
     let refused = job(&JobError::NotBegun(NotBegun::WearUnknown { cost: 2 }));

@@ -1,5 +1,5 @@
-//! Writes in words: what is wanted, the operations of a plan, why there is no plan, what was written, why it ended early and
-//! in which state the encoder was left.
+//! Texts of writes: changes, operations of a plan, why there is no plan, what was written, why it ended early and in which
+//! state the encoder was left.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use crate::devices::interbus::protocol::{Flags, GearError};
 use crate::devices::interbus::state::TEXTS;
 use crate::worker::NotBegun;
 
-/// A change in words.
+/// Returns a change as text.
 pub fn change(change: &Change) -> Text {
     match change {
         Change::Restore { profile, .. } => match profile.identity.serial_number.as_str() {
@@ -30,7 +30,7 @@ pub fn change(change: &Change) -> Text {
     }
 }
 
-/// An operation in words; each parameter, mask and edge by itself.
+/// Returns the text of an operation; each parameter, mask and edge separately.
 pub fn op(op: &Op) -> OpWords {
     match op {
         Op::Parameterise(changes) => OpWords {
@@ -63,7 +63,7 @@ fn program(change: &ProgramChange) -> Vec<ChangeWords> {
     change.cams.iter().map(of_cam).chain(mask).chain(shift).collect()
 }
 
-/// A profile that goes onto another type of encoder.
+/// Returns the text for a profile for another type of encoder.
 pub fn other_type(types: OtherType) -> Text {
     of_types("ib_review.other_type", types)
 }
@@ -139,14 +139,15 @@ pub(super) fn not_begun(why: &NotBegun) -> Text {
     }
 }
 
-/// A write that is done.
+/// Returns the text for a write that is done.
 pub fn written(written: &Written) -> Text {
     // The values of the default are not known, so none is read back.
     let id = if written.verified == 0 { "biss_review.done" } else { "review.verified" };
     TEXTS.text(id).with("verified", written.verified).with("cycles", written.write_cycles)
 }
 
-/// A write that was cut off: how far it came, why, in which state the encoder was left, and where the state before is.
+/// Returns the text of an interrupted write: how far it got, why, in which state the encoder was left, and where the backup
+/// is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
     let Interrupted { done, unfinished, cause, left } = interrupted;
     let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();

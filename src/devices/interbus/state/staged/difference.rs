@@ -4,7 +4,7 @@ use super::{EditedValues, Staged};
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{CamNumber, Parameter, ProgramNumber};
 
-/// Something that has one value.
+/// Identifier of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ValueId {
     Parameter(Parameter),
@@ -15,14 +15,14 @@ pub enum ValueId {
     On(ProgramNumber, CamNumber),
 }
 
-/// A value that is wanted otherwise.
+/// Edited value that differs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Differs {
     /// Its location.
     pub place: ValueId,
-    /// Now; `None`: a profile does not say it.
+    /// Present value; `None`: not in the profile.
     pub from: Option<u32>,
-    /// As it is wanted; `None`: it is not to be said any more.
+    /// Edited value; `None`: to be removed from the profile.
     pub to: Option<u32>,
 }
 
@@ -31,7 +31,7 @@ const SET: [Parameter; 5] =
     [Parameter::Steps, Parameter::Turns, Parameter::Direction, Parameter::Preset, Parameter::ZeroShift];
 
 impl ValueId {
-    /// All of them: the parameters, the shift, and by program and cam.
+    /// Returns all values: the parameters, the shift, and by program and cam.
     pub fn all() -> impl Iterator<Item = ValueId> {
         let cams = ProgramNumber::all().flat_map(|program| CamNumber::all().map(move |cam| (program, cam)));
         let cams = cams.flat_map(|(program, cam)| {
@@ -46,7 +46,7 @@ impl ValueId {
 }
 
 impl EditedValues {
-    /// The value of something; `None`: nothing is known of it.
+    /// Returns a value; `None`: it is not known.
     pub fn value(&self, place: ValueId) -> Option<u32> {
         match place {
             ValueId::Parameter(parameter) => self.image.parameters.value(parameter),
@@ -68,18 +68,19 @@ impl Staged {
         (from != to).then_some(Differs { place, from, to })
     }
 
-    /// All that is wanted otherwise, but names.
+    /// Returns all edited values that differ, except names.
     pub fn differences(&self) -> Vec<Differs> {
         ValueId::all().filter_map(|place| self.differs(place)).collect()
     }
 
-    /// A cam is wanted otherwise; not its name. One that a profile did not mention and that does not work is not.
+    /// Returns whether a cam was edited, apart from its name. An inactive one that the profile did not contain does not
+    /// count.
     pub fn is_edited(&self, program: ProgramNumber, cam: CamNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         base.cam(program, cam) != wanted.cam(program, cam) || base.is_on(program, cam) != wanted.is_on(program, cam)
     }
 
-    /// Anything of a program is wanted otherwise; a profile's names too.
+    /// Returns whether anything of a program was edited, including a profile's names.
     pub fn is_program_edited(&self, program: ProgramNumber) -> bool {
         let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) else { return false };
         let is_renamed = base.names.program(program) != wanted.names.program(program)

@@ -6,7 +6,7 @@ use super::{BaseSource, EditedValues, Staged, edit};
 use crate::devices::interbus::profile::Direction;
 use crate::devices::interbus::protocol::{Cam, CamNumber, Gear, Parameter, ProgramNumber, Value, WindowShift};
 
-/// An edit that is kept: what is wanted, whatever led to it. Numbers as the manual has them.
+/// Stored edit: the edited value, however it was reached. Numbers as in the manual.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedEdit {
     /// Steps and turns, which are one gear.
@@ -21,7 +21,7 @@ pub enum SavedEdit {
     Shift(u8),
     /// Program, cam, and its edges.
     Cam(u8, u8, u32, u32),
-    /// Program and cam, which the profile is not to say any more.
+    /// Program and cam to be removed from the profile.
     NoCam(u8, u8),
     /// Program, cam, and whether it works.
     On(u8, u8, bool),
@@ -32,7 +32,7 @@ pub enum SavedEdit {
 }
 
 impl Staged {
-    /// The edits, for a draft on disk; also those that wait for their program to be read.
+    /// Returns the edits for a draft on disk, including those that wait for their program.
     pub fn edits(&self) -> Vec<SavedEdit> {
         let mut kept = Vec::new();
         if let Some((base, wanted)) = self.base.as_ref().zip(self.wanted.as_ref()) {
@@ -61,7 +61,7 @@ impl Staged {
         self.step(wanted);
     }
 
-    /// Programs for which edits of an earlier time wait.
+    /// Returns the programs for which edits of an earlier time wait.
     pub fn waiting(&self) -> Vec<ProgramNumber> {
         let waits = |number: &ProgramNumber| self.waiting.iter().any(|kept| kept.program() == Some(*number));
         ProgramNumber::all().filter(waits).collect()
@@ -107,8 +107,8 @@ fn keep_program(base: &EditedValues, wanted: &EditedValues, program: ProgramNumb
 }
 
 impl SavedEdit {
-    /// Applies it to the edited values, unless a number is invalid. Values beyond the measuring range are applied as
-    /// they were left.
+    /// Applies it to the edited values, unless a number is invalid. Values beyond the measuring range are applied
+    /// unchanged.
     fn put(self, wanted: &mut EditedValues, ground: BaseSource) {
         let parameters = &mut wanted.image.parameters;
         match self {

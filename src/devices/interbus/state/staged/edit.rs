@@ -1,4 +1,4 @@
-//! The edits: what each makes of what is wanted, and why it may not be.
+//! The edits: the effect of each on the edited values, and why one is refused.
 
 use super::{BaseSource, EditedValues};
 use crate::devices::interbus::profile::{Direction, Edge, Filled, LONGEST_NAME};
@@ -6,14 +6,14 @@ use crate::devices::interbus::protocol::{
     Cam, CamNumber, Gear, GearError, OutOfRange, Parameter, Program, ProgramNumber, Value, WindowShift,
 };
 
-/// A change. Each is one step, however much it changes.
+/// Edit. Each is one step, however much it changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Edit {
     /// Steps of the measuring range.
     Steps(u32),
     /// Turns until the position starts again.
     Revolutions(u32),
-    /// Both at once, where one after the other would not go.
+    /// Set both at once, if they cannot be set one after the other.
     Gear {
         steps: u32,
         /// Turns.
@@ -21,7 +21,7 @@ pub enum Edit {
     },
     /// Direction of counting.
     Direction(Direction),
-    /// The preset, in steps. Nothing is fired by it.
+    /// Set the preset, in steps. This does not fire it.
     Preset(u32),
     /// The zero point shifting, in steps.
     ZeroShift(u32),
@@ -29,36 +29,36 @@ pub enum Edit {
     Shift(WindowShift),
     /// An edge of a cam, typed or dragged.
     Edge {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         edge: Edge,
-        /// Its position.
+        /// New position.
         to: u32,
     },
-    /// Both edges of a cam: typed, moved as a whole, or drawn.
+    /// Set both edges of a cam: entered, moved as a whole, or drawn.
     Cam {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// Its first position.
         start: u32,
-        /// Its last one; before the start: over the end of the measuring range.
+        /// Its last position; before the start if it continues over the end of the measuring range.
         stop: u32,
-        /// It works from then on, if it did not yet.
+        /// Activates it if it is not active yet.
         on: bool,
     },
-    /// Whether a cam is active.
+    /// Activate or deactivate a cam.
     Switch {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
-        /// It does.
+        /// Active if set.
         on: bool,
     },
     /// Name of a cam; empty for none.
     Name {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// At most [`LONGEST_NAME`] characters.
@@ -70,50 +70,50 @@ pub enum Edit {
         /// At most [`LONGEST_NAME`] characters.
         name: String,
     },
-    /// A program becomes as another is, with the names of its cams.
+    /// Copy a program to another, with the names of its cams.
     Copy {
         /// The source program.
         from: ProgramNumber,
         /// The replaced program.
         to: ProgramNumber,
     },
-    /// A program runs the other way: what is on at a position is then on as far from the other end of the range. Cams
-    /// that do not work are mirrored too, unless they lie beyond the range.
+    /// Mirror a program: positions count from the other end of the range. Inactive cams are mirrored too, unless they are
+    /// beyond the range.
     Mirror(ProgramNumber),
-    /// A program later or earlier by so many steps; what leaves the range at one end comes in at the other. Cams that do
-    /// not work go along, unless they lie beyond the range.
+    /// Shift a program by this number of steps; parts that leave the range at one end appear at the other. Inactive cams
+    /// are shifted too, unless they are beyond the range.
     Rotate {
         program: ProgramNumber,
-        /// Later by so many steps; below 0 earlier.
+        /// Later by this number of steps; negative for earlier.
         by: i64,
     },
     /// Programs as a table has them.
     Table(Vec<Filled>),
 }
 
-/// Why something cannot be changed. Nothing has changed then.
+/// Why an edit is refused. Nothing has changed then.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum EditError {
-    /// Nothing is known of the encoder.
+    /// No values of the encoder were read.
     #[error("nothing has been read yet")]
     NothingRead,
-    /// Nothing is known of this program.
+    /// This program was not read.
     #[error("cam program {} has not been read", .0.get())]
     NotRead(ProgramNumber),
-    /// Nothing is known of the window's shift, which is read with a program.
+    /// The window's shift, which is read with a program, was not read.
     #[error("the shift of the window has not been read")]
     ShiftNotRead,
-    /// The profile does not say where this cam is.
+    /// The profile does not contain this cam.
     #[error("cam {} of program {} has no edges", cam.get(), program.get())]
     NoCam {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
     },
     /// Steps and turns are not one.
     #[error(transparent)]
     Gear(#[from] GearError),
-    /// Another parameter is beyond its limits.
+    /// Another parameter would be out of range.
     #[error(transparent)]
     Parameter(#[from] OutOfRange),
     /// An edge beyond the measuring range.
@@ -125,10 +125,10 @@ pub enum EditError {
         /// The last position.
         last: u32,
     },
-    /// A cam that works is beyond the measuring range, so that its program can be neither mirrored nor shifted.
+    /// An active cam is beyond the measuring range, so its program can be neither mirrored nor shifted.
     #[error("cam {} of program {} is outside the measuring range, which ends at {last}", cam.get(), program.get())]
     Beyond {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// The last position.
@@ -224,7 +224,7 @@ fn within(parameter: Parameter, value: u32, high: u32) -> Result<u32, EditError>
     if value <= high { Ok(value) } else { Err(OutOfRange { parameter, value, low: 0, high }.into()) }
 }
 
-/// The last position of the measuring range.
+/// Returns the last position of the measuring range.
 const fn last(wanted: &EditedValues) -> u32 {
     wanted.range().saturating_sub(1)
 }
@@ -234,7 +234,7 @@ fn position(edge: Edge, to: u32, wanted: &EditedValues) -> Result<Value, EditErr
     Value::new(to).filter(|_| to <= last).ok_or(EditError::Edge { edge, to, last })
 }
 
-/// A program to be changed. A profile begins to say one with its first edit.
+/// Returns a program to be changed. The first edit adds it to a profile.
 pub(super) fn program_mut(
     after: &mut EditedValues,
     number: ProgramNumber,
@@ -282,7 +282,7 @@ fn fill(after: &mut EditedValues, filled: &Filled, ground: BaseSource) -> Result
     Ok(())
 }
 
-/// A name without blanks around it.
+/// Returns a name without blanks around it.
 pub(super) fn checked_name(name: &str) -> Result<String, EditError> {
     let name = name.trim();
     if name.chars().count() > LONGEST_NAME || name.chars().any(char::is_control) {

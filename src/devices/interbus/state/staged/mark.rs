@@ -4,7 +4,7 @@ use super::EditedValues;
 use crate::devices::interbus::profile::Edge;
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, ProgramNumber};
 
-/// Something that a person should look at. An edit may lead here: fewer steps leave cams behind.
+/// Finding that the user should check. An edit may cause it: fewer steps leave cams beyond the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// Steps and turns are no gear.
@@ -16,7 +16,7 @@ pub enum Mark {
     },
     /// A cam that works has an edge beyond the measuring range.
     Beyond {
-        /// Whose cam.
+        /// Program of the cam.
         program: ProgramNumber,
         cam: CamNumber,
         /// The edge; the start if both are concerned.
@@ -24,10 +24,10 @@ pub enum Mark {
         /// The last position.
         last: u32,
     },
-    /// Two cams of one name that work are on at the same positions: pulses of one track should not meet. The encoder has
-    /// no such rule.
+    /// Two active cams of one name are on at the same positions: pulses of one track should not overlap. The encoder has no
+    /// such rule.
     Clash {
-        /// Whose cams.
+        /// Program of the cams.
         program: ProgramNumber,
         /// The one with the lower number.
         first: CamNumber,
@@ -47,7 +47,7 @@ impl Mark {
         }
     }
 
-    /// The program that it is about.
+    /// Returns the program that it concerns.
     pub const fn program(&self) -> Option<ProgramNumber> {
         match self {
             Mark::Beyond { program, .. } | Mark::Clash { program, .. } => Some(*program),
@@ -57,7 +57,7 @@ impl Mark {
 }
 
 impl EditedValues {
-    /// All that is not right in it.
+    /// Returns all findings.
     pub fn marks(&self) -> Vec<Mark> {
         let parameters = &self.image.parameters;
         let mut marks: Vec<Mark> = parameters.gear().err().map(Mark::Gear).into_iter().collect();
@@ -96,7 +96,7 @@ pub(super) fn is_one_track(one: &str, other: &str) -> bool {
     one.trim().to_lowercase() == other.trim().to_lowercase()
 }
 
-/// The first position at which both are on. Where two stretches meet, one of them begins.
+/// Returns the first position at which both are on: the start of one of them.
 fn first_common(one: Cam, other: Cam) -> Option<u32> {
     let wrapped = one.wraps() && other.wraps();
     let begins = [one.start, other.start].into_iter().filter(|at| one.is_on(*at) && other.is_on(*at));

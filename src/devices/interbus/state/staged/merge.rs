@@ -13,7 +13,7 @@ pub(super) fn over(known: &Image, read: Image) -> Image {
     Image { parameters: read.parameters, shift: read.shift.or(known.shift), programs }
 }
 
-/// Keeps what was changed against what was said before; all else is as it is said now.
+/// Moves the edits made against `before` to the values of `now`.
 pub(super) fn rebase(own: &mut EditedValues, before: &EditedValues, now: &EditedValues) {
     let (parameters, was, is) = (&mut own.image.parameters, &before.image.parameters, &now.image.parameters);
     follow(&mut parameters.steps, &was.steps, &is.steps);

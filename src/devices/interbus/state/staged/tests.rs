@@ -23,13 +23,13 @@ fn edges(start: u32, stop: u32) -> Cam {
     Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
 }
 
-/// Cam i from 100·i to 100·i + 50; cams 0 and 3 work.
+/// Returns cam i from 100·i to 100·i + 50; cams 0 and 3 are active.
 fn program() -> Program {
     let cams = [0, 1, 2, 3, 4, 5, 6, 7].map(|cam| Some(edges(100 * cam, 100 * cam + 50)));
     Program { cams, mask: 0b1001 }
 }
 
-/// An encoder with 1000 steps whose program 1 was read.
+/// Returns an encoder with 1000 steps whose program 1 was read.
 fn staged() -> Staged {
     let mut staged = Staged::default();
     staged.refresh_parameters(parameters(1000, 1));
@@ -193,8 +193,8 @@ fn edits_survive_a_fresh_reading_and_so_does_the_way_back() {
     staged.edit(&Edit::Switch { program: number(1), cam: cam(7), on: true }).unwrap();
     staged.edit(&Edit::Preset(7)).unwrap();
     let mut now = program();
-    now.cams[3] = Some(edges(305, 350)); // by somebody else
-    now.mask = 0b1000_1011; // cam 1 too, and ours was written
+    now.cams[3] = Some(edges(305, 350)); // by another master
+    now.mask = 0b1000_1011; // cam 1 too, and our edit was written
     staged.refresh_programs(&[(number(1), now)], None);
     staged.refresh_parameters(Parameters { preset: 7, ..parameters(2000, 1) });
     assert_eq!(cam_of(&staged, 3), (305, 399));

@@ -1,4 +1,4 @@
-//! The programs, and what is done with one of them as a whole.
+//! The programs, and the actions on one of them as a whole.
 
 use egui::{RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! The open program as a picture: lanes over the measuring range, or a ring.
+//! The chart of the open program: lanes over the measuring range, or a ring.
 
 use egui::{RichText, Ui};
 
@@ -15,7 +15,7 @@ use crate::ui::{Theme, icons};
 pub(super) struct CamChartUiState {
     ring: bool,
     snaps: bool,
-    /// The part of the range that is seen; `None`: all of it.
+    /// The visible part of the range; `None`: all of it.
     stretch: Option<Stretch>,
     selected: Option<CamNumber>,
 }
@@ -92,7 +92,7 @@ pub(super) fn card_ui(
         Some(CamEvent::Viewed(stretch)) => {
             view.stretch = Some(stretch).filter(|own| !own.is_whole(chart.range));
         }
-        // The picture shows it by itself.
+        // The chart shows it by itself.
         Some(CamEvent::Preview(..)) | None => {}
     }
 }

@@ -1,4 +1,4 @@
-//! A table of cams that was read: what it says and what became of it, before it is taken.
+//! A table of cams that was read: its content and the result, before it is taken.
 
 use egui::{Event, RichText, Ui};
 
@@ -13,7 +13,7 @@ use crate::ui::{Theme, icons};
 /// Height of the list of problems and roundings.
 const LIST: f32 = 200.0;
 
-/// A table that is pasted where nothing is typed.
+/// Handles a table pasted outside of a text entry.
 pub(super) fn pasted(ui: &Ui, encoder: &Encoder, program: ProgramNumber, actions: &mut Vec<Action>) {
     if ui.ctx().text_edit_focused() || encoder.staged.wanted().is_none() {
         return;
@@ -59,7 +59,7 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, import: &Im
                 line(ui, icons::WARNING, theme.palette.warn, theme.words(&words::refused(&unread)));
             }
         }
-        // A line that is left out would switch its cam off.
+        // Omitting a line would switch its cam off.
         let is_whole = table.problems.is_empty();
         if !is_whole {
             paragraph(ui, theme.label(say(theme, "ib_table.mend")));

@@ -1,4 +1,4 @@
-//! The cams of a program as a table: typed, named, switched.
+//! The cams of a program as a table: positions, names, switches.
 
 use std::collections::BTreeMap;
 
@@ -115,7 +115,7 @@ fn row(
                 let to = forms::position(text, &encoder.scale, chart.range)?;
                 put(match lane.edges {
                     Some(_) => Edit::Edge { program, cam, edge, to },
-                    // The other edge is where this one is until it is typed too.
+                    // The other edge has the same position until it is entered too.
                     None => Edit::Cam { program, cam, start: to, stop: to, on: false },
                 });
                 Ok(())

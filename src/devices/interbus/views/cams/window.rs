@@ -1,4 +1,4 @@
-//! The word in which an encoder sends its outputs, as the shift of the window lays it out.
+//! The word in which an encoder sends its outputs, laid out by the shift of the window.
 
 use egui::Ui;
 

@@ -17,27 +17,27 @@ use crate::ui::widgets::series;
 pub(crate) struct CamChart<'a> {
     /// Accessible name.
     pub(crate) label: &'a str,
-    /// The program as it is wanted, also while something is dragged.
+    /// The edited program, also during a drag.
     pub(crate) chart: &'a Chart,
     /// The machine's units.
     pub(crate) scale: &'a Scale,
     /// Position of the encoder; `None` if not known.
     pub(crate) position: Option<u32>,
-    /// The outputs as the encoder says, bit i for cam i; `None`: it does not.
+    /// The outputs reported by the encoder, bit i for cam i; `None`: not reported.
     pub(crate) own: Option<u8>,
     pub(crate) selected: Option<CamNumber>,
     /// Cams can be changed.
     pub(crate) movable: bool,
-    /// Edges are drawn to what is near; holding Alt lets go.
+    /// Edges snap to nearby targets; holding Alt disables this.
     pub(crate) snaps: bool,
 }
 
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum CamEvent {
-    /// While something is dragged: the cam would come to lie there. It comes at every drawing until the drag ends.
+    /// During a drag: the cam would get these edges. Sent in every frame until the drag ends.
     Preview(CamNumber, Cam),
-    /// The cam is to lie there, where it does not yet.
+    /// The cam is to get these edges, which differ from the present ones.
     Moved {
         cam: CamNumber,
         to: Cam,
@@ -56,14 +56,14 @@ pub(crate) enum CamEvent {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Drag {
     pub(super) hold: Hold,
-    /// The position under the pointer where it was pressed, and where it is; around the range more than once.
+    /// The position under the pointer where it was pressed, and the present one; around the range more than once.
     pub(super) from: f64,
     pub(super) at: f64,
     /// The target of the drag; `None` if it was cancelled.
     pub(super) to: Option<Cam>,
 }
 
-/// The colour of a cam.
+/// Returns the colour of a cam.
 pub(super) fn ink(theme: &Theme, cam: CamNumber) -> Color32 {
     series(theme, usize::from(cam.get()))
 }
@@ -110,13 +110,13 @@ impl CamChart<'_> {
         to.map(|to| CamEvent::Preview(cam, to))
     }
 
-    /// The program as it would be while something is dragged.
+    /// Returns the program as it would be while something is dragged.
     pub(super) fn shown(&self, drag: Option<Drag>) -> Option<Chart> {
         let drag = drag?;
         Some(self.chart.with(drag.hold.cam(), drag.to?))
     }
 
-    /// The keyboard on something: by one step or to the next line, on and off.
+    /// Handles the keyboard on a part: by one step or to the next line, on and off.
     pub(super) fn keys(&self, ui: &Ui, response: &Response, hold: Hold, apart: f64) -> Option<CamEvent> {
         if !response.has_focus() || !self.movable {
             return None;
@@ -230,7 +230,7 @@ impl CamChart<'_> {
         });
     }
 
-    /// Draws the target of a drag in words, always within the available room.
+    /// Draws the target of a drag as text, always within the available room.
     pub(super) fn ghost(&self, theme: &Theme, painter: &Painter, drag: &Drag, near: Pos2) {
         let Some(to) = drag.to else { return };
         let range = self.chart.range;
@@ -250,7 +250,7 @@ impl CamChart<'_> {
     }
 }
 
-/// The drag that is going on.
+/// Returns the drag in progress.
 pub(super) fn drag(ui: &Ui, base: Id) -> Option<Drag> {
     ui.data(|data| data.get_temp(base))
 }

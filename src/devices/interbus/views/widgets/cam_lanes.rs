@@ -1,16 +1,16 @@
 //! The cams of a program over the measuring range: a lane for each.
 //!
-//! * **Size**: as wide as there is room; a line of rulers, eight lanes, a line of the machine's units where it has others.
-//! * **Keyboard**: Tab goes from lane to lane: whether the cam works, the cam as a whole, its start, its stop. The left and
-//!   right arrows move what has the keyboard by one step, with Shift to the next line of the grid; Delete switches the cam
-//!   off, Space on and off.
-//! * **Pointer**: an edge is dragged, or a cam as a whole; over the end of the range it comes in at the other. In the lane
-//!   of a cam that does not work, one is drawn. What would be is shown meanwhile, and Escape gives it up. Ctrl and the
-//!   wheel look nearer, the wheel held sideways goes along.
+//! * **Size**: the available width; a line of rulers, eight lanes, a line of the machine's units if it has others.
+//! * **Keyboard**: Tab goes from lane to lane: the switch of the cam, the cam as a whole, its start, its stop. The left and
+//!   right arrows move the focused part by one step, with Shift to the next line of the grid; Delete switches the cam off,
+//!   Space on and off.
+//! * **Pointer**: an edge is dragged, or a cam as a whole; over the end of the range it appears at the other. In the lane
+//!   of an inactive cam, one is drawn. The result is shown meanwhile, and Escape cancels. Ctrl with the wheel zooms, the
+//!   horizontal wheel scrolls.
 //! * **Accessible**: an edge is a slider with its position, which can be set; a cam is a slider with its place; an
 //!   indicator has the state of its output, and its source.
-//! * **Painting**: a cam in its colour, hollow where it does not work, hatched where it meets another pulse of its track;
-//!   the end of the range hatched in the lane of a cam beyond it; the encoder's position as a line through all lanes.
+//! * **Painting**: a cam in its colour, hollow if inactive, hatched where it overlaps another pulse of its track; the end
+//!   of the range hatched in the lane of a cam beyond it; the encoder's position as a line through all lanes.
 
 mod grips;
 mod head;
@@ -38,7 +38,7 @@ struct Lanes<'a> {
     base: Id,
 }
 
-/// Draws a part of the range and says what was done. One chart a `Ui`: another needs an id of its own (`push_id`).
+/// Draws a part of the range and returns the user's action. One chart per `Ui`: another needs its own id (`push_id`).
 pub(crate) fn cam_lanes(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, view: VisibleRange) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_lanes");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
@@ -68,7 +68,7 @@ impl Lanes<'_> {
         Snap::on(self.place.steps_in_point())
     }
 
-    /// The wheel over the chart: nearer and further, along the range.
+    /// Handles the wheel over the chart: zooming, and scrolling along the range.
     fn look(&self, range: u32) -> Option<CamEvent> {
         let pointer = self.ui.input(|input| input.pointer.hover_pos())?;
         if !self.place.plot.contains(pointer) || !self.ui.rect_contains_pointer(self.place.plot) {

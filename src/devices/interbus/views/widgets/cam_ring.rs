@@ -1,12 +1,13 @@
-//! The cams of a program around a ring: the measuring range begins at the top and goes round clockwise.
+//! The cams of a program around a ring: the measuring range begins at the top and proceeds clockwise.
 //!
-//! * **Size**: a square, as wide as is given.
+//! * **Size**: a square of the given width.
 //! * **Keyboard**: Tab goes from edge to edge; the arrows move one by a step, with Shift to the next line of the grid;
 //!   Delete switches its cam off, Space on and off.
-//! * **Pointer**: an edge is dragged around the ring, or a cam as a whole; Escape gives it up.
+//! * **Pointer**: an edge is dragged around the ring, or a cam as a whole; Escape cancels.
 //! * **Accessible**: an edge is a slider with its position, which can be set.
-//! * **Painting**: a circle a cam, the first outermost, with an arc in its colour, which is thin where the cam does not
-//!   work, and struck through where it meets another pulse of its track; the encoder's position as a hand; numbers of steps, or of the machine's units, around it.
+//! * **Painting**: one circle per cam, the first outermost, with an arc in its colour, thin if the cam is inactive, and
+//!   struck through where it overlaps another pulse of its track; the encoder's position as a hand; numbers of steps, or of
+//!   the machine's units, around it.
 
 use egui::accesskit::Role;
 use egui::epaint::PathStroke;
@@ -31,7 +32,7 @@ const INNER: f32 = 0.34;
 const NUMBERS: f32 = 26.0;
 /// Width of the grab area of an edge.
 const GRIP: f32 = 12.0;
-/// Around the ring at most so many numbers.
+/// Maximum number of numbers around the ring.
 const LINES: f64 = 12.0;
 
 /// Circles around a middle.
@@ -43,13 +44,13 @@ struct Dial {
 }
 
 impl Dial {
-    /// A place on a circle, the range's beginning at the top.
+    /// Returns a place on a circle, the range's beginning at the top.
     fn at(self, position: f64, radius: f32) -> Pos2 {
         let angle = (position / self.range * std::f64::consts::TAU) as f32;
         self.middle + Vec2::new(angle.sin(), -angle.cos()) * radius
     }
 
-    /// The position in whose direction a place lies.
+    /// Returns the position in the direction of a point.
     fn position(self, place: Pos2) -> f64 {
         let from = place - self.middle;
         let part = f64::from(from.x.atan2(-from.y)) / std::f64::consts::TAU;
@@ -61,23 +62,23 @@ impl Dial {
         self.radius * (1.0 - INNER) / Program::CAMS as f32
     }
 
-    /// The middle of a cam's circle.
+    /// Returns the middle of a cam's circle.
     fn circle(self, cam: CamNumber) -> f32 {
         self.radius - (f32::from(cam.get()) + 0.5) * self.pitch()
     }
 
-    /// The cam on whose circle a place lies.
+    /// Returns the cam on whose circle a point is.
     fn cam(self, place: Pos2) -> Option<CamNumber> {
         let from_outside = (self.radius - place.distance(self.middle)) / self.pitch();
         if (0.0..Program::CAMS as f32).contains(&from_outside) { CamNumber::new(from_outside as u8) } else { None }
     }
 
-    /// The shorter way from one position to another, around the ring.
+    /// Returns the shorter way from one position to another, around the ring.
     fn turned(self, from: f64, to: f64) -> f64 {
         (to - from + self.range / 2.0).rem_euclid(self.range) - self.range / 2.0
     }
 
-    /// Steps in a point of the outermost circle.
+    /// Returns the steps in a point of the outermost circle.
     fn steps_in_point(self) -> f64 {
         self.range / (std::f64::consts::TAU * f64::from(self.radius))
     }
@@ -93,7 +94,7 @@ struct Ring<'a> {
     base: Id,
 }
 
-/// Draws it and says what was done. One ring a `Ui`: another needs an id of its own (`push_id`).
+/// Draws the ring and returns the user's action. One ring per `Ui`: another needs its own id (`push_id`).
 pub(crate) fn cam_ring(ui: &mut Ui, theme: &Theme, model: &CamChart<'_>, side: f32) -> Option<CamEvent> {
     let base = ui.make_persistent_id("cam_ring");
     let drag = cam_chart::drag(ui, base).filter(|_| model.movable);
@@ -123,7 +124,7 @@ impl Ring<'_> {
         Snap::on(self.dial.steps_in_point())
     }
 
-    /// The circles themselves: a cam is taken hold of where it is.
+    /// Draws the circles, on which a cam can be grabbed.
     fn disc(&self, rect: Rect, drag: Option<Drag>) -> Option<CamEvent> {
         let sense = if self.model.movable { Sense::CLICK | Sense::DRAG } else { Sense::CLICK };
         let response = self.ui.interact(rect, self.base.with("disc"), sense);
@@ -191,7 +192,7 @@ impl Ring<'_> {
         Some(self.dial.at(f64::from(at + beyond), self.dial.circle(cam)))
     }
 
-    /// The pointer goes around: every drawing by the shorter way from where it was.
+    /// Handles the pointer around the ring: in every frame by the shorter way from its previous place.
     fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;
@@ -214,7 +215,7 @@ impl Ring<'_> {
         }
         if let Some(cam) = self.model.selected {
             let wide = Stroke::new(dial.pitch(), Color32::from(theme.palette.accent).gamma_multiply(0.12));
-            // A stroke lies outside its circle.
+            // A stroke is outside its circle.
             painter.circle_stroke(dial.middle, dial.circle(cam) - dial.pitch() / 2.0, wide);
         }
         self.numbers();
@@ -242,7 +243,7 @@ impl Ring<'_> {
             let words = theme.words(&words::tick(tick.value, tick.decimals, scale.unit()));
             let galley =
                 painter.layout_no_wrap(words, FontId::monospace(theme.sizes.caption), theme.palette.muted.into());
-            // Outside the circle on whichever side it is.
+            // Outside the circle, on either side.
             let out = (at(dial.radius) - dial.middle) / dial.radius.max(1.0);
             let middle = at(dial.radius + 5.0) + out * galley.size() / 2.0;
             painter.galley(middle - galley.size() / 2.0, galley, theme.palette.muted.into());

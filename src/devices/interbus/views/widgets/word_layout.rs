@@ -1,12 +1,12 @@
 //! The 32 bits of the cam output word, as the shift of the window lays them out, and below it the position with the bits
 //! that go into the window.
 //!
-//! * **Size**: as wide as there is room; where 32 cells have none, half of them on a second line.
-//! * **Keyboard**: nothing to operate; Tab passes it.
-//! * **Pointer**: what a bit is, under it.
-//! * **Accessible**: an image with the label given, whose value are the groups; each group is a label with its bits.
-//! * **Painting**: a cell a bit, the word's own number above it, in it the bit, or which bit of the position or which cam
-//!   it is while there is no word; the position's bits as a row of their own, those that are not sent hollow.
+//! * **Size**: the available width; if 32 cells do not fit, half of them on a second line.
+//! * **Keyboard**: none; Tab skips it.
+//! * **Pointer**: the meaning of the bit under it.
+//! * **Accessible**: an image with the given label, whose value is the groups; each group is a label with its bits.
+//! * **Painting**: one cell per bit, the bit number in the word above it, in it the bit, or without a word the number of
+//!   the position's bit or of the cam; the position's bits in a row of their own, those that are not sent hollow.
 
 use egui::accesskit::Role;
 use egui::{
@@ -26,7 +26,7 @@ pub(crate) struct WordLayout<'a> {
     pub(crate) label: &'a str,
     /// Shift of the position under its window.
     pub(crate) shift: WindowShift,
-    /// A cam output word as it came; `None`: the layout alone.
+    /// A received cam output word; `None`: the layout only.
     pub(crate) word: Option<u32>,
     /// Steps of the measuring range: bits of the position above it are always 0.
     pub(crate) range: u32,
@@ -99,7 +99,7 @@ impl WordLayout<'_> {
         groups
     }
 
-    /// The bits of the position under the window, the highest and the lowest.
+    /// Returns the bits of the position under the window, the highest and the lowest.
     fn window(&self) -> Option<(u8, u8)> {
         let mask = self.shift.mask();
         let high = mask.checked_ilog2()?;
@@ -168,14 +168,14 @@ impl Cells {
         Cells { left: origin.x, top: origin.y, ..self }
     }
 
-    /// The cell of a bit of the word.
+    /// Returns the cell of a bit of the word.
     fn word(&self, bit: u8) -> Rect {
         let place = BITS - 1 - bit.min(BITS - 1);
         let line = f32::from(place / self.columns) * Cells::line_height() + NUMBERS;
         self.cell_at(place % self.columns, line)
     }
 
-    /// The cell of a bit of the position.
+    /// Returns the cell of a bit of the position.
     fn position(&self, bit: u8) -> Rect {
         let lines = self.position_lines() * self.columns;
         let place = lines - 1 - bit.min(lines - 1);
@@ -188,7 +188,7 @@ impl Cells {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL - 1.0))
     }
 
-    /// The cells from one bit of the word down to another, one rectangle a line.
+    /// Returns the cells from one bit of the word down to another, one rectangle a line.
     fn runs(&self, high: u8, low: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for bit in (low..=high).rev() {
@@ -233,7 +233,7 @@ pub(crate) fn word_layout(ui: &mut Ui, theme: &Theme, layout: &WordLayout<'_>) {
     ui.add(egui::Label::new(theme.caption(say(theme, "cams.word_of_position"))).wrap());
 }
 
-/// A group with its place in the word and, where a word has come, its bits.
+/// Returns a group with its place in the word and, if a word was received, its bits.
 fn tells(theme: &Theme, layout: &WordLayout<'_>, group: Group) -> String {
     let name = theme.words(&layout.name(group));
     let place = if group.high == group.low {
@@ -266,7 +266,7 @@ fn word_bit(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, bit: u8, rect: Rect
     painter.text(above, Align2::CENTER_CENTER, bit.to_string(), font, theme.palette.muted.into());
 }
 
-/// A bracket below a group with its name, as far as that fits.
+/// Draws a bracket below a group with its name, as far as that fits.
 fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: Group) {
     let painter = ui.painter();
     let ink = group.kind.ink(theme);
@@ -284,7 +284,7 @@ fn name(ui: &Ui, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells, group: G
     }
 }
 
-/// The position's own bits: which are sent, which are left out, which the range never uses.
+/// Draws the position's own bits: those sent, those left out, those unused by the range.
 fn position(painter: &Painter, theme: &Theme, layout: &WordLayout<'_>, cells: &Cells) {
     let mask = layout.shift.mask();
     let last = layout.range.saturating_sub(1);

@@ -1,4 +1,4 @@
-//! What a person writes is read, what is written is read again, and what is wrong is named.
+//! The user's text is parsed, the written text is parsed again, and errors are named.
 
 use proptest::prelude::*;
 
@@ -44,7 +44,7 @@ fn a_profile_written_by_hand_is_read() {
     assert_eq!(named, of_family("ahm36"));
 }
 
-/// Everything that a frame can have, at once.
+/// Returns everything that a frame can have, at once.
 fn full() -> SsiProfile {
     let error = |name: &str, clock, meaning, active_low| ErrorBit {
         name: name.to_owned(),
@@ -176,7 +176,7 @@ proptest! {
 }
 
 proptest! {
-    /// Whatever numbers a person types: a frame that works and is the same when it is read again, or a reason.
+    /// For any entered numbers: a valid frame that is the same when it is read again, or a reason.
     #[test]
     fn any_numbers_are_read_or_refused(
         clocks in 0..=70_u8,
@@ -235,7 +235,7 @@ fn what_is_not_known_is_kept() {
     assert_eq!(read.beyond.len(), 7);
     let read = Document { beyond: Vec::new(), ..read };
     assert_eq!(Document::parse(&written, SsiProfile::FORMATS).unwrap(), read);
-    // What stood at a bit stays with it, also where another comes before it.
+    // Entries of a bit stay with it, even if another is inserted before it.
     let mut moved = read.body.into_profile::<SsiProfile>().unwrap();
     moved.descriptor.errors.reverse();
     let written = document(moved).emit();
@@ -314,7 +314,7 @@ fn a_wrong_profile_is_told_where() {
     }
 }
 
-/// Issue 22.26: one value changed is one place changed.
+/// Issue 22.26: one changed value changes one place in the text.
 #[test]
 fn a_change_touches_nothing_else() {
     let edit = |own: &mut SsiProfile| {

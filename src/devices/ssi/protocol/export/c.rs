@@ -76,13 +76,13 @@ impl Dialect for C {
     }
 }
 
-/// A function `ssi_decode` for this layout, with the flags that it may raise.
+/// Returns a function `ssi_decode` for this layout, with the flags that it may raise.
 pub fn c99(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
-    // Nothing in it ends the comment, begins another or is a trigraph.
+    // The title must not end the comment, begin another or contain a trigraph.
     let title = title.replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?");
     let clocks = layout.clocks();
-    // Writing into a String does not fail.
+    // Writing into a String cannot fail.
     let _ = write!(
         text,
         "/* SSI decoder: {title}\n * {clocks} clocks; the first bit received is bit {} of `frame`. C99. */\n\
@@ -107,7 +107,7 @@ pub fn c99(layout: &Layout, title: &str) -> String {
     text.replace("fold, digit;", "fold = 0, digit = 0;")
 }
 
-/// The flags that a frame of this layout may raise: name, value, meaning.
+/// Returns the flags that a frame of this layout may raise: name, value, meaning.
 pub(super) fn flags(layout: &Layout) -> Vec<(String, Flags, String)> {
     let descriptor = layout.descriptor();
     let errors = descriptor.errors.iter().enumerate();
@@ -132,7 +132,7 @@ pub(super) fn flags(layout: &Layout) -> Vec<(String, Flags, String)> {
         .chain(patterns)
         .chain(form.map(|(name, flag, meaning)| (name.to_owned(), flag, meaning.to_owned())))
         .map(|(mut name, flag, meaning)| {
-            // Two bits may be called the same.
+            // Two bits may have the same name.
             while !known.insert(name.clone()) {
                 name.push('_');
             }

@@ -1,5 +1,5 @@
 //! The format string of LinuxCNC's hostmot2 driver (`ssi_chan_0=…`): fields from the last clock to the first, each a name,
-//! `%`, its bits, and what it is: `p` padding, `b` a bit, `u` a number, `e` a position, `g` before it: Gray.
+//! `%`, its number of bits, and its kind: `p` padding, `b` a bit, `u` a number, `e` a position, `g` before it: Gray.
 
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Meaning};
@@ -27,7 +27,7 @@ pub enum NoFormat {
     Inverted,
 }
 
-/// Why a frame has no format string, or a format string is not a frame.
+/// The reason why a frame has no format string, or a format string is not a frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FormatError {
     /// LinuxCNC cannot decode that.
@@ -36,7 +36,7 @@ pub enum FormatError {
     /// Not `name%bits` and a letter.
     #[error("\"{0}\" is not NAME%BITS and one of p b u s f e, with g before for Gray")]
     Form(String),
-    /// A kind of field that SSI frames do not have here.
+    /// A kind of field that is not supported for SSI frames here.
     #[error("\"{0}\" is a field of other encoders: only p b u s f e are supported, with g before for Gray")]
     Kind(char),
     /// Two positions.
@@ -53,7 +53,7 @@ pub enum FormatError {
     Layout(#[from] LayoutError),
 }
 
-/// The format string of a frame.
+/// Returns the format string of a frame.
 ///
 /// # Errors
 /// [`FormatError::Cannot`]: BCD, gray excess, Gray over more than the position, turns apart from steps, exchanged wires.
@@ -94,7 +94,7 @@ pub fn to_linuxcnc(layout: &Layout) -> Result<String, FormatError> {
     Ok(words.collect())
 }
 
-/// A name that a pin can have and no other has yet.
+/// Returns a name that a pin can have and no other has yet.
 fn pin(name: &str, taken: &mut Vec<String>) -> String {
     let is_known = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '-' | '_' | '.');
     let letters = name.chars().map(|letter| if is_known(letter) { letter.to_ascii_lowercase() } else { '-' });
@@ -113,8 +113,8 @@ enum Field {
     Bit(String),
 }
 
-/// Parses the frame of a format string. Bits become error bits that invalidate the position, which the user can change.
-/// The division of the position into turns and steps is not in it: it is one number.
+/// Parses the frame of a format string. Bits become error bits that invalidate the position, which the user can change. The
+/// string does not divide the position into turns and steps: it is one number.
 ///
 /// # Errors
 /// [`FormatError`] with the field that is wrong.
@@ -130,7 +130,7 @@ pub fn from_linuxcnc(text: &str) -> Result<Layout, FormatError> {
     }
     let clocks = fields.iter().try_fold(0_u8, |sum, field| sum.checked_add(field.bits)).filter(|sum| *sum <= 64);
     let clocks = clocks.ok_or(FormatError::Long)?;
-    // The last field stands on the first clocks.
+    // The last field is on the first clocks.
     fields.reverse();
     let mut position: Option<(Given, u8)> = None;
     let mut errors = Vec::new();

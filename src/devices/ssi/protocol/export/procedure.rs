@@ -1,11 +1,11 @@
-//! The decoder as a list of statements, the same in every language: what [`Layout::decode`] does, for one layout.
+//! The decoder as a list of statements, the same in every language: the steps of [`Layout::decode`] for one layout.
 
 use crate::devices::ssi::protocol::code::{Code, ones};
 use crate::devices::ssi::protocol::descriptor::Coded;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
-/// The syntax of a language. Values are words of 64 bits unless they are called numbers.
+/// The syntax of a language. Values are words of 64 bits unless named numbers.
 pub(super) trait Dialect {
     fn hex(&self, value: u64) -> String;
     fn and(&self, a: &str, b: &str) -> String;
@@ -15,7 +15,7 @@ pub(super) trait Dialect {
     fn left(&self, a: &str, bits: u8) -> String;
     fn equal(&self, a: &str, b: &str) -> String;
     fn differs(&self, a: &str, b: &str) -> String;
-    /// A word as a number.
+    /// Returns a word as a number.
     fn number(&self, word: &str) -> String;
     fn divided(&self, number: &str, by: u64) -> String;
     fn rest(&self, number: &str, by: u64) -> String;
@@ -26,8 +26,8 @@ pub(super) trait Dialect {
     fn both(&self, a: &str, b: &str) -> String;
 }
 
-/// Writes statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`,
-/// `steps`, and `valid`. `fold` and `digit` are auxiliary words.
+/// Writes statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`, `steps`,
+/// and `valid`. `fold` and `digit` are auxiliary words.
 pub(super) fn statements(layout: &Layout, dialect: &dyn Dialect) -> Vec<String> {
     let mut writer = Writer { dialect, lines: Vec::new() };
     writer.frame(layout);

@@ -1,5 +1,5 @@
-//! The settings of a control's SSI module for this frame. The terms are those of the modules' own manuals. The encoder
-//! is not changed.
+//! The settings of a control's SSI module for this frame. The terms are those of the modules' own manuals. The encoder is
+//! not changed.
 
 use std::fmt::Write;
 
@@ -42,13 +42,13 @@ impl Places {
         Places { frame, lowest, highest, turns: ends(&turns), steps: ends(&steps), others }
     }
 
-    /// Bits behind the position.
+    /// Returns the number of bits after the position.
     fn behind(&self) -> u8 {
         self.lowest
     }
 }
 
-/// The settings of common modules, a paragraph each.
+/// Returns the settings of common modules, a paragraph each.
 pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> String {
     let places = Places::new(layout);
     let descriptor = layout.descriptor();
@@ -62,7 +62,7 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> St
     let mut text =
         format!("SSI settings: {title}\n\nThis sheet is for the control. It does not program the encoder.\n\n");
     let mut line = |label: &str, value: &str| {
-        // Writing into a String does not fail.
+        // Writing into a String cannot fail.
         let _ = writeln!(text, "{label:32}{value}");
     };
     line("Frame length", &format!("{} bits", places.frame));
@@ -94,7 +94,7 @@ pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> St
     text
 }
 
-/// Returns what no module can decode.
+/// Returns the property that no module can decode.
 fn obstacle(layout: &Layout) -> Option<&'static str> {
     let descriptor = layout.descriptor();
     match descriptor.code {
@@ -139,7 +139,7 @@ fn beckhoff(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, 
         bits @ 1..=32 => format!("2 (variable, {bits} bits)"),
         bits => format!("none: the terminal reads up to 32 bits, not {bits}"),
     };
-    // A parity bit says nothing of the encoder.
+    // A parity bit has no information about the encoder.
     let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
     let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
     let behind = places.behind() - fails;

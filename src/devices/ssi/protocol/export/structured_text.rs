@@ -74,12 +74,12 @@ impl Dialect for StructuredText {
     }
 }
 
-/// A function block `SSI_DECODE` for this layout.
+/// Returns a function block `SSI_DECODE` for this layout.
 pub fn structured_text(layout: &Layout, title: &str) -> String {
     let mut text = String::new();
     let title = title.replace("*)", "* )");
     let clocks = layout.clocks();
-    // Writing into a String does not fail.
+    // Writing into a String cannot fail.
     let _ = writeln!(
         text,
         "(* SSI decoder: {title}\n   {clocks} clocks; the first bit received is bit {} of frame. IEC 61131-3.",

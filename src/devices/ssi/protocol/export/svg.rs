@@ -6,12 +6,12 @@ use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::timing::{Reads, Times};
 
-/// A cell, and the lines beside it.
+/// Width of a cell, with its border.
 const CELL: u32 = 22;
 const MARGIN: u32 = 16;
 const FONT: &str = "font-family=\"Inter, Arial, sans-serif\"";
 
-/// A field's colour on paper: light enough for black text on it.
+/// Returns a field's colour on paper: light enough for black text on it.
 fn colour(role: Role) -> &'static str {
     match role {
         Role::Zero => "#eeeeee",
@@ -35,7 +35,7 @@ fn family(role: Role) -> &'static str {
     }
 }
 
-/// The frame, a cell a clock; with the bits of a frame if there is one.
+/// Draws the frame, a cell per clock; with the bits of a frame if there is one.
 pub fn frame_svg(layout: &Layout, frame: Option<u64>, title: &str) -> String {
     let roles = layout.roles();
     let clocks = u32::from(layout.clocks());
@@ -66,7 +66,7 @@ pub fn frame_svg(layout: &Layout, frame: Option<u64>, title: &str) -> String {
                 _ if begins == index => layout.role_name(*role),
                 _ => format!("{} … {}", layout.role_name(first), layout.role_name(*role)),
             };
-            // Names of single clocks stand on two heights, so that neighbours do not meet.
+            // Names of single clocks are at two heights, so that neighbours do not overlap.
             let y = if begins == index && index % 2 == 1 { 104 } else { 90 };
             let _ = writeln!(
                 svg,
@@ -84,7 +84,7 @@ pub fn frame_svg(layout: &Layout, frame: Option<u64>, title: &str) -> String {
     svg
 }
 
-/// A burst and the pause behind it, to scale, with the clock, the data and the times of a transfer (manual, figure 2).
+/// Draws a burst and the pause after it, to scale, with the clock, the data and the times of a transfer (manual, figure 2).
 pub fn timing_svg(layout: &Layout, times: &Times, reads: &Reads, title: &str) -> String {
     let timing = times.reckon(reads);
     let (burst, pause) = (timing.burst.as_secs_f64(), reads.pause.as_secs_f64());
@@ -93,7 +93,7 @@ pub fn timing_svg(layout: &Layout, times: &Times, reads: &Reads, title: &str) ->
     let x = |seconds: f64| f64::from(MARGIN) + seconds * scale;
     let period = timing.period.as_secs_f64();
     let mut svg = open(width, 170, title);
-    // The clock rests high; the first falling edge latches, each rising edge brings a bit.
+    // The clock rests high; the first falling edge latches, each rising edge shifts a bit.
     let mut clock = format!("M{:.2} 50", x(0.0));
     for index in 0..layout.clocks() {
         let at = f64::from(index) * period;

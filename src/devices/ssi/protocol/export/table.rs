@@ -1,4 +1,4 @@
-//! Every clock of a frame with what it carries, as CSV.
+//! Every clock of a frame with its content, as CSV.
 
 use std::fmt::Write;
 
@@ -21,14 +21,14 @@ impl Layout {
     }
 }
 
-/// A row for each clock: its number, the bit of the frame, what it carries.
+/// Returns a row for each clock: its number, the bit of the frame, its content.
 pub fn bit_table(layout: &Layout) -> String {
     let mut text = String::from("clock,frame_bit,meaning\n");
     let clocks = layout.clocks();
     for (clock, role) in (1..=clocks).zip(layout.roles()) {
         let name = layout.role_name(role);
         let quoted = if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name };
-        // Writing into a String does not fail.
+        // Writing into a String cannot fail.
         let _ = writeln!(text, "{clock},{},{quoted}", clocks - clock);
     }
     text

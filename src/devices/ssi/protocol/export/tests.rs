@@ -1,4 +1,4 @@
-//! Format strings and tables; what is compiled is tested beside the program (`tests/behaviour/ssi_export.rs`).
+//! Format strings and tables; the compiled decoders are tested separately (`tests/behaviour/ssi_export.rs`).
 
 use super::*;
 use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Families, Layout, Parity, Settings};
@@ -31,7 +31,7 @@ fn format_strings_of_linuxcnc() {
     assert_eq!(from_linuxcnc("ssi_chan_0=error%1bposition%24ge").unwrap().clocks(), 25);
 }
 
-/// A layout written by hand may call its bits anything; LinuxCNC makes a pin of each.
+/// A layout written by hand may give its bits any names; LinuxCNC creates a pin for each.
 #[test]
 fn each_bit_has_a_pin_of_its_own() {
     let mut frame = layout("ahs36").descriptor().clone();

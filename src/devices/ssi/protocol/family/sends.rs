@@ -1,4 +1,4 @@
-//! From a frame back to the settings with which a family sends it.
+//! Conversion of a frame to the settings with which a family sends it.
 
 use super::{Align, ErrorPlace, Family, Settings};
 use crate::devices::ssi::protocol::descriptor::Descriptor;
@@ -7,7 +7,7 @@ use crate::devices::ssi::protocol::range::Range;
 /// A setting left as delivered.
 type Leave = fn(&mut Settings);
 
-/// Each setting; what a person would rather not write down comes first.
+/// Each setting, in the order in which they are omitted.
 const LEAVE: [Leave; 12] = [
     |settings| settings.clocks = None,
     |settings| settings.align = None,
@@ -24,8 +24,8 @@ const LEAVE: [Leave; 12] = [
 ];
 
 impl Family {
-    /// The settings with which this family sends just this frame, as few as possible; `None`: it cannot. Direction and
-    /// preset are not in a frame, and are left as delivered.
+    /// Returns the settings with which this family sends exactly this frame, as few as possible; `None`: it cannot.
+    /// Direction and preset are not in a frame, and keep the factory setting.
     pub fn settings_of(&self, frame: &Descriptor) -> Option<Settings> {
         let asked = self.shown_settings(frame);
         let aligns: Vec<Option<Align>> = std::iter::once(None).chain(self.align.iter().copied().map(Some)).collect();
@@ -61,7 +61,7 @@ impl Family {
             ..Settings::default()
         };
         match frame.range {
-            // A singleturn encoder knows no turns, not even none.
+            // A singleturn encoder has no turns, not even zero.
             Range::Bits { multiturn: 0, singleturn } if self.multiturn.is_none() => {
                 Settings { singleturn: Some(singleturn), ..asked }
             }
@@ -101,7 +101,7 @@ mod tests {
         Some(resolved.layout.descriptor().clone())
     }
 
-    /// Every combination of these that the family can send.
+    /// Returns every combination of these that the family can send.
     fn spread(families: &Families, family: &Family) -> Vec<String> {
         let resolutions: &[&str] = match family.key.as_str() {
             "kh53" | "ttk70" => &["", ",step=500"],

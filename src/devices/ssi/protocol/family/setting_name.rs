@@ -60,7 +60,7 @@ pub enum SettingName {
     /// A round axis.
     #[error("round axis")]
     RoundAxis,
-    /// The length of a step, as it is set.
+    /// The length of a step, as set.
     #[error("step")]
     Step,
     /// The length of a step.

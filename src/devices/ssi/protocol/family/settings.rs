@@ -13,7 +13,7 @@ pub struct Settings {
     pub multiturn: Option<u8>,
     /// Bits within one, or of a length.
     pub singleturn: Option<u8>,
-    /// Steps that are no power of two: in a turn, or altogether on a round axis.
+    /// Steps that are no power of two: per turn, or in all on a round axis.
     pub steps: Option<u32>,
     /// Turns that have `steps` each.
     pub turns: Option<u32>,
@@ -50,18 +50,18 @@ pub struct Resolved {
     pub errors: ErrorPlace,
     /// Direction of counting. Frames are read the same way.
     pub direction: Direction,
-    /// The position at the shaft's zero, within the range. Frames are read the same.
+    /// The position at the shaft's zero, within the range. Frames are read the same way.
     pub preset: u64,
     /// Accepted settings that the manual does not mention.
     pub advice: Vec<Advice>,
 }
 
-/// Something that the manual does not speak of.
+/// A setting that is not in the manual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Advice {
-    /// It names other codes for this family.
+    /// The manual names other codes for this family.
     Code(Code),
-    /// More clocks than the frame has bits: what they carry is open.
+    /// More clocks than the frame has bits: their content is not known.
     Clocks {
         /// Bits of the frame.
         bits: u8,
@@ -70,7 +70,7 @@ pub enum Advice {
     },
 }
 
-/// Why settings are not possible.
+/// The reason why settings are not possible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SettingsError {
     /// The family has no such field.
@@ -81,10 +81,10 @@ pub enum SettingsError {
         /// The missing setting.
         field: SettingName,
     },
-    /// Two that say the same in other ways.
+    /// Two settings with the same meaning.
     #[error("{0} and {1} exclude each other")]
     Both(SettingName, SettingName),
-    /// A number out of its limits.
+    /// A number outside its limits.
     #[error("{family}: {field} must be from {least} to {most}, not {value}")]
     Limit {
         /// The family's name.
@@ -98,7 +98,7 @@ pub enum SettingsError {
         /// Value asked for.
         value: u64,
     },
-    /// The family does not send its position like that, or there is no room for it.
+    /// The family does not send its position with this alignment, or there is no room for it.
     #[error("{family}: {bits} position bits cannot be {align}; possible: {possible}")]
     Align {
         /// The family's name.
@@ -142,7 +142,7 @@ pub enum SettingsError {
 }
 
 impl Settings {
-    /// The frame that a family sends with these settings.
+    /// Returns the frame that a family sends with these settings.
     ///
     /// # Errors
     /// [`SettingsError`] with the reason why it cannot.
@@ -176,7 +176,7 @@ impl Settings {
         }
         let errors = placed(frame, place, lead + bits);
         let last_error = errors.iter().map(|bit| bit.clock).max().unwrap_or(0);
-        // An error bit that could be placed behind the area leaves the frame as long as it is.
+        // An error bit that could be placed after the area does not change the length of the frame.
         let fixed = placed(frame, ErrorPlace::Fix, 0).iter().map(|bit| bit.clock).max().unwrap_or(0);
         let whole = if place == ErrorPlace::Following && frame.area.is_some() { fixed } else { last_error };
         let own = area.max(whole);
@@ -290,7 +290,7 @@ fn limit(family: &Family, field: SettingName, (least, most): (u64, u64), value: 
     }
 }
 
-/// Zeros before the position; `None` where it has no place there.
+/// Returns the zeros before the position; `None` if it has no place there.
 fn lead(align: Align, range: &Range, bits: u8) -> Option<u8> {
     let tree = |slot: u8, behind: u8| match *range {
         Range::Bits { multiturn, singleturn } if bits == multiturn + singleturn && singleturn <= behind => {
@@ -311,7 +311,7 @@ fn fits(frame: &Frame, lead: u8, bits: u8) -> bool {
     lead + bits <= frame.area.unwrap_or(bits)
 }
 
-/// The error bits of a frame where they stand; `behind` is the position's last clock.
+/// Returns the error bits of a frame at their places; `behind` is the position's last clock.
 fn placed(frame: &Frame, place: ErrorPlace, behind: u8) -> Vec<ErrorBit> {
     let first = frame.errors.iter().map(|bit| bit.clock).min().unwrap_or(1);
     let moved = |bit: &ErrorBit| match place {

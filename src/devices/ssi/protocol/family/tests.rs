@@ -46,7 +46,7 @@ fn a_broken_family_is_told_where() {
     }
 }
 
-/// Reference section 8: settings, turns, steps, error bit that speaks, bits in clock order.
+/// Reference section 8: settings, turns, steps, active error bit, bits in clock order.
 const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ahs36", 0, 0x2A5B, "", "101010010110110"),
     ("ahs36,code=gray", 0, 0x2A5B, "", "111111011101100"),
@@ -78,7 +78,7 @@ const GOLDEN: [(&str, u64, u64, &str, &str); 28] = [
     ("ttk70,clocks=31", 0, 0x12_3456, "gap", "0001001000110100010101101000000"),
 ];
 
-/// What was said and not taken would give another position.
+/// Ignored settings would result in another position.
 #[test]
 fn settings_that_would_be_ignored_are_refused() {
     let cases = [
@@ -103,7 +103,8 @@ fn frames_of_the_reference() {
             Range::Length { .. } => steps,
             _ => range.position(turns, steps).unwrap(),
         };
-        // The one row whose error bit is 1 in the reference's picture although its title says otherwise would fail here.
+        // In one row the error bit is 1 in the reference's picture although its title says otherwise; that row would fail
+        // here.
         let flags = raised(&resolved, error);
         assert_eq!(error.is_empty(), flags == Flags::NONE, "{text}");
         let frame = layout.encode(position, flags).unwrap();
@@ -132,7 +133,7 @@ fn shifting_right_alone_loses_the_last_bit() {
     }
 }
 
-/// Section 6, trap 1: tested before anything is decoded; 20 ones and a zero are a suspicion only.
+/// Section 6, trap 1: tested before anything is decoded; 20 ones and a zero are only a suspicion.
 #[test]
 fn the_error_pattern_of_the_kh53() {
     for code in ["binary", "gray"] {
@@ -246,7 +247,7 @@ fn what_a_family_cannot_do_is_refused_with_the_reason() {
     }
 }
 
-/// They move the position, not the bits that say it.
+/// They change the position, not the meaning of its bits.
 #[test]
 fn direction_and_preset_leave_the_frame_as_it_is() {
     let (plain, set) = (resolve("ahs36").unwrap(), resolve("ahs36,direction=ccw,preset=16383").unwrap());
@@ -260,6 +261,6 @@ fn what_the_manual_does_not_name_is_accepted_with_a_remark() {
     assert_eq!(resolve("ahs36,steps=360,code=bcd").unwrap().advice, [Advice::Code(Code::Bcd)]);
     assert_eq!(resolve("kh53,clocks=25").unwrap().advice, [Advice::Clocks { bits: 24, clocks: 25 }]);
     assert_eq!(resolve("ttk70,clocks=31").unwrap().advice, []);
-    // Whoever cannot use the error bits clocks the resolution alone (manual 3.1).
+    // A host that cannot use the error bits clocks the resolution only (manual 3.1).
     assert_eq!(resolve("ahs36,st=12,err=none,clocks=12").unwrap().layout.clocks(), 12);
 }

@@ -31,7 +31,7 @@ impl Settings {
     /// Splits `ahm36,code=gray,st=12` into the family's key and its settings.
     ///
     /// # Errors
-    /// [`SpecError`], with what may stand there.
+    /// [`SpecError`], with the allowed values.
     pub fn parse(text: &str) -> Result<(String, Self), SpecError> {
         let mut words = text.split(',').map(str::trim);
         let key = words.next().unwrap_or_default().to_ascii_lowercase();
@@ -42,7 +42,8 @@ impl Settings {
         Ok((key, settings))
     }
 
-    /// The text of these settings of the family with this key: `ahm36,code=gray,st=12`. Only what is set is in it.
+    /// Returns the text of these settings of the family with this key: `ahm36,code=gray,st=12`. It contains only settings
+    /// that are set.
     pub fn emit(&self, key: &str) -> String {
         fn word<T: ToString>(value: Option<T>) -> Option<String> {
             value.map(|value| value.to_string())
@@ -142,7 +143,7 @@ impl Words for ErrorPlace {
         &[("none", ErrorPlace::None), ("fix", ErrorPlace::Fix), ("following", ErrorPlace::Following)];
 }
 
-/// Text for a value and back; the error says what may stand there.
+/// Defines the text for a value and back; the error has the allowed values.
 macro_rules! in_words {
     ($($type:ty: $expected:expr,)*) => {$(
         impl fmt::Display for $type {

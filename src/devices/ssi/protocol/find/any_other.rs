@@ -1,4 +1,4 @@
-//! An encoder of no family: usual widths, and what is always 1, spoke or is not explained as bits of their own.
+//! An encoder of no family: usual widths, and separate bits for those that are always 1, were active or are not explained.
 
 use super::code_ends::unusual;
 use super::frame_set::FrameSet;
@@ -10,10 +10,10 @@ use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, ErrorBit, Mea
 use crate::devices::ssi::protocol::layout::Layout;
 use crate::devices::ssi::protocol::range::Range;
 
-/// Widths and shares of them that are proposed.
+/// Number of widths and shares of them that are proposed.
 const WIDTHS: usize = 4;
 const SHARES: usize = 3;
-/// A bit differs in so many of a thousand frames: it said something.
+/// Of a thousand frames, those in which a bit must differ to count as active.
 const SPOKE_PERMILLE: usize = 5;
 const ALWAYS_HIGH: f64 = 0.7;
 const PARITY: f64 = 0.5;
@@ -28,13 +28,13 @@ pub(super) fn any_other(
 ) {
     let reading = &read.reading;
     let moved = reading.width();
-    // Digits are whole; the highest may not have moved in all its bits.
+    // Digits are complete; the highest may not have moved in all its bits.
     let least = if reading.code == Code::Bcd { moved.next_multiple_of(4) } else { moved };
     let Some(above) = (reading.first - 1).checked_sub(least - moved) else { return };
     let most = if read.closed || reading.code == Code::Bcd { least } else { least + above };
     let mut widths_of: Vec<u8> = (least..=most).collect();
     let rank = |bits: &u8| shares(*bits, 1).first().map_or(9.0, |(turns, steps)| widths(*turns, *steps));
-    // The whole frame up to the lowest bit, what moved, and what is most usual in between.
+    // The complete frame up to the lowest bit, the moved bits, and the most usual width in between.
     let ends = |bits: &u8| *bits == most || *bits == least;
     widths_of
         .sort_by(|a, b| (!ends(a), rank(a)).partial_cmp(&(!ends(b), rank(b))).unwrap_or(std::cmp::Ordering::Equal));
@@ -106,8 +106,8 @@ fn ranges(read: &Read, bits: u8) -> Vec<(Range, f64)> {
         .collect()
 }
 
-/// Bits beside the position: those that are always 1 (nothing may go over a bit that is always 0), those that spoke, and
-/// those that are not explained.
+/// Returns bits outside the position: those that are always 1 (no code may cover a bit that is always 0), those that were
+/// active, and those that are not explained.
 fn fixed_bits(words: &FrameSet, read: &Read, lead: u8, inverted: bool) -> Vec<ErrorBit> {
     let reading = &read.reading;
     let mut bits = Vec::new();

@@ -1,5 +1,5 @@
-//! Behind which number positions begin again where that is no power of two: the codes that are never seen, and by how much
-//! the numbers jump back, tell it.
+//! The number after which positions start again if it is no power of two: the codes that never occur, and the size of the
+//! backward jumps, determine it.
 
 use super::motion::{Motion, median};
 use super::reading::{Read, Reading};
@@ -10,7 +10,7 @@ const TRIED: usize = 40;
 /// Ends with which the motion takes no more bits than this fit as well.
 const AS_WELL_BITS: f64 = 10.0;
 
-/// Codes with the numbers of steps that fit: the most usual, and the last.
+/// Returns codes with the possible numbers of steps: the most usual, and the last.
 pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
     let whole = read.reading.round();
     if whole == 0 || read.reading.steps.is_some() {
@@ -22,18 +22,18 @@ pub(super) fn ends(read: &Read) -> Vec<(Code, (u64, u64))> {
         found.extend(best(read, &reading, &least, whole).map(|steps| (code, steps)));
     };
     let extremes = extremes(read);
-    // Positions from 0 to the highest that was seen, at least.
+    // At least the positions from 0 to the highest that occurred.
     add(read.reading.code, extremes.iter().map(|(_, highest)| highest + 1).collect());
     if read.reading.code == Code::Gray {
-        // As many codes are left out before the positions as behind them.
+        // As many codes are left out before the positions as after them.
         let unseen = |(lowest, highest): &(u64, u64)| whole - 2 * (*lowest).min(whole - 1 - highest);
         add(Code::GrayExcess, extremes.iter().map(unseen).collect());
     }
     found
 }
 
-/// The lowest and the highest number, of all frames that follow from others, and of nearly all: a disturbed one may look
-/// as if it did.
+/// Returns the lowest and the highest number of all frames that follow from others, and of nearly all: a disturbed one may
+/// seem to follow.
 fn extremes(read: &Read) -> Vec<(u64, u64)> {
     let good = |frame: &usize| read.motion.is_good(*frame);
     let frames = (0..read.numbers.len()).filter(good);
@@ -44,8 +44,8 @@ fn extremes(read: &Read) -> Vec<(u64, u64)> {
     [0, few].into_iter().filter_map(pair).collect()
 }
 
-/// The number of steps with which the motion is most even: the most usual of those that fit as well, and the last of them.
-/// None where none is better than all that the bits can be.
+/// Returns the number of steps with which the motion is most even: the most usual of the possible ones, and the last of
+/// them. None if none is better than the complete range of the bits.
 fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u64, u64)> {
     let lowest = *least.iter().min()?;
     let fits = |steps: &u64| {
@@ -75,7 +75,7 @@ fn best(read: &Read, reading: &Reading, least: &[u64], whole: u64) -> Option<(u6
         add((*least..=least + 1).collect());
         add(usual(*least..=least.saturating_add(reach)));
     }
-    // From the best on to where it becomes no better.
+    // From the best to the last that is equally good.
     let mut best = add(Vec::new())?;
     loop {
         let next = add(near(best.1))?;
@@ -112,7 +112,7 @@ fn jumped(motion: &Motion, whole: u64) -> Option<u64> {
     Some(whole.saturating_sub(median(&mut alike).unsigned_abs()))
 }
 
-/// Numbers of steps that encoders are ordered with.
+/// Returns the numbers of steps that encoders are ordered with.
 fn usual(within: std::ops::RangeInclusive<u64>) -> Vec<u64> {
     let mut all: Vec<u64> = Vec::new();
     for step in [1, 2, 5, 25] {

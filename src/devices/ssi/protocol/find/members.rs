@@ -1,4 +1,4 @@
-//! The layouts that read frames in a certain way: what families can be set to, and any other of usual widths.
+//! The layouts that read frames in a certain way: possible settings of families, and any other of usual widths.
 
 use super::any_other::any_other;
 use super::frame_set::FrameSet;
@@ -10,7 +10,7 @@ use crate::devices::ssi::protocol::descriptor::{Parity, Repeat};
 use crate::devices::ssi::protocol::family::{Families, Settings};
 use crate::devices::ssi::protocol::layout::Layout;
 
-/// Weights of what is less probable; a setting that was changed is a little less than 1.
+/// Weights of less probable properties; a changed setting is a little less than 1.
 pub(super) const ANY_OTHER: f64 = 2.0;
 pub(super) const EXCHANGED: f64 = 2.0;
 pub(super) const PADDED: f64 = 1.5;
@@ -30,7 +30,7 @@ pub(super) struct Member {
 /// Takes a layout with its weight, if it fits.
 pub(super) type Take<'a> = dyn FnMut(Option<(String, Settings)>, Layout, f64) + 'a;
 
-/// The layouts that read in this way, and what the probe's reading sees; in no order.
+/// Returns the layouts that read in this way and result in the motion of the probe's reading; in no order.
 pub(super) fn members(
     probe: &Probe<'_>,
     read: &Read,
@@ -68,18 +68,19 @@ fn inversions(read: &Read) -> &'static [bool] {
     }
 }
 
-/// The parity of the bits as the encoder sends them: exchanged wires turn that of an odd number of bits.
+/// Returns the parity of the bits as sent by the encoder: exchanged wires invert that of an odd number of bits.
 pub(super) fn sent_parity(reading: &Reading, inverted: bool) -> Option<Parity> {
     let turned = |parity: Parity| inverted && parity.clock % 2 == 1;
     reading.parity.map(|parity| Parity { even: parity.even != turned(parity), ..parity })
 }
 
-/// An even parity behind Gray may as well be a zero that the code goes over: both are the lowest bit of the position.
+/// Returns the alternative to an even parity after Gray: a zero covered by the code. Both are the lowest bit of the
+/// position.
 pub(super) fn goes_over_zero(reading: &Reading, inverted: bool) -> Option<Parity> {
     sent_parity(reading, inverted).filter(|parity| reading.code == Code::Gray && parity.even)
 }
 
-/// Nearly all steps are even: the lowest bit says nothing.
+/// Returns whether nearly all steps are even, so that the lowest bit has no information.
 pub(super) fn never_odd(read: &Read) -> bool {
     let steps = read.motion.steps.iter().zip(&read.motion.uneven);
     let steps = steps.filter(|(_, uneven)| uneven.unsigned_abs() <= read.motion.limit).filter_map(|(step, _)| *step);
@@ -91,7 +92,7 @@ pub(super) fn never_odd(read: &Read) -> bool {
     odd * 50 <= all
 }
 
-/// The weights of what counts.
+/// Returns the sum of the weights that apply.
 pub(super) fn sum(weights: &[(bool, f64)]) -> f64 {
     weights.iter().filter(|(counts, _)| *counts).map(|(_, weight)| weight).sum()
 }

@@ -1,9 +1,9 @@
 //! Measures how evenly a shaft turns if frames are read as certain numbers: the information needed for each number once
 //! the previous ones are known. A misread number jumps and needs its full information.
 
-/// Differences that one median stands for.
+/// Number of differences that share one median.
 const BLOCK: usize = 16;
-/// Bits for the choice of what a group of differences is like.
+/// Bits for the choice of the size group of differences.
 const MODEL_BITS: f64 = 8.0;
 /// Information of a frame whose number is invalid, in bits.
 const NONE_BITS: f64 = 16.0;
@@ -11,18 +11,18 @@ const NONE_BITS: f64 = 16.0;
 /// The motion that numbers make.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
-    /// All that has to be said, in bits.
+    /// Information needed in all, in bits.
     pub(super) bits: f64,
     /// Steps from a frame to the next, in the middle.
     pub(super) median: i64,
-    /// For each frame but the first: the steps from the one before; none where one of the two is no number.
+    /// For each frame but the first: the steps from the one before; none if one of the two is no number.
     pub(super) steps: Vec<Option<i64>>,
-    /// For each of them: by how much it differs from its neighbours.
+    /// For each of them: the difference from its neighbours.
     pub(super) uneven: Vec<i64>,
     /// Differences beyond this are jumps.
     pub(super) limit: u64,
     pub(super) jumps: usize,
-    /// Frames whose number is none.
+    /// Frames without a valid number.
     pub(super) nones: usize,
 }
 
@@ -60,27 +60,28 @@ impl Motion {
         }
     }
 
-    /// The step to this frame (counted from 1, the second one) is no jump.
+    /// Returns whether the step to this frame (counted from 1, the second one) is no jump.
     pub(super) fn is_even(&self, index: usize) -> bool {
         let within = self.uneven.get(index).is_some_and(|uneven| uneven.unsigned_abs() <= self.limit);
         within && self.steps.get(index).is_some_and(Option::is_some)
     }
 
-    /// Frames that follow from the one before or lead to the one behind.
+    /// Returns the number of frames that follow from the previous one or lead to the next.
     pub(super) fn explained(&self) -> usize {
         let frames = self.steps.len() + 1;
         (0..frames).filter(|index| self.is_good(*index)).count()
     }
 
-    /// The frame follows from the one before, or the one behind from it.
+    /// Returns whether the frame follows from the previous one, or the next from it.
     pub(super) fn is_good(&self, frame: usize) -> bool {
         frame.checked_sub(1).is_some_and(|before| self.is_even(before)) || self.is_even(frame)
     }
 }
 
-/// Bits for all differences: for each, which group of sizes it is in, as often as that is met, and where in the group.
+/// Returns the bits for all differences: for each, its size group, by the frequency of the group, and its place in the
+/// group.
 fn cost(uneven: &[i64]) -> f64 {
-    // Sizes in bits, of those below and above 0.
+    // Sizes in bits, separately below and above 0.
     let mut groups = [0_usize; 130];
     let mut within = 0;
     for uneven in uneven {
@@ -97,7 +98,7 @@ fn cost(uneven: &[i64]) -> f64 {
     which + within as f64 + MODEL_BITS * met().count() as f64
 }
 
-/// The shortest way of a step around the end.
+/// Returns the shortest way of a step around the end.
 pub(super) fn nearest(step: u64, round: u64) -> i64 {
     if round == 0 {
         return step as i64;
@@ -107,7 +108,7 @@ pub(super) fn nearest(step: u64, round: u64) -> i64 {
     i64::try_from(short).unwrap_or(0)
 }
 
-/// The middle one; 0 of none.
+/// Returns the middle value; 0 for none.
 pub(super) fn median(values: &mut [i64]) -> i64 {
     let middle = values.len() / 2;
     if values.is_empty() { 0 } else { *values.select_nth_unstable(middle).1 }

@@ -85,7 +85,7 @@ pub(super) fn of_family(
     }
 }
 
-/// Numbers of bits with which a family's position ends where the reading ends, or one clock before it.
+/// Returns the numbers of bits with which a family's position ends at the end of the reading, or one clock before it.
 fn resolutions(turns: &[Option<u8>], family: &Family, common: &Settings, (last, align): (u8, Align)) -> Vec<Settings> {
     let (least, _, most) = family.singleturn;
     let late = u8::from(common.shift);
@@ -95,7 +95,7 @@ fn resolutions(turns: &[Option<u8>], family: &Family, common: &Settings, (last, 
             Align::Left => multiturn.unwrap_or(0),
             Align::Tree12 => 12,
             Align::Tree13 => 13,
-            // The position ends on a clock of its own.
+            // The position ends on a fixed clock.
             Align::Right24 | Align::Right25 => {
                 let ends = if align == Align::Right24 { 24 } else { 25 };
                 if (last..=last + 1).contains(&(ends + late)) {
@@ -107,7 +107,7 @@ fn resolutions(turns: &[Option<u8>], family: &Family, common: &Settings, (last, 
         let ends = [last, last.saturating_sub(1)].into_iter().filter_map(|last| last.checked_sub(before + late));
         all.extend(ends.map(|steps| (*multiturn, steps)));
         if common.shift && last == 25 {
-            // The whole width is used, and the lowest bit pushed out.
+            // The complete width is used, and the lowest bit removed.
             all.extend([(*multiturn, most), (*multiturn, most - 1)]);
         }
     }

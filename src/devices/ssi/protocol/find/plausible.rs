@@ -36,7 +36,7 @@ pub(super) fn widths(multiturn: u8, singleturn: u8) -> f64 {
     of(&STEPS, singleturn, 2.5) + of(&TURNS, multiturn, 2.5) + few + many
 }
 
-/// The most usual ways to share bits among turns and steps, the most usual first.
+/// Returns the most usual ways to share bits among turns and steps, the most usual first.
 pub(super) fn shares(bits: u8, most: usize) -> Vec<(u8, u8)> {
     let mut all: Vec<(u8, u8)> =
         (0..bits).map(|turns| (turns, bits - turns)).filter(|(turns, steps)| *turns <= 32 && *steps <= 32).collect();

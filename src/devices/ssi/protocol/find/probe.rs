@@ -1,5 +1,4 @@
-//! Frames that a layout is tried with before it counts: it has to see the same motion in them as the way in which they were
-//! read.
+//! Frames with which a layout is tried before it counts: it has to result in the same motion as the reading of the frames.
 
 use super::frame_set::FrameSet;
 use super::motion::nearest;
@@ -16,9 +15,9 @@ const MISFITS_PERCENT: usize = 4;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Trial {
     pub(super) positions: Vec<u64>,
-    /// Its positions fall where those of the reading grow.
+    /// Whether its positions decrease where those of the reading increase.
     pub(super) backwards: bool,
-    /// It has no odd steps.
+    /// Whether it has no odd steps.
     pub(super) never_odd: bool,
 }
 
@@ -31,7 +30,7 @@ pub(super) struct Probe<'a> {
 }
 
 impl<'a> Probe<'a> {
-    /// `read` was made of `words`: the frames of `seen`, or the first words in them.
+    /// Creates the probe; `read` was made from `words`: the frames of `seen`, or the first words in them.
     pub(super) fn new(seen: &'a FrameSet, words: &FrameSet, repeat: Option<Repeat>, read: &'a Read) -> Self {
         let again = |frame: u64| repeat.is_none_or(|repeat| seen.is_repeated(frame, repeat));
         let usual = |word: u64| {
@@ -103,11 +102,11 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// How steps of a layout follow from those of a reading.
+/// The conversion of a reading's steps to those of a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Scale {
     backwards: bool,
-    /// Times two: once more in the layout (positive), or in the reading.
+    /// Number of doublings from the reading's steps to the layout's; negative in the other direction.
     twice: i8,
 }
 

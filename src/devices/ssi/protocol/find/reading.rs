@@ -1,5 +1,5 @@
-//! Ways to read frames as numbers: which clocks are the position, in which code, with exchanged wires or without, behind
-//! which number it begins again. What such a way does not explain has to be said bit by bit.
+//! Ways to read frames as numbers: the clocks of the position, its code, exchanged wires, and the number after which it
+//! starts again. Parts that a reading does not explain need information bit by bit.
 
 use std::ops::RangeInclusive;
 
@@ -9,18 +9,18 @@ use super::motion::Motion;
 use crate::devices::ssi::protocol::code::{Code, Coding, ones, ungray};
 use crate::devices::ssi::protocol::descriptor::Parity;
 
-/// Frames that every way is tried with first, in runs of frames that follow each other.
+/// Number of frames with which every reading is tried first, in runs of consecutive frames.
 const TRIED: usize = 620;
 const RUN: usize = 31;
 /// Ways that are tried with all frames.
 const BEST: usize = 8;
-/// Other ends are looked for where no more bits are taken than these beside the best.
+/// Other ends are searched for readings that need no more bits than these beyond the best.
 const NEAR_BITS: f64 = 400.0;
 /// A clock with fewer changes of a thousand frames is not the lowest bit of a shaft that turns.
 const LAST_PERMILLE: usize = 10;
 /// Of a hundred frames, those in which a parity has to be right.
 const PARITY_PERCENT: usize = 85;
-/// Bits for what is less usual.
+/// Bits for a less usual property.
 const INVERTED_BITS: f64 = 2.0;
 const BCD_BITS: f64 = 6.0;
 const PARITY_BITS: f64 = 6.0;
@@ -39,21 +39,21 @@ pub(super) struct Reading {
     pub(super) first: u8,
     /// The clock of the lowest bit.
     pub(super) last: u8,
-    /// From this to this clock lies what is not the position's.
+    /// First and last clock of a gap that does not belong to the position.
     pub(super) gap: Option<(u8, u8)>,
     pub(super) parity: Option<Parity>,
-    /// Numbers begin again behind so many: least and most that fit; `None`: behind all that the bits can be.
+    /// Number after which positions start again: least and most possible; `None`: the complete range of the bits.
     pub(super) steps: Option<(u64, u64)>,
 }
 
-/// Frames read in one way.
+/// Frames with one reading.
 #[derive(Clone, Debug)]
 pub(super) struct Read {
     pub(super) reading: Reading,
-    /// Gray excess: as in the whole code.
+    /// Gray excess: as in the complete code.
     pub(super) numbers: Vec<Option<u64>>,
     pub(super) motion: Motion,
-    /// Everything that has to be said, in bits.
+    /// Information needed in all, in bits.
     pub(super) bits: f64,
     /// Clocks that move and are not explained.
     pub(super) unexplained: Vec<u8>,
@@ -62,12 +62,12 @@ pub(super) struct Read {
 }
 
 impl Reading {
-    /// Bits of a number.
+    /// Returns the number of bits of a number.
     pub(super) fn width(&self) -> u8 {
         self.last + 1 - self.first - self.gap.map_or(0, |(from, to)| to + 1 - from)
     }
 
-    /// Numbers begin again behind so many; 0: behind 64 bits.
+    /// Returns the number after which positions start again; 0: after 64 bits.
     pub(super) fn round(&self) -> u64 {
         match (self.steps, self.code) {
             (Some((least, _)), _) => least,
@@ -84,7 +84,7 @@ impl Reading {
         }
     }
 
-    /// Numbers that positions can have.
+    /// Returns the numbers that positions can have.
     pub(super) fn allowed(&self) -> RangeInclusive<u64> {
         match (self.steps, self.code) {
             (None, _) => 0..=u64::MAX,
@@ -96,7 +96,7 @@ impl Reading {
         }
     }
 
-    /// The number in each word; none where the bits are no digits.
+    /// Returns the number in each word; none if the bits are no digits.
     pub(super) fn numbers(&self, words: &[u64], clocks: u8) -> Vec<Option<u64>> {
         let digits = Coding::new(Code::Bcd, self.whole() - 1).ok().filter(|_| self.code == Code::Bcd);
         let all = ones(self.last + 1 - self.first);
@@ -118,12 +118,12 @@ impl Reading {
         words.iter().map(number).collect()
     }
 
-    /// The clock belongs to the position.
+    /// Returns whether the clock belongs to the position.
     pub(super) fn has(&self, clock: u8) -> bool {
         (self.first..=self.last).contains(&clock) && self.gap.is_none_or(|(from, to)| !(from..=to).contains(&clock))
     }
 
-    /// Bits beside the position that are constant have their usual values in this frame.
+    /// Returns whether the constant bits outside the position have their usual values in this frame.
     fn is_usual(&self, seen: &FrameSet, index: usize) -> bool {
         let word = seen.words().get(index);
         let usual = |word: &u64, clock: u8| (word >> (seen.clocks - clock) & 1 == 1) == seen.bit(clock).usual;
@@ -131,7 +131,7 @@ impl Reading {
         word.is_some_and(|word| (1..=seen.clocks).filter(constant).all(|clock| usual(word, clock)))
     }
 
-    /// The last run of clocks up to the lowest bit that never moved.
+    /// Returns the last run of clocks up to the lowest bit that never moved.
     pub(super) fn unmoved(&self, seen: &FrameSet) -> Option<(u8, u8)> {
         let to = (1..self.last).rev().find(|clock| !seen.bit(*clock).moves)?;
         let from = (1..=to).rev().take_while(|clock| !seen.bit(*clock).moves).last()?;
@@ -166,7 +166,7 @@ impl Reading {
         (bits + unusual.iter().filter(|(is, _)| *is).map(|(_, bits)| bits).sum::<f64>(), unexplained)
     }
 
-    /// The parity bit behind the position, where there is one.
+    /// Returns the parity bit after the position, if there is one.
     fn parity_behind(&self, seen: &FrameSet) -> Option<Parity> {
         let clock = (self.last + 1..=seen.clocks).find(|clock| seen.bit(*clock).moves)?;
         let frames = seen.words().len();
@@ -181,14 +181,15 @@ impl Read {
         let motion = Motion::of(&numbers, reading.round());
         let (bits, unexplained) = reading.other_information(seen);
         let mut read = Read { bits: motion.bits + bits, reading, numbers, motion, unexplained, closed: false };
-        // Disturbed frames pass no end, and no end is where a higher bit changes, be it for a moment.
+        // Disturbed frames do not count as passing an end, and an end is only where a higher bit does not change, even
+        // briefly.
         let even = |index: usize| (index - 2..=index + 2).all(|index| read.motion.is_even(index));
         let usual = |index: usize| (index - 1..=index + 2).all(|index| read.reading.is_usual(seen, index));
         read.closed = (2..read.motion.steps.len()).any(|index| even(index) && read.passes_end(index) && usual(index));
         read
     }
 
-    /// All that has to be said, whatever is unusual.
+    /// Returns the information needed in all, including that for unusual properties.
     pub(super) fn cost(&self) -> f64 {
         self.bits - UNEXPLAINED_BITS * self.unexplained.len() as f64
     }
@@ -201,18 +202,18 @@ impl Read {
     }
 }
 
-/// Frames in which a parity is right.
+/// Returns the number of frames in which a parity is right.
 fn right(seen: &FrameSet, parity: Parity) -> usize {
     seen.words().iter().filter(|word| seen.is_right(**word, parity)).count()
 }
 
-/// The ways in which the shaft turned most evenly, the best first.
+/// Returns the ways in which the shaft turned most evenly, the best first.
 pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     let frames = seen.words().len();
     let sample = sample(seen.words());
     let mut tried: Vec<(f64, Reading)> = Vec::new();
     for reading in ways(seen) {
-        // Between two runs nothing follows.
+        // Runs are not consecutive.
         let runs = sample.chunks(RUN).map(|run| reading.numbers(run, seen.clocks));
         let numbers: Vec<Option<u64>> = runs.flat_map(|run| run.into_iter().chain([None])).collect();
         let whole = Motion::of(&numbers, reading.round()).bits * frames as f64 / sample.len().max(1) as f64;
@@ -238,7 +239,7 @@ pub(super) fn readings(seen: &FrameSet) -> Vec<Read> {
     all
 }
 
-/// A bit before the position changed just where the numbers came to an end: it is their highest.
+/// Returns whether a bit before the position changed exactly at the ends of the numbers, and is therefore their highest.
 fn leaves_out_highest(seen: &FrameSet, read: &Read) -> bool {
     let round = read.reading.round();
     let moving = (1..read.reading.first).rev().find(|clock| seen.bit(*clock).moves);
@@ -261,7 +262,7 @@ fn ways(seen: &FrameSet) -> Vec<Reading> {
     let lowest: Vec<u8> =
         seen.bits().filter(|(_, bit)| bit.moves || bit.changes > often).map(|(clock, _)| clock).collect();
     let mut ways = Vec::new();
-    // An error bit before the position may have spoken for a while.
+    // An error bit before the position may have been active for a while.
     let second = moving.get(1).filter(|_| moving.first().is_some_and(|first| seen.bit(*first).changes <= 16));
     for first in moving.first().into_iter().chain(second) {
         for last in lowest.iter().filter(|last| **last > first + 1) {
@@ -283,7 +284,7 @@ fn ways(seen: &FrameSet) -> Vec<Reading> {
     ways
 }
 
-/// The longest run of clocks within the position that did not move.
+/// Returns the longest run of clocks within the position that did not move.
 fn gap(seen: &FrameSet, first: u8, last: u8) -> Option<(u8, u8)> {
     let mut longest: Option<(u8, u8)> = None;
     let mut from = None;

@@ -1,5 +1,5 @@
-//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found; recordings of encoders that
-//! were made by other means.
+//! Frames of turning, standing and disturbed shafts, made by the layouts that are to be found; and recordings of encoders
+//! made by other means.
 
 #[path = "../../../../../tests/tools/ssi_recordings.rs"]
 mod recordings;
@@ -14,7 +14,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
+/// Returns 2000 frames of a shaft that turns slowly and not quite evenly, from a quarter of the range on.
 fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     let mut rng = Rng::with_seed(7);
     let last = layout.coding().last();
@@ -29,7 +29,7 @@ fn turning(layout: &Layout, steps_a_frame: f64) -> Vec<u64> {
     frames.collect()
 }
 
-/// What an encoder sends counts, not what its settings are called.
+/// Compares the frames that encoders send, not the names of their settings.
 fn same_frame(one: &Layout, other: &Layout) -> bool {
     let shape = |layout: &Layout| (layout.roles().len(), layout.coding().code(), layout.descriptor().coded);
     one.roles() == other.roles() && shape(one) == shape(other)
@@ -43,13 +43,13 @@ fn the_class_of_every_family_comes_first() {
             let text = format!("{},code={code}", family.key);
             let truth = layout(&text);
             let search = find(&turning(&truth, speed), truth.clocks(), &families);
-            // Where the end of the range is not passed, it stays open whether higher bits are the position's.
+            // If the end of the range is not passed, it is not known whether higher bits belong to the position.
             assert!(matches!(search.doubt, None | Some(Uncertainty::Open)), "{text} at {speed}: {:?}", search.doubt);
             let first = &search.classes[0];
             let named =
                 first.members.iter().filter(|member| member.family.as_ref().is_some_and(|(key, _)| *key == family.key));
             assert!(named.clone().any(|member| same_frame(&member.layout, &truth)), "{text} at {speed}");
-            // What changes in the first frames alone counts as disturbed.
+            // A change only in the first frames counts as disturbed.
             assert!(first.evidence.misfits <= 2, "{text} at {speed}");
         }
     }
@@ -78,7 +78,7 @@ fn settings_are_found_too() {
     }
 }
 
-/// Contiguous frames do not tell where turns end, nor a safety encoder from the other.
+/// Contiguous frames do not show the end of the turns, nor distinguish a safety encoder from the other.
 #[test]
 fn what_cannot_be_told_apart_is_one_class() {
     let families = Families::built_in();
@@ -119,7 +119,7 @@ fn noise_and_stuck_lines_are_no_layout() {
     assert_eq!(find(&[], 25, &families).doubt, Some(Uncertainty::Standing));
 }
 
-/// Frames of an encoder that no family is: gray excess whose end was passed, and a parity bit.
+/// Returns frames of an encoder of no family: gray excess whose end was passed, and a parity bit.
 #[test]
 fn other_encoders() {
     let families = Families::built_in();
@@ -142,7 +142,7 @@ fn other_encoders() {
     assert_eq!(search.classes[0].members[0].layout.descriptor().parity, Some(parity));
 }
 
-/// Some frames disturbed, some with errors: the layout is found all the same, and both are counted.
+/// Some frames disturbed, some with errors: the layout is found nevertheless, and both are counted.
 #[test]
 fn disturbed_frames_do_not_hide_the_layout() {
     let truth = layout("ahm36,st=12,code=gray");
@@ -160,7 +160,7 @@ fn disturbed_frames_do_not_hide_the_layout() {
     assert!(first.members.iter().any(|member| same_frame(&member.layout, &truth)));
 }
 
-/// Frames of a file of `tests/vectors/ssi_find`, with the positions that were meant; none where a frame is disturbed.
+/// Returns frames of a file of `tests/vectors/ssi_find`, with the intended positions; none if a frame is disturbed.
 fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
     let lines = text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split_once(' ').unwrap());
     let rows: Vec<(&str, &str)> = lines.collect();
@@ -169,17 +169,17 @@ fn recording(text: &str) -> (u8, Vec<u64>, Vec<Option<u64>>) {
     (rows[0].0.len() as u8, frames, meant)
 }
 
-/// It reads every frame that was not disturbed as it was meant.
+/// Returns whether it reads every undisturbed frame as intended.
 fn reads(proposal: &Proposal, frames: &[u64], meant: &[Option<u64>]) -> bool {
     let read =
         |(frame, meant): (&u64, &Option<u64>)| meant.is_none_or(|own| proposal.layout.decode(*frame).position == own);
     frames.iter().zip(meant).all(read)
 }
 
-/// Issue 22.22: recordings of fifteen encoders, made in Python, with noise and disturbed frames. In the order of the
-/// file: whether the tick may be given, since every bit is explained (a 1 before the position and its highest bit look the
-/// same until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600 and 3598
-/// steps as long as the shaft jumps over the first and the last).
+/// Issue 22.22: recordings of fifteen encoders, made in Python, with noise and disturbed frames. In the order of the file:
+/// whether the tick is allowed, since every bit is explained (a 1 before the position and its highest bit look the same
+/// until the end of the range is passed, so do a falling binary position and exchanged wires, and so do 3600 and 3598 steps
+/// as long as the shaft jumps over the first and the last).
 #[test]
 fn recordings_made_by_other_means_are_found() {
     let vectors = [
@@ -220,7 +220,8 @@ fn recordings_made_by_other_means_are_found() {
     assert_eq!((first, foremost), (15, 14), "the truth in the first class, and as its first member");
 }
 
-/// Issue 22.22: no tick at a layout that reads a frame otherwise than it was meant. All thousand: `cargo bench --bench ssi`.
+/// Issue 22.22: no tick at a layout that reads a frame in another way than intended. All thousand: `cargo bench --bench
+/// ssi`.
 #[test]
 fn no_tick_is_wrong() {
     let families = Families::built_in();
@@ -237,7 +238,7 @@ fn no_tick_is_wrong() {
     assert!(ticks >= 1, "a tick is given where it may be");
 }
 
-/// Issue 22.22: what the entry is called can be tried as it stands.
+/// Issue 22.22: the name of the entry can be used unchanged.
 #[test]
 fn every_proposal_can_be_written_down() {
     let families = Families::built_in();

@@ -1,4 +1,4 @@
-//! The verdict on the classes: the doubt, the quality of each, and what would decide.
+//! The verdict on the classes: the doubt, the quality of each, and the motion that would decide.
 
 use super::frame_set::FrameSet;
 use super::members::{Member, never_odd};
@@ -9,13 +9,13 @@ use crate::devices::ssi::protocol::range::Range;
 
 /// Bits by which the first class has to be ahead of the next.
 const LEAD_BITS: f64 = 100.0;
-/// A motion is even where it takes this part of the bits that the numbers have.
+/// Largest part of the numbers' bits that an even motion needs.
 const EVEN: f64 = 0.7;
-/// To be sure, it takes less.
+/// The same for a certain result.
 const SURE_EVEN: f64 = 0.35;
 /// Of a hundred frames, those that may jump or not fit.
 const DISTURBED_PERCENT: usize = 15;
-/// To be sure, so many frames and so many bits that moved are needed.
+/// Least number of frames and of moved bits for a certain result.
 const SURE_FRAMES: usize = 200;
 const SURE_BITS: u8 = 5;
 /// Number of different frames for certainty.
@@ -35,23 +35,23 @@ pub(super) fn doubt(words: &FrameSet, groups: &[Group]) -> Option<Uncertainty> {
     }
     let sure = frames >= SURE_FRAMES && first.read.reading.width() >= SURE_BITS;
     let sure = sure && !jumps_alike(&first.read) && words.different() >= SURE_DIFFERENT;
-    // However improbable the others are.
+    // Regardless of how improbable the others are.
     let sure = sure && groups.iter().skip(1).all(|next| next.read.cost() - first.read.cost() >= LEAD_BITS);
     let proven = sure && is_even(&first.read, frames, SURE_EVEN) && unproven(words, first).is_empty();
     (!proven).then_some(Uncertainty::Open)
 }
 
-/// Jumps of the same size are no disturbances: the code is another.
+/// Returns whether jumps have the same size: then they are no disturbances, and the code is another.
 fn jumps_alike(read: &Read) -> bool {
     let mut sizes: Vec<u64> = read.motion.uneven.iter().map(|uneven| uneven.unsigned_abs()).collect();
     sizes.retain(|size| *size > read.motion.limit);
     sizes.sort_unstable();
-    // A disturbed bit makes two jumps of the same size.
+    // A disturbed bit causes two jumps of the same size.
     let alike = sizes.chunk_by(|one, other| one.abs_diff(*other) <= read.motion.limit / 4).map(<[u64]>::len).max();
     alike.is_some_and(|alike| alike > 4 && alike * 4 > sizes.len())
 }
 
-/// The motion follows from itself for less than its numbers would take one by one.
+/// Returns whether the motion needs less than this part of the information of its single numbers.
 fn is_even(read: &Read, frames: usize, part: f64) -> bool {
     let disturbed = read.motion.jumps / 2 + read.motion.nones;
     read.motion.bits < part * f64::from(read.reading.width()) * frames as f64
@@ -64,7 +64,8 @@ fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
     let reading = &read.reading;
     let mut open = Vec::new();
     let unmoved = reading.unmoved(words);
-    // Behind the highest bit a constant one may be anything; before it, once the end was passed, it is not the position's.
+    // After the highest bit a constant one may be anything; before it, once the end was passed, it does not belong to the
+    // position.
     match unmoved.filter(|(from, _)| !read.closed || *from > reading.first) {
         Some((from, to)) => open.push(Open::TurnFarther { from, to }),
         None if !read.closed => open.push(Open::PassAnEnd),
@@ -92,7 +93,7 @@ fn unproven(words: &FrameSet, group: &Group) -> Vec<Open> {
     open
 }
 
-/// Returns the least and the greatest number of steps: fewer are possible where the first or the last was never seen.
+/// Returns the least and the greatest number of steps: fewer are possible if the first or the last never occurred.
 fn steps(read: &Read) -> Option<(u64, u64)> {
     let allowed = read.reading.allowed();
     let (first, last) = match read.reading.steps {
@@ -106,11 +107,11 @@ fn steps(read: &Read) -> Option<(u64, u64)> {
     let (lowest, highest) = seen.fold((any, any), |(low, high), number| (low.min(number), high.max(number)));
     let unseen = (lowest - first).max(last.saturating_sub(highest));
     let (one, other) = read.reading.steps.unwrap_or((last + 1, last + 1));
-    // Of Gray excess, as many are left out on both sides.
+    // Gray excess leaves out the same number on both sides.
     Some((one.min(other).min((last + 1 - first).saturating_sub(2 * unseen)), one.max(other)))
 }
 
-/// Steps are of different lengths, so that a lower bit would have been seen.
+/// Returns whether steps have different lengths, so that a lower bit would have been seen.
 pub(super) fn is_varied(read: &Read) -> bool {
     let even = read.motion.uneven.iter().filter(|uneven| uneven.unsigned_abs() <= read.motion.limit);
     let (mut all, mut other) = (0, 0);
@@ -121,7 +122,7 @@ pub(super) fn is_varied(read: &Read) -> bool {
     other * 50 >= all
 }
 
-/// The groups as they are shown.
+/// Returns the groups as they are shown.
 pub(super) fn classes(words: &FrameSet, groups: Vec<Group>) -> Vec<Class> {
     let mut last = 1.0_f64;
     let mut classes = Vec::new();
@@ -157,7 +158,7 @@ fn evidence(words: &FrameSet, group: &Group, most: f64) -> Evidence {
     }
 }
 
-/// Returns what would separate the members, or prove them.
+/// Returns the motions that would separate the members, or prove them.
 fn open(words: &FrameSet, group: &Group) -> Vec<Open> {
     let mut open = unproven(words, group);
     let members = &group.members;

@@ -5,19 +5,19 @@ use crate::devices::ssi::protocol::code::{Code, CodeError, Coding, ones};
 use crate::devices::ssi::protocol::descriptor::{Coded, Descriptor, Meaning, Parity, Word};
 use crate::devices::ssi::protocol::range::{Range, RangeError};
 
-/// Why a frame is not possible.
+/// The reason why a frame is not possible.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LayoutError {
     /// No clock at all, or more than an adapter and a number hold.
     #[error("a frame has 1 to 64 clocks, not {0}")]
     Clocks(u8),
-    /// No such positions.
+    /// An invalid range of positions.
     #[error(transparent)]
     Range(#[from] RangeError),
-    /// No such code words.
+    /// A code without words for the positions.
     #[error(transparent)]
     Code(#[from] CodeError),
-    /// The area of the position ends behind the frame.
+    /// The area of the position ends after the frame.
     #[error("the position reaches clock {area}, but there are only {clocks} clocks")]
     Area {
         /// Its last clock.
@@ -40,7 +40,7 @@ pub enum LayoutError {
     /// Zeros between turns and steps, and no bits of their own for both.
     #[error("zeros between turns and steps require separate bits for both; here the position is a single number")]
     Between,
-    /// Two things on one clock.
+    /// Two contents on one clock.
     #[error("clock {clock} is used by both {first} and {second}")]
     Overlap {
         /// The clock.
@@ -50,7 +50,7 @@ pub enum LayoutError {
         /// The second content.
         second: ClockUse,
     },
-    /// A bit behind the last clock.
+    /// A bit after the last clock.
     #[error("{name} is on clock {clock}, but the frame has only {clocks} clocks")]
     Behind {
         /// The bit.
@@ -63,9 +63,9 @@ pub enum LayoutError {
     /// More error bits or patterns than there is room for.
     #[error("at most {limit} {what}, not {count}")]
     Many {
-        /// Of what.
+        /// The content in question.
         what: RepeatedPart,
-        /// Most of them.
+        /// Largest number of them.
         limit: usize,
         /// Their number.
         count: usize,
@@ -73,7 +73,7 @@ pub enum LayoutError {
     /// A code over more than the position that is not Gray.
     #[error("only Gray code can include zeros and error bits")]
     NotGray,
-    /// An error or parity bit among what is coded or shifted as a whole.
+    /// An error or parity bit within a part that is coded or shifted as a whole.
     #[error("{name} on clock {clock} is among the {area} clocks that are {done} as a whole")]
     Inside {
         /// The bit.
@@ -142,7 +142,7 @@ pub enum WordOperation {
     Shifted,
 }
 
-/// The clocks of a word and who has taken them.
+/// The clocks of a word and their contents.
 struct Clocks {
     clocks: u8,
     taken: Vec<(u8, ClockUse)>,
@@ -204,7 +204,7 @@ pub(super) fn layout(descriptor: Descriptor) -> Result<Layout, LayoutError> {
     };
     if let Some(Parity { clock, .. }) = descriptor.parity {
         taken.take(clock, ClockUse::Parity)?;
-        // It is made of what is sent, when all that is done.
+        // The parity is computed from the sent bits, after all that.
         let inside = |done, area| Err(LayoutError::Inside { name: ClockUse::Parity, clock, area, done });
         if clock <= coded_clocks {
             return inside(WordOperation::Coded, coded_clocks);
@@ -274,7 +274,7 @@ fn parts(descriptor: &Descriptor, coding: &Coding) -> Result<[Part; 2], LayoutEr
     Ok([high, low])
 }
 
-/// The bits of a code word where they stand.
+/// Returns the bits of a code word at their places.
 fn placed(parts: &[Part; 2], code: u64) -> u64 {
     parts.iter().fold(0, |word, part| word | (code >> part.in_code & part.mask) << part.in_word)
 }

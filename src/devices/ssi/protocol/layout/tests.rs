@@ -1,11 +1,11 @@
-//! Any layout that works, there and back; those that cannot work, with the reason.
+//! All possible layouts, to a frame and back; and impossible ones, with the reason.
 
 use proptest::prelude::*;
 
 use super::*;
 use crate::devices::ssi::protocol::{Code, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
 
-/// Any frame that works, with error bits, zeros, repetition, parity, whatever its code.
+/// Returns any possible frame, with error bits, zeros, repetition, parity, and any code.
 pub(crate) fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
@@ -164,7 +164,7 @@ fn what_cannot_work_is_refused_with_the_reason() {
     }
 }
 
-/// Reference section 8: the position ABCDEF in Gray with an error bit 1 behind it, both ways.
+/// Reference section 8: the position ABCDEF in Gray followed by an error bit 1, both ways.
 #[test]
 fn gray_with_and_without_the_error_bit() {
     let descriptor = |coded| Descriptor {
@@ -183,13 +183,13 @@ fn gray_with_and_without_the_error_bit() {
     assert_eq!(ungray(0x1FC_5631), 0x157_9BDE);
 }
 
-/// Zeros around the word belong to the Gray code or not: another frame whenever the lowest bit is 1 (section 2).
+/// Zeros around the word belong to the Gray code or not: the frames differ whenever the lowest bit is 1 (section 2).
 #[test]
 fn gray_over_the_position_and_over_the_zeros() {
     let descriptor = |coded| Descriptor { clocks: 14, area: 14, code: Code::Gray, coded, ..Descriptor::plain(0, 12) };
     let position = Layout::new(descriptor(Coded::Position)).unwrap();
     let area = Layout::new(descriptor(Coded::Area)).unwrap();
-    // 101 = binary 1100101, gray 1010111; with two zeros behind: gray of 110010100 = 101011110.
+    // 101 = binary 1100101, gray 1010111; with two zeros after it: gray of 110010100 = 101011110.
     assert_eq!(position.encode(101, Flags::NONE), Some(0b1_0101_1100));
     assert_eq!(area.encode(101, Flags::NONE), Some(0b1_0101_1110));
     assert_eq!(position.encode(100, Flags::NONE), area.encode(100, Flags::NONE));

@@ -54,7 +54,7 @@ fn what_the_families_bear() {
     let behind = |reads: Reads| Reads { synchronous: true, ..reads };
     assert_eq!(warnings("ahm36", &ahm), []);
     assert_eq!(warnings("ahm36", &reads(27, 400e3, 600_001)), [Warning::PauseLong { most: micros(600_000) }]);
-    // 27 bits at 2 MHz take 13.5 µs: with 30 µs of pause one asks every 43.5 µs, and positions come every 125.
+    // 27 bits at 2 MHz take 13.5 µs: with 30 µs of pause a read takes 43.5 µs, and positions are made every 125.
     assert_eq!(warnings("ahm36", &reads(27, 2e6, 30)), [Warning::Repeats { update: micros(125) }]);
     assert_eq!(warnings("ahm36", &behind(reads(27, 400e3, 100))), [Warning::PauseShort { least: micros(150) }]);
     assert_eq!(warnings("atm60", &behind(reads(25, 1.6e6, 300))), [Warning::EncoderClock { most_hz: 1_500_000 }]);

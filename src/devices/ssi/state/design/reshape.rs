@@ -1,12 +1,12 @@
-//! A frame with other positions or another code: it grows and shrinks with them, as a person would draw it again.
+//! A frame with other positions or another code: it grows and shrinks with them, as a user would redraw it.
 
 use crate::devices::ssi::protocol::{Code, Coding, Descriptor, LayoutError, Range};
 
-/// The frame with these positions in this code. Zeros behind the position take up what it gives or needs, where there are
-/// any; where there are none, what stands behind the position moves, and the frame is longer or shorter.
+/// Returns the frame with these positions in this code. Zeros after the position absorb the change, if there are any;
+/// otherwise the parts after the position move, and the frame becomes longer or shorter.
 ///
 /// # Errors
-/// No such positions or code words. Whether the frame can work is looked at where it is used.
+/// No such positions or code words. Whether the frame is possible is checked by its user.
 pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> Result<Descriptor, LayoutError> {
     let bits_before = bits(&before.range, before.code)?;
     let bits_now = bits(&range, code)?;
@@ -35,7 +35,7 @@ pub(super) fn with_positions(before: &Descriptor, range: Range, code: Code) -> R
         parity.clock = moved(parity.clock);
     }
     if let Some(repeat) = &mut now.repeat {
-        // Both words are longer or shorter.
+        // Both words become longer or shorter.
         repeat.word = moved(repeat.word);
         now.clocks = moved(now.clocks);
     }
@@ -110,7 +110,7 @@ mod tests {
         assert!(with_positions(&plain, bits(0, 0), Code::Binary).is_err());
         let odd = Range::Steps { per_turn: 361, turns: 1 };
         assert!(with_positions(&plain, odd, Code::GrayExcess).is_err());
-        // Too long to be a frame, and no panic.
+        // Too long for a frame, and no panic.
         let long = with_positions(&Descriptor { lead: 40, ..plain }, bits(32, 32), Code::Binary).unwrap();
         assert!(Layout::new(long).is_err());
     }

@@ -1,4 +1,4 @@
-//! The device check in words.
+//! Texts of the device check.
 
 use super::finding as said;
 use crate::app::Text;

@@ -7,12 +7,12 @@ use crate::devices::ssi::protocol::{Family, FamilyError, FamilyProblem};
 use crate::devices::ssi::state::TEXTS;
 use crate::store::StoreError;
 
-/// A note or the source of a family.
+/// Returns the text for a note or the source of a family.
 pub fn note(family: &Family, words: &str) -> Text {
     Text::new("plain.words").with_name("words", words, family.german(words))
 }
 
-/// A family of the user's own that cannot be read or used.
+/// Returns the text for a family of the user's own that cannot be read or used.
 pub fn store(error: &StoreError) -> Text {
     let StoreError::Refused(cause) = error else { return general::store(error) };
     match cause.get::<FamilyError>() {
@@ -47,7 +47,7 @@ mod tests {
                 assert_ne!(text.words(Language::German), *words);
             }
         }
-        // A family of the user's own that has no German says what its file says.
+        // A user's family without German texts uses those of its file.
         let family = Families::built_in().iter().next().cloned().unwrap();
         assert_eq!(note(&family, "Own words").words(Language::German), "Own words");
     }

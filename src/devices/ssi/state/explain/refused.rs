@@ -10,12 +10,12 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
 
-/// A frame that cannot work.
+/// Returns the text for a frame that cannot work.
 pub fn layout(error: &LayoutError) -> Text {
     refused(layout_reason(error))
 }
 
-/// Settings that a family does not have.
+/// Returns the text for settings that a family does not have.
 pub fn settings(error: &SettingsError) -> Text {
     refused(settings_reason(error))
 }
@@ -54,7 +54,7 @@ pub(super) fn settings_reason(error: &SettingsError) -> Text {
     }
 }
 
-/// A format string of LinuxCNC that is no frame, or a frame that has none.
+/// Returns the text for a format string of LinuxCNC that is not a frame, or a frame that has none.
 pub fn format(error: &FormatError) -> Text {
     let why = match error {
         FormatError::Cannot(what) => {

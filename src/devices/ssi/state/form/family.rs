@@ -1,4 +1,4 @@
-//! The rows of a family: what its encoders can be set to.
+//! The rows of a family: the settings of its encoders.
 
 use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::app::Text;
@@ -30,7 +30,7 @@ pub(super) fn groups(designer: &Designer, family: &Family, settings: &Settings) 
     vec![Group { title: "ssi_form.position", rows: position }, Group { title: "ssi_form.frame", rows: frame }]
 }
 
-/// The settings with another entry; `None` where it cannot stand there.
+/// Returns the settings with another entry; `None` if it is not possible there.
 pub(super) fn entered(
     designer: &Designer,
     family: &Family,
@@ -95,7 +95,7 @@ pub(super) fn entered(
         (Field::Clocks, Input::Number(clocks)) => next.clocks = Some(byte(*clocks)?),
         _ => return None,
     }
-    // A number of clocks that was not asked for follows the resolution.
+    // A number of clocks that was not requested follows the resolution.
     if matches!(field, Field::Multiturn | Field::Singleturn | Field::Bits | Field::Steps | Field::Turns)
         && settings.clocks.is_none()
     {

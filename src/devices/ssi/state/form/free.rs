@@ -1,4 +1,4 @@
-//! The rows of a frame that belongs to no family, or that its family does not send.
+//! The rows of a frame without a family, or that its family does not send.
 
 use super::{CODES, Field, Group, Input, OVER, RangeKind, Row, byte, position_rows, word};
 use crate::devices::ssi::protocol::{Descriptor, ErrorBit, Fraction, Meaning, Parity, Range, Repeat};
@@ -147,7 +147,7 @@ fn range_entered(range: &Range, field: Field, input: &Input) -> Option<Range> {
     })
 }
 
-/// The frame with so many zeros before the position and in it; what stands behind moves along.
+/// Returns the frame with this number of zeros before the position and in it; the parts after it move along.
 fn pushed(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
     let by = i16::from(lead) + i16::from(between) - i16::from(before.lead) - i16::from(before.between);
     let moved = |clock: u8| u8::try_from(i16::from(clock) + by).ok();
@@ -166,12 +166,12 @@ fn pushed(before: &Descriptor, lead: u8, between: u8) -> Option<Descriptor> {
     Some(next)
 }
 
-/// The frame with another parity; a new parity bit is a further clock at the end.
+/// Returns the frame with another parity; a new parity bit is an additional clock at the end.
 fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
     match (choice, next.parity) {
         (0, Some(parity)) => {
             next.parity = None;
-            // The clock that only it had goes with it.
+            // The clock used only by it is removed as well.
             if next.repeat.is_none() && parity.clock == next.clocks {
                 next.clocks -= 1;
             }
@@ -194,7 +194,7 @@ fn with_parity(mut next: Descriptor, choice: usize) -> Option<Descriptor> {
 }
 
 impl Designer {
-    /// The frame with one more error bit behind the others; `None` where it has as many as it may.
+    /// Returns the frame with one more error bit after the others; `None` if it has the maximum.
     pub fn with_error_bit(&self) -> Option<Descriptor> {
         let mut next = self.design().profile.descriptor.clone();
         if next.errors.len() >= MOST_ERRORS || next.repeat.is_some() || next.clocks >= 64 {
@@ -213,12 +213,12 @@ impl Designer {
         Some(next)
     }
 
-    /// The frame without an error bit; its clock stays, as a zero.
+    /// Returns the frame without an error bit; its clock stays, as a zero.
     pub fn without_error_bit(&self, index: usize) -> Descriptor {
         let mut next = self.design().profile.descriptor.clone();
         if index < next.errors.len() {
             let removed = next.errors.remove(index);
-            // The last clock goes with what only it carried.
+            // The last clock is removed with the only bit that used it.
             if next.repeat.is_none() && next.parity.is_none() && removed.clock == next.clocks {
                 next.clocks -= 1;
             }

@@ -10,7 +10,7 @@ fn layout(text: &str) -> Layout {
     settings.resolve(Families::built_in().named(&key).unwrap()).unwrap().layout
 }
 
-/// Words of a stream, a millisecond apart.
+/// Returns the words of a stream, a millisecond apart.
 fn run(first: u64, words: &[u64]) -> Words {
     Words {
         first,
@@ -47,7 +47,7 @@ fn words_between_which_some_were_dropped_do_not_follow_each_other() {
 fn another_name_of_an_error_bit_takes_nothing_away() {
     let mut record = Record::new(layout("afs60"));
     record.add(vec![run(0, &[GOOD, GOOD | 1, GOOD])], 0);
-    // So much is not kept of words, but recorded.
+    // This number of words is not stored, but recorded.
     record.kept.clear();
     let mut descriptor = record.layout.descriptor().clone();
     descriptor.errors[2].name = "LIGHT".to_owned();

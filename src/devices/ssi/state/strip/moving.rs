@@ -4,9 +4,9 @@
 use super::{Handle, Parts, has_words};
 use crate::devices::ssi::protocol::{Coded, Descriptor, Layout, Parity, Pattern, Range, Repeat, Word};
 
-/// The frame when something is moved to a clock, or as near to it as it can be. What stands beyond its neighbours stays
-/// where it is, except that error and parity bits directly behind the position go with its end if they are `following`.
-/// A bit that comes to where another is exchanges places with it.
+/// Returns the frame after moving a part to a clock, or as near to it as possible. Parts beyond its neighbours stay, except
+/// that error and parity bits directly after the position move with its end if they are `following`. A bit moved to another
+/// one exchanges places with it.
 #[must_use]
 pub fn moved(layout: &Layout, handle: Handle, to: u8, following: bool) -> Layout {
     let Some(at) = clock(layout, handle) else { return layout.clone() };
@@ -64,14 +64,14 @@ pub(super) fn clock(layout: &Layout, handle: Handle) -> Option<u8> {
     }
 }
 
-/// A bit that stands alone.
+/// Single bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Single {
     Error(usize),
     Parity,
 }
 
-/// Error and parity bits behind the position without a zero before or between them.
+/// Returns the error and parity bits after the position without a zero before or between them.
 pub(super) fn chain(layout: &Layout) -> Vec<Single> {
     let descriptor = layout.descriptor();
     let mut next = end(layout) + 1;
@@ -88,7 +88,7 @@ fn single_on(descriptor: &Descriptor, clock: u8) -> Option<Single> {
     error.or_else(|| descriptor.parity.filter(|parity| parity.clock == clock).map(|_| Single::Parity))
 }
 
-/// The last clock of the position; what is shifted out of its area has none.
+/// Returns the last clock of the position; bits shifted out of its area have none.
 pub(super) fn end(layout: &Layout) -> u8 {
     let descriptor = layout.descriptor();
     let late = u8::from(descriptor.shift_right);
@@ -100,8 +100,7 @@ const fn area_counts(descriptor: &Descriptor) -> bool {
     descriptor.shift_right || !matches!(descriptor.coded, Coded::Position)
 }
 
-/// The frame with something moved from a clock to another, whether it works or not; `None` where that cannot be written
-/// down.
+/// Returns the frame with a part moved from a clock to another, valid or not; `None` if it cannot be expressed.
 fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) -> Option<Descriptor> {
     let by = i16::from(to) - i16::from(at);
     let mut new = layout.descriptor().clone();
@@ -147,14 +146,14 @@ fn with(layout: &Layout, handle: Handle, (at, to): (u8, u8), following: bool) ->
         Handle::Parity => put(&mut new, Single::Parity, at, to),
     }
     if !area_counts(&new) {
-        // It says nothing: it only has to have room, and to be there.
+        // It has no content: it must only fit and exist.
         let needed = u16::from(new.lead) + u16::from(new.between) + u16::from(bits(&new, layout));
         new.area = new.area.max(u8::try_from(needed).ok()?).min(new.word());
     }
     Some(new)
 }
 
-/// Bits of a code word; moving keeps the code.
+/// Returns the bits of a code word; moving keeps the code.
 fn bits(new: &Descriptor, old: &Layout) -> u8 {
     match Parts::of(old) {
         Parts::Whole(bits) => bits,
@@ -162,7 +161,7 @@ fn bits(new: &Descriptor, old: &Layout) -> u8 {
     }
 }
 
-/// Moves what follows the end of the position.
+/// Moves the parts that follow the end of the position.
 fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Option<()> {
     let chain = chain(old);
     if !following || chain.is_empty() {
@@ -178,7 +177,7 @@ fn follow(old: &Layout, new: &mut Descriptor, by: i16, following: bool) -> Optio
     Some(())
 }
 
-/// A bit to another clock; the one that is there comes to where it was.
+/// Moves a bit to another clock; the bit there takes its former place.
 fn put(descriptor: &mut Descriptor, single: Single, at: u8, to: u8) {
     let other = single_on(descriptor, to);
     set(descriptor, single, to);
@@ -228,7 +227,7 @@ fn resized_one(range: Range, by: i16) -> Option<Range> {
     }
 }
 
-/// The same word with further clocks behind it, or without zeros that it ends with.
+/// Returns the same word with additional clocks after it, or without trailing zeros.
 fn longer(pattern: Pattern, by: i16) -> Option<Pattern> {
     let Word::Bits(word) = pattern.word else { return Some(pattern) };
     let count = u32::from(by.unsigned_abs());

@@ -1,4 +1,4 @@
-//! Frames by their cells; what is moved, against frames that the reference gives (section 8), and there and back.
+//! Frames by their cells; moves compared with frames of the reference (section 8), and moved back.
 
 use proptest::prelude::*;
 
@@ -24,7 +24,7 @@ fn kinds(strip: &Strip) -> Vec<(Kind, u8, u8)> {
     strip.fields().iter().map(|field| (field.kind, field.first, field.last)).collect()
 }
 
-/// Anything that works, its error and parity bits anywhere.
+/// Returns any valid layout, with error and parity bits anywhere.
 fn layouts() -> impl Strategy<Value = Layout> {
     let range = prop_oneof![
         (0..=32_u8, 0..=32_u8).prop_map(|(multiturn, singleturn)| Range::Bits { multiturn, singleturn }),
@@ -73,7 +73,7 @@ fn layouts() -> impl Strategy<Value = Layout> {
     )
 }
 
-/// An area that says nothing may be any: here it is the whole word.
+/// Returns the frame without an area that has no effect: here it is the whole word.
 fn without_area(layout: &Layout) -> Descriptor {
     let mut descriptor = layout.descriptor().clone();
     if !descriptor.shift_right && descriptor.coded == Coded::Position {
@@ -93,9 +93,9 @@ proptest! {
         let there = strip.moved(handle, to, following);
         let reached = there.clock(handle).unwrap();
         prop_assert!((at.min(to)..=at.max(to)).contains(&reached), "{handle:?}: {at} to {to}, at {reached}");
-        // A bit that has come to stand directly behind others goes with them from now on.
+        // A bit moved directly after others follows them from now on.
         prop_assume!(moving::chain(there.layout()).len() == moving::chain(&layout).len() || !following);
-        // So does the end of an area that the position has come to fill.
+        // So does the end of an area that the position now fills.
         let fills = |layout: &Layout| moving::end(layout) == layout.descriptor().area;
         prop_assume!(fills(there.layout()) == fills(&layout) || !following);
         let back = there.moved(handle, at, following);
@@ -175,7 +175,7 @@ fn steps_end_earlier_and_error_bits_follow_or_do_not() {
     let following = strip.moved(Handle::StepsEnd, 12, true);
     assert_eq!(frame(&following, 0xABC, &[0]), 0x55E4);
     assert_eq!((follows(fixed.layout()), follows(following.layout())), (false, true));
-    // The error bit is in the way; a bit that follows is not, the end of the frame is.
+    // The error bit blocks the move; a following bit does not, but the end of the frame does.
     assert_eq!(strip.limits(Handle::StepsEnd, false), (1, 14));
     assert_eq!(strip.limits(Handle::StepsEnd, true), (1, 14));
     assert_eq!(fixed.limits(Handle::StepsEnd, true), (1, 14));
@@ -192,7 +192,7 @@ fn boundaries_make_the_formats_of_the_manual() {
     assert_eq!(frame(&other.moved(Handle::StepsEnd, 21, true), position, &[]), 0x00A_53C0);
     let right = tree.moved(Handle::Position, 9, true);
     assert_eq!(frame(&right, position, &[]), 0x001_4A78);
-    // Two zeros between: the turns' lowest bits are theirs now.
+    // Two zeros between: the lowest bits of the turns belong to them now.
     let apart = tree.moved(Handle::BetweenEnd, 14, true);
     assert_eq!(kinds(&apart)[1..4], [(Kind::Turns, 5, 12), (Kind::Between, 13, 14), (Kind::Steps, 15, 20)]);
     assert_eq!(apart.moved(Handle::TurnsEnd, 20, true).clock(Handle::TurnsEnd), Some(14));
@@ -220,7 +220,7 @@ fn error_bits_exchange_places() {
     assert_eq!(names(&strip), ["ERRDIG", "ERRSI", "ERRSYNC"]);
     let moved = strip.moved(Handle::Error(0), 21, true);
     assert_eq!(names(&moved), ["ERRSYNC", "ERRSI", "ERRDIG"]);
-    // A position's bit is no place for it, and behind the frame there is none.
+    // A bit of the position is not a possible place, and after the frame there is none.
     assert_eq!(strip.moved(Handle::Error(2), 5, true).clock(Handle::Error(2)), Some(19));
     assert_eq!(strip.moved(Handle::Error(0), 64, true).clock(Handle::Error(0)), Some(21));
 }

@@ -1,4 +1,4 @@
-//! The cells, fields and handles of a frame in words.
+//! The cells, fields and handles of a frame as text.
 
 use super::{Field, Handle, Kind, Strip};
 use crate::app::Text;
@@ -46,12 +46,12 @@ pub fn field(strip: &Strip, field: &Field) -> Text {
     }
 }
 
-/// The same below the field itself, where zeros stand is to be seen.
+/// Returns the same below the field itself, where zeros are visible.
 pub fn name(strip: &Strip, own: &Field) -> Text {
     if own.is_zeros() { TEXTS.text("ssi.strip_behind").with("count", own.count()) } else { field(strip, own) }
 }
 
-/// The same for narrow places: the short name with its number of bits.
+/// Returns the same for narrow places: the short name with its number of bits.
 pub fn short(strip: &Strip, field: &Field) -> Text {
     let id = match field.is_zeros() {
         true => "ssi.strip_short_zeros",
@@ -61,7 +61,7 @@ pub fn short(strip: &Strip, field: &Field) -> Text {
     TEXTS.text(id).with("name", bare(strip, field)).with("count", field.count())
 }
 
-/// The short name of a field, which exports give it too.
+/// Returns the short name of a field, which exports give it too.
 pub fn bare(strip: &Strip, field: &Field) -> String {
     match field.kind {
         _ if field.is_zeros() => "0".to_owned(),

@@ -1,4 +1,4 @@
-//! Bursts in time: what the reference's times come to, and an axis that leaves nothing out that happens.
+//! Bursts in time: the times of the reference, and an axis that shows every event.
 
 use std::time::Duration;
 
@@ -49,7 +49,7 @@ fn a_burst_without_a_break() {
     assert_eq!([from, to].map(micros), [31.25, 76.25], "clocks 13 to 30");
 }
 
-/// AHM36, synchronous: a position is begun 20 µs behind the last clock and ready 125 µs later.
+/// AHM36, synchronous: a position is started 20 µs after the last clock and ready 125 µs later.
 #[test]
 fn when_a_position_is_made() {
     let synchronous = diagram("ahm36", 400e3, 200.0, true);
@@ -72,7 +72,7 @@ fn when_a_position_is_made() {
 #[test]
 fn a_long_pause_is_broken_and_says_so() {
     let diagram = diagram("afm60", 400e3, 82_500.0, false);
-    // The burst, what comes behind it up to 25 µs and two fifths of a burst; the same before the next burst.
+    // The burst, the events after it up to 25 µs and two fifths of a burst; the same before the next burst.
     let pieces: Vec<_> = diagram.pieces().iter().map(|piece| (micros(piece.from), micros(piece.to))).collect();
     assert_eq!(pieces, [(0.0, 140.5), (82_549.5, 82_588.75)]);
     assert_eq!(left_out(diagram.broken(0)).words(Language::German), "82,41 ms ausgelassen");
@@ -109,7 +109,7 @@ fn times_are_said_with_four_figures() {
 }
 
 proptest! {
-    /// Whatever happens is on the axis, which is in order and never longer than what it shows.
+    /// Every event is on the axis, which is in order and never longer than its content.
     #[test]
     fn nothing_that_happens_is_left_out(hz in 1e3..2e6_f64, pause in 0.0..1e6_f64, synchronous: bool, key in 0..3_usize) {
         let diagram = diagram(["ahm36", "atm60", "ttk70"][key], hz, pause, synchronous);
@@ -120,7 +120,7 @@ proptest! {
         for at in ends.chain(diagram.marks().iter().map(|mark| mark.at)).chain(diagram.edges()) {
             prop_assert!(pieces.iter().any(|piece| (piece.from..=piece.to).contains(&at)), "{at}: {pieces:?}");
         }
-        // What is left of the pause does not squeeze the burst to nothing.
+        // The rest of the pause does not compress the burst to nothing.
         let burst = diagram.timing.burst.as_secs_f64();
         let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
         prop_assert!(drawn < 14.0 * burst, "{drawn} of {burst}");

@@ -1,17 +1,17 @@
-//! An SSI frame as a row of cells, one a clock, whose boundaries and single bits can be moved.
+//! An SSI frame as a row of cells, one per clock, with movable boundaries and single bits.
 //!
-//! * **Size**: as wide as there is room; cells shrink to a least width, then the strip wraps into as few lines
-//!   of whole bytes as there can be.
+//! * **Size**: the available width; cells shrink to a minimum width, then the strip wraps into as few lines of whole bytes
+//!   as possible.
 //! * **Keyboard**: Tab goes to the cells and from handle to handle. On the cells the left and right arrows, Home and End
-//!   select one, Space turns its bit over where that is wished. On a handle the arrows move it by one clock, Home and End
-//!   as far as it goes.
-//! * **Pointer**: a click selects a cell and turns its bit over; a click on its number only selects. A handle is dragged;
-//!   what the frame would be is shown while it is, and Escape gives it up. A handle's name and use are shown under it.
-//! * **Accessible**: the cells are a slider with the label given, whose value is the cell selected; so is each handle, with
-//!   where it stands. A field is a group with its bits.
+//!   select one, Space inverts its bit if that is allowed. On a handle the arrows move it by one clock, Home and End as far
+//!   as possible.
+//! * **Pointer**: a click selects a cell and inverts its bit; a click on its number only selects. A handle is dragged; the
+//!   resulting frame is shown meanwhile, and Escape cancels. A handle's name and use are shown under it.
+//! * **Accessible**: the cells are a slider with the given label, whose value is the selected cell; so is each handle, with
+//!   its place. A field is a group with its bits.
 //! * **Painting**: a cell in the colour of its field, the clock's number above, and in it the bit, or the bit's number
-//!   while there is no frame; a bracket below each field with its name, a tab at each end that can be moved; a bit that
-//!   tells of something is filled with the colour of its verdict, which its name has too, with an icon.
+//!   while there is no frame; a bracket below each field with its name, a tab at each movable end; a bit with a meaning is
+//!   filled with the colour of its verdict, which its name has too, with an icon.
 
 mod grips;
 mod names;
@@ -35,7 +35,7 @@ use rows::Rows;
 pub(crate) struct BitStrip<'a> {
     /// Accessible name of the cells.
     pub(crate) label: &'a str,
-    /// The frame as it is, also while something is dragged.
+    /// The present frame, also during a drag.
     pub(crate) strip: &'a Strip,
     /// Bits to show in it, right-justified.
     pub(crate) frame: Option<u64>,
@@ -45,18 +45,18 @@ pub(crate) struct BitStrip<'a> {
     pub(crate) toggles: bool,
     /// Boundaries and single bits can be moved.
     pub(crate) movable: bool,
-    /// Error and parity bits directly behind the position go with its end.
+    /// Error and parity bits directly after the position move with its end.
     pub(crate) following: bool,
 }
 
 /// A request of the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StripEvent {
-    /// While something is dragged: it would come to this clock. It comes at every drawing until the drag ends.
+    /// During a drag: the part would move to this clock. Sent in every frame until the drag ends.
     Preview(Handle, u8),
-    /// To this clock, which it can reach and where it is not yet.
+    /// The part was moved to this clock, which it can reach and which differs from the present one.
     Moved(Handle, u8),
-    /// Another cell, by its clock.
+    /// Another cell was selected, by its clock.
     Selected(u8),
     /// The bit of this clock shall be the other one.
     Toggled(u8),
@@ -72,12 +72,12 @@ struct Drag {
     to: Option<u8>,
 }
 
-/// Draws it and says what was done. One strip a `Ui`: another needs an id of its own (`push_id`).
+/// Draws the strip and returns the user's action. One strip per `Ui`: another needs its own id (`push_id`).
 pub(crate) fn bit_strip(ui: &mut Ui, theme: &Theme, model: &BitStrip<'_>) -> Option<StripEvent> {
     let base = ui.make_persistent_id("bit_strip");
     let drag: Option<Drag> = ui.data(|data| data.get_temp(base));
     let held = drag.filter(|drag| model.movable && grips::is_dragged(ui, base, *drag));
-    // The frame is drawn as it would become; the handles stay where they are in the present frame.
+    // The frame is drawn as it would become; the handles stay at their present places.
     let preview = held.and_then(|drag| Some(model.strip.moved(drag.handle, drag.to?, model.following)));
     let shown = preview.as_ref().unwrap_or(model.strip);
     let cells = model.frame.filter(|_| preview.is_none()).map(|frame| model.strip.cells_of(frame)).unwrap_or_default();
@@ -106,14 +106,14 @@ struct StripContext<'a> {
     model: &'a BitStrip<'a>,
     /// The frame that is drawn.
     shown: &'a Strip,
-    /// Its bits, where they are known.
+    /// Its bits, if they are known.
     cells: &'a [CellState],
     rows: &'a Rows,
     base: Id,
 }
 
 impl StripContext<'_> {
-    /// The keyboard on the cells.
+    /// Handles the keyboard on the cells.
     fn choose(&self) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let clocks = model.strip.layout().clocks();
@@ -151,7 +151,7 @@ impl StripContext<'_> {
         selected.filter(|_| turns && model.toggles).map(StripEvent::Toggled)
     }
 
-    /// A cell in words, with its bit.
+    /// Returns the text of a cell, with its bit.
     fn says(&self, clock: u8) -> String {
         let words = self.theme.words(&strip::cell(self.shown, clock));
         match self.shown_at(clock) {
@@ -164,7 +164,7 @@ impl StripContext<'_> {
         self.cells.get(usize::from(clock.checked_sub(1)?)).copied()
     }
 
-    /// The number of a clock's bit, 0 the lowest.
+    /// Returns the number of a clock's bit, 0 the lowest.
     fn number(&self, clock: u8) -> Option<u8> {
         let cell = self.shown.cells().get(usize::from(clock.checked_sub(1)?))?;
         match cell.role {
@@ -173,7 +173,7 @@ impl StripContext<'_> {
         }
     }
 
-    /// The pointer on the cells.
+    /// Handles the pointer on the cells.
     fn press(&self, tags: &[Tag]) -> Option<StripEvent> {
         let (ui, model) = (self.ui, self.model);
         let mut event = None;
@@ -184,7 +184,7 @@ impl StripContext<'_> {
                 let rect = Rect::from_min_max(egui::pos2(cell.left(), self.rows.number(clock).y - 7.0), cell.max);
                 let response = ui.interact(rect, self.base.with("cell").with(clock), Sense::CLICK);
                 if response.clicked() {
-                    // The arrows go on from here.
+                    // The arrow keys continue from here.
                     ui.memory_mut(|memory| memory.request_focus(self.base.with("cells")));
                     let is_bit = response.interact_pointer_pos().is_some_and(|pos| cell.contains(pos));
                     let turns = is_bit && model.toggles && model.frame.is_some();
@@ -221,7 +221,7 @@ impl StripContext<'_> {
     }
 }
 
-/// The worst that any of these clocks tells.
+/// Returns the worst meaning of these clocks.
 fn tells(cells: &[CellState], clocks: std::ops::RangeInclusive<u8>) -> Option<Meaning> {
     let own = clocks.filter_map(|clock| cells.get(usize::from(clock.checked_sub(1)?))?.tells);
     own.min_by_key(|meaning| *meaning == Meaning::Warning)

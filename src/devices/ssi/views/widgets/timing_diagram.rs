@@ -1,12 +1,12 @@
 //! A burst in time: the clock line, the data line with its bits, and the times between them, to scale.
 //!
-//! * **Size**: as wide as there is room; as high as its words need.
-//! * **Keyboard**: nothing to operate; Tab passes it.
-//! * **Pointer**: the time under it, with the clock and what it carries.
-//! * **Accessible**: an image with the label given; its value are the times in words.
-//! * **Painting**: moments as lines from their words down through all; the clock as it changes; the bits in the colours of
+//! * **Size**: the available width; the height required by its texts.
+//! * **Keyboard**: none; Tab skips it.
+//! * **Pointer**: the time under it, with the clock and its content.
+//! * **Accessible**: an image with the given label; its value is the times as text.
+//! * **Painting**: moments as lines from their texts down through all; the clock as it changes; the bits in the colours of
 //!   their fields, the field's name below; each time as a line with ends in a lane. Where nothing happens the axis is
-//!   broken, and how much is left out stands there.
+//!   broken, with the omitted time.
 
 mod axis;
 mod place;
@@ -210,7 +210,7 @@ impl Picture<'_> {
         }
     }
 
-    /// A bit as it is drawn on a bus: its ends slant.
+    /// Draws a bit as on a bus: with slanted ends.
     fn bit(&self, (from, to): (f32, f32), ink: Color32, bit: Option<bool>) {
         let row = self.rows.data;
         let strength = if bit == Some(true) { 0.45 } else { 0.16 };
@@ -237,7 +237,7 @@ impl Picture<'_> {
         }
     }
 
-    /// The short names of the fields, where there is room.
+    /// Draws the short names of the fields if they fit.
     fn names(&self) {
         let diagram = self.model.diagram;
         for field in diagram.strip().fields() {
@@ -276,7 +276,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Each time as a line with ends; from where it may end already, a thinner one.
+    /// Draws each time as a line with ends; from its earliest end on, a thinner one.
     fn bars(&self, words: &[Arc<Galley>], put: &[Put]) {
         let palette = self.theme.palette;
         for ((span, galley), put) in self.model.diagram.spans().iter().zip(words).zip(put) {

@@ -13,7 +13,7 @@ fn the_published_connection() {
     );
     let theirs =
         "02 00 02 80 08 00 01 00 01 00 01 00 00 00 B1 00 12 00 01 00 37 2A 00 00 00 80 02 00 00 00 00 00 00 00 00 00";
-    // The reply took a while; an interval after the opening there is the first packet.
+    // The reply took a while; the first packet is sent an interval after the opening.
     host.wait(4);
     assert_eq!(host.datagrams(), []);
     host.wait(1);
@@ -41,7 +41,7 @@ fn the_published_connection() {
     assert_eq!(host.datagrams(), []);
 }
 
-/// The published request with other bytes in it.
+/// Returns the published request with other bytes in it.
 fn open_with(changes: &[(&str, &str)]) -> String {
     changes.iter().fold(OPEN.to_owned(), |text, (from, to)| {
         assert_eq!(text.matches(from).count(), 1, "{from}");
@@ -112,12 +112,12 @@ fn a_second_master_is_refused() {
     second.register();
     assert_eq!(second.open(&other), "D4 00 01 01 06 01 01 00 34 12 CE AB 00 00 00 00");
     second.asks(&CLOSE.replace("34 12 CD AB", "34 12 CE AB"), "CE 00 01 01 07 01 01 00 34 12 CE AB 00 00 00 00");
-    // 80 ms without a packet, and the first is gone.
+    // After 80 ms without a packet the first one has ended.
     second.wait(80);
     assert_eq!(second.open(&other), OPENED.replace("34 12 CD AB", "34 12 CE AB").replace("01 00 02 00", "02 00 02 00"));
 }
 
-/// Where packets go to is what the originator said.
+/// Packets are sent to the address given by the originator.
 #[test]
 fn cyclic_data_go_where_they_are_wanted() {
     for (socket, expected) in [
@@ -140,11 +140,11 @@ fn only_packets_that_are_in_their_turn_count() {
     let mut host = Host::opened("");
     let next = host.words(1, &[0x0400]);
     assert_eq!(host.status(), Some(0x2A31));
-    // The same again, an older one, and one before the first.
+    // A repeated one, an older one, and one before the first.
     for sequence in [next - 1, next - 2, 0] {
         host.word(sequence, 0x0401);
     }
-    // Another connection; too short and too long; no packet; cut off anywhere.
+    // Another connection; too short and too long; not a packet; cut off anywhere.
     host.packet_of(0x0002_0002, next, 1, &[0; 16]);
     host.packet(next, 1, &[1; 15]);
     host.packet(next, 1, &[1; 17]);
@@ -158,13 +158,13 @@ fn only_packets_that_are_in_their_turn_count() {
     assert_eq!(host.status(), Some(0x2A31));
     let figures = host.target.figures();
     assert_eq!((figures.packets, figures.stale, figures.foreign, figures.malformed), (3, 3, 1, 42));
-    // One that was lost is no trouble.
+    // A missing packet does no harm.
     host.word(next + 5, 0x0401);
     host.wait(10);
     assert_eq!(host.status(), Some(0x2A33));
 }
 
-/// An idle header stands for control words of 0.
+/// An idle header has the effect of control words of 0.
 #[test]
 fn idle_data_do_not_count() {
     let mut host = Host::opened("");
@@ -175,7 +175,7 @@ fn idle_data_do_not_count() {
     assert_eq!(host.status(), Some(0x2A30));
 }
 
-/// Reference 7: four intervals times two. The drive fails and stands; another connection finds it so.
+/// Reference 7: four intervals times two. The drive fails and stops; another connection finds it in this state.
 #[test]
 fn a_silent_master_is_lost_at_its_time_out() {
     let mut host = Host::opened("");
@@ -197,7 +197,7 @@ fn a_silent_master_is_lost_at_its_time_out() {
     assert_eq!(host.open(OPEN), OPENED.replace("01 00 02 00 01", "02 00 02 00 01"));
 }
 
-/// A TCP connection that ends takes its session along, and leaves the cyclic connection to its time-out.
+/// The end of a TCP connection ends its session, and leaves the cyclic connection to its time-out.
 #[test]
 fn a_cyclic_connection_outlives_its_tcp_connection() {
     let mut host = Host::opened("");

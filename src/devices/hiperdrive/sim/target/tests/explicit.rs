@@ -34,7 +34,7 @@ fn the_published_requests() {
     host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     host.asks("10 03 20 65 24 01 30 9E 00 00 01 FE", "90 00 00 00");
     host.asks("0E 03 20 65 24 01 30 9E", "8E 00 00 00 00 00 01 FE");
-    // 158 above the position; what the drive keeps of it is 8501.
+    // 158 above the position; the drive stores error 8501.
     host.asks("10 03 20 65 24 01 30 9E FF FF FF 7F", "90 00 09 00");
     host.asks("0E 03 20 65 24 01 30 6C", "8E 00 00 00 01 85");
     host.asks("10 03 20 65 24 01 30 65 00 04", "90 00 00 00");
@@ -42,14 +42,15 @@ fn the_published_requests() {
     host.asks("10 03 20 65 24 01 30 98 01", "90 00 00 00");
     host.asks("10 03 20 64 24 01 30 2F 01 00", "90 00 00 00");
     host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
-    // While it saves nothing is written; then 47 is 0 again.
+    // During a save nothing is written; then 47 is 0 again.
     host.asks("10 03 20 65 24 01 30 98 01", "90 00 0C 00");
     host.wait(200);
     host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }
 
-/// Issue 21.8: what resets drives is answered when it is done, as the manual has it; what is asked meanwhile is not held up.
+/// Issue 21.8: a reset of drives is answered after it, as in the manual; other requests meanwhile are answered without
+/// delay.
 #[test]
 fn a_reset_is_answered_when_it_is_done() {
     for (query, ms) in [("", 1000), ("reset=8000", 8000), ("hub=8&reset=8000", 8000)] {
@@ -57,7 +58,7 @@ fn a_reset_is_answered_when_it_is_done() {
         let reset = frame(0x6F, host.session, &unconnected(&bytes("10 03 20 64 24 01 30 2F FC FF")));
         assert!(host.bytes(&reset).is_empty(), "{query}");
         host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 01 00");
-        // The request was taken 10 ms ago, and its reply takes 1 ms.
+        // The request arrived 10 ms ago, and its reply takes 1 ms.
         host.wait(ms - 10);
         assert!(host.target.poll(host.now).is_empty(), "{query}");
         host.wait(1);
@@ -65,7 +66,7 @@ fn a_reset_is_answered_when_it_is_done() {
         assert_eq!(hex(&reply[reply.len() - 4..]), "90 00 00 00", "{query}");
         host.asks("0E 03 20 64 24 01 30 2F", "8E 00 00 00 00 00");
     }
-    // So is what resets one drive: 152 from 0 to 1, and 199.
+    // The same for a reset of one drive: 152 from 0 to 1, and 199.
     let mut host = Host::new("requested=0");
     for (set, is_slow) in [("98 01", true), ("98 01", false), ("C7 00", true)] {
         let set = frame(0x6F, host.session, &unconnected(&bytes(&format!("10 03 20 65 24 01 30 {set}"))));
@@ -104,7 +105,7 @@ fn what_cannot_be_done_is_refused_by_its_status() {
     }
 }
 
-/// Drive n is n classes behind the device's (reference 7).
+/// The class of drive n is n above the device's (reference 7).
 #[test]
 fn the_drives_of_a_hub() {
     let mut host = Host::new("hub=8&drives=1,0,1,1,1,1,1,1&position=65536&variant=HDA70&requested=1");
@@ -125,7 +126,8 @@ fn the_drives_of_a_hub() {
     four.asks("0E 03 20 64 24 01 30 0D", "8E 00 00 00 10 48 49 50 45 52 44 52 49 56 45 20 48 55 42 2D 34");
 }
 
-/// By hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial 4711 = 1267, "HIPERDRIVE SINGLE" has 17 characters.
+/// Worked out by hand: vendor 03F2, type 000C, code 1, revision 1.2, status, serial 4711 = 1267, "HIPERDRIVE SINGLE" has 17
+/// characters.
 const IDENTITY: &str =
     "F2 03 0C 00 01 00 01 02 30 00 67 12 00 00 11 48 49 50 45 52 44 52 49 56 45 20 53 49 4E 47 4C 45";
 
@@ -167,7 +169,7 @@ fn other_commands_have_a_status_or_no_reply() {
     assert_eq!(again[4..12], [&host.session.to_le_bytes()[..], &[1, 0, 0, 0]].concat());
     let mut other = Host { target: host.target.clone(), now: host.now, session: 0 };
     assert_eq!(other.frame(0x65, &bytes("02 00 00 00")), Some((0x69, vec![])));
-    // A session is of its connection.
+    // A session belongs to its connection.
     other.session = host.session;
     assert_eq!(other.frame(0x6F, &unconnected(&bytes("0E 03 20 65 24 01 30 6B"))).map(|(s, _)| s), Some(0x64));
     // Options make a frame void.
@@ -183,12 +185,12 @@ fn other_commands_have_a_status_or_no_reply() {
     host.asks("0E 03 20 65 24 01 30 6B", "8E 00 00 00 00 00 00 00");
 }
 
-/// As ODVA has it: attribute 5 waits for attribute 3 to say that addresses are stored.
+/// By ODVA: attribute 5 can be set only after attribute 3 is stored addresses.
 #[test]
 fn the_network_is_set() {
     let mut host = Host::new("switch=17");
     host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
-    // 192.168.1.17, 255.255.255.0 and no more, low byte first; an empty name.
+    // 192.168.1.17, 255.255.255.0 and nothing else, low byte first; an empty name.
     let fixed = "11 01 A8 C0 00 FF FF FF 00 00 00 00 00 00 00 00 00 00 00 00 00 00";
     host.asks("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {fixed}"));
     // 10.0.0.5, 255.0.0.0, 10.0.0.1, no servers, "plant".
@@ -201,7 +203,7 @@ fn the_network_is_set() {
     host.asks("0E 03 20 F5 24 01 30 05", &format!("8E 00 00 00 {wanted}"));
     host.asks("0E 03 20 F5 24 01 30 04", "8E 00 00 00 02 00 20 F6 24 01");
     host.asks("0E 03 20 F6 24 01 30 03", "8E 00 00 00 02 00 00 00 12 67");
-    // −3 is everything from the factory.
+    // −3 restores all factory settings.
     host.asks("10 03 20 64 24 01 30 2F FD FF", "90 00 00 00");
     host.asks("0E 03 20 F5 24 01 30 03", "8E 00 00 00 02 00 00 00");
 }

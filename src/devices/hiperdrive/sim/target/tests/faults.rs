@@ -1,4 +1,4 @@
-//! What goes wrong on purpose.
+//! Injected faults.
 
 use super::*;
 
@@ -24,7 +24,7 @@ fn saving_keeps_and_what_was_not_saved_is_forgotten() {
     host.target.power_cycle();
     host.register();
     host.asks(get, "8E 00 00 00 C8 00");
-    // −1 and −2 are about the adapter's own parameters: 166 is the drive's.
+    // −1 and −2 concern the adapter's own parameters; 166 belongs to the drive.
     for recall in ["10 03 20 64 24 01 30 2F FF FF", "10 03 20 64 24 01 30 2F FE FF"] {
         host.asks(recall, "90 00 00 00");
         host.wait(200);
@@ -39,7 +39,7 @@ fn saving_keeps_and_what_was_not_saved_is_forgotten() {
     assert_eq!(host.target.with(|station| station.stores()), 2);
 }
 
-/// Half of what is saved is there when the supply comes back: by their numbers, 152 but not 186.
+/// Half of the values are saved when the supply returns: by number, 152 but not 186.
 #[test]
 fn the_supply_is_lost_in_a_save() {
     let mut host = Host::new("fault=die-in-store:2");
@@ -57,7 +57,7 @@ fn the_supply_is_lost_in_a_save() {
     host.target.on_datagram(host.now, FROM, &frame(0x63, 0, &[]));
     host.wait(1000);
     assert_eq!((host.datagrams(), get(&mut host)), (vec![], None));
-    // It comes back with whoever connects.
+    // It returns with the next connection.
     host.target.connect(host.now);
     assert_eq!(get(&mut host).map(|(status, _)| status), Some(0x64));
     host.register();
@@ -68,10 +68,10 @@ fn the_supply_is_lost_in_a_save() {
     host.asks(GET_107, "8E 00 00 00 00 00 00 00");
 }
 
-/// Behind so many frames and packets it neither answers nor hears: its drives lose their master.
+/// After this number of frames and packets it neither answers nor receives: its drives lose their master.
 #[test]
 fn a_silent_target_does_not_act_either() {
-    // RegisterSession, ForwardOpen and the fifteen packets that set it going.
+    // RegisterSession, ForwardOpen and the fifteen packets that start the motion.
     let mut host = Host::opened("fault=silent-after:17");
     host.words(1, &[0x0400, 0x0401, 0x0409, 0x0439, 0x0479]);
     host.wait(10);
@@ -111,7 +111,7 @@ fn replies_and_packets_get_lost_or_damaged() {
     }
 }
 
-/// A fifth of the packets is lost both ways: the connection lives, as eight in a row would have to be.
+/// A fifth of the packets is lost in both directions: the connection survives, since eight in a row would have to be lost.
 #[test]
 fn a_lossy_line_is_no_lost_master() {
     let mut host = Host::opened("seed=3");

@@ -1,5 +1,4 @@
-//! The target against packets of the reference and packets put together by hand: what is sent is bytes, and so is what is
-//! expected.
+//! The target against packets of the reference and packets composed by hand: input and expected output are bytes.
 
 mod any;
 mod connections;
@@ -40,13 +39,13 @@ fn config(query: &str) -> Config {
     Config::from_pairs(&pairs(query)).unwrap()
 }
 
-/// A frame: command, session, data; status, context and options are 0.
+/// Builds a frame: command, session, data; status, context and options are 0.
 fn frame(command: u16, session: u32, data: &[u8]) -> Vec<u8> {
     let length = u16::try_from(data.len()).unwrap();
     [&command.to_le_bytes()[..], &length.to_le_bytes(), &session.to_le_bytes(), &[0; 16], data].concat()
 }
 
-/// The data of SendRRData: interface, time-out, two items.
+/// Builds the data of SendRRData: interface, time-out, two items.
 fn unconnected(message: &[u8]) -> Vec<u8> {
     let length = u16::try_from(message.len()).unwrap();
     [&bytes("00 00 00 00 00 00 02 00 00 00 00 00 B2 00")[..], &length.to_le_bytes(), message].concat()
@@ -74,21 +73,21 @@ impl Host {
         self.now = self.now + Duration::from_millis(ms);
     }
 
-    /// Sends bytes and gives what has come back within 5 ms.
+    /// Sends bytes and returns the bytes received within 5 ms.
     fn bytes(&mut self, bytes: &[u8]) -> Vec<u8> {
         self.target.on_bytes(self.now, bytes);
         self.wait(5);
         self.target.poll(self.now)
     }
 
-    /// A frame in the session: the status of its reply, and the data.
+    /// Sends a frame in the session; returns the status of its reply, and the data.
     fn frame(&mut self, command: u16, data: &[u8]) -> Option<(u32, Vec<u8>)> {
         let reply = self.bytes(&frame(command, self.session, data));
         let status = reply.get(8..12)?.try_into().unwrap();
         Some((u32::from_le_bytes(status), reply[24..].to_vec()))
     }
 
-    /// A CIP request; the reply's items, from the CIP message on.
+    /// Sends a CIP request; returns the items of the reply from the CIP message on.
     fn items(&mut self, request: &str) -> String {
         let (status, data) = self.frame(0x6F, &unconnected(&bytes(request))).expect("no reply");
         assert_eq!(status, 0, "{request}");
@@ -101,7 +100,7 @@ impl Host {
         assert_eq!(self.items(request), reply, "{request}");
     }
 
-    /// ForwardOpen; the reply without the socket behind it.
+    /// Sends a ForwardOpen; returns the reply without the socket item after it.
     fn open(&mut self, request: &str) -> String {
         let reply = self.items(request);
         reply.split(" 00 80 10 00").next().unwrap().to_owned()
@@ -133,13 +132,13 @@ impl Host {
         self.target.on_datagram(self.now, FROM, &packet.concat());
     }
 
-    /// The data of the reference for the one drive of an adapter: a control word, all speed and torque, 2.5 turns.
+    /// Sends the data of the reference for the one drive of an adapter: a control word, full speed and torque, 2.5 turns.
     fn word(&mut self, sequence: u32, control: u16) {
         let [low, high] = control.to_le_bytes();
         self.packet(sequence, 1, &[low, high, 100, 100, 0, 0x80, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0]);
     }
 
-    /// Words one after the other, three packets each; the next number.
+    /// Sends words one after the other, three packets each; returns the next number.
     fn words(&mut self, mut sequence: u32, words: &[u16]) -> u32 {
         for word in words {
             for _ in 0..3 {
@@ -151,13 +150,13 @@ impl Host {
         sequence
     }
 
-    /// What came over UDP since the last time.
+    /// Returns the datagrams received since the last call.
     fn datagrams(&mut self) -> Vec<(SocketAddrV4, String)> {
         let came = self.target.poll_datagrams(self.now);
         came.into_iter().map(|(to, packet)| (to, hex(&packet))).collect()
     }
 
-    /// The status word of the newest packet.
+    /// Returns the status word of the newest packet.
     fn status(&mut self) -> Option<u16> {
         let (_, packet) = self.datagrams().pop()?;
         let packet = bytes(&packet);

@@ -1,9 +1,9 @@
-//! The facts that results rest on: what falls with them, what proves them, what is told of them.
+//! The facts that results depend on: which results they make void, how they are proved and reported.
 
 use super::*;
 use crate::devices::hiperdrive::protocol::{ErrorCode, Length};
 
-/// Back to the step that does not hold any more: by a press, and not before.
+/// Goes back to the step that no longer holds: by a press, and not before.
 #[track_caller]
 fn back_to(axis: &mut Axis, seen: &DriveFacts, step: AxisStep) {
     let shown = axis.step();
@@ -21,7 +21,7 @@ fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
     let (mut axis, mut seen) = until_jog();
     press(&mut axis, &mut seen, Button::Take);
     assert_eq!(axis.may_move(&seen), Ok(()));
-    // Somebody else has changed the scale.
+    // Another master has changed the scale.
     seen.scale = Some(PositionScale::FACTORY);
     back_to(&mut axis, &seen, AxisStep::Scale);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_scale");
@@ -35,11 +35,11 @@ fn limits_are_confirmed_under_the_scale_that_the_drive_has() {
     back_to(&mut axis, &seen, AxisStep::Confirm);
 }
 
-/// Issue 21.6 (i): an earlier fact falls, and the page stays until somebody goes back.
+/// Issue 21.6 (i): an earlier fact becomes void, and the page stays until the user goes back.
 #[test]
 fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
     let (mut axis, mut seen) = until_test();
-    // Everything is gone.
+    // Everything is discarded.
     seen = DriveFacts { controlled: true, pitch: seen.pitch, ..fresh() };
     back_to(&mut axis, &seen, AxisStep::Request);
     assert!(AxisStep::ALL[1..].iter().all(|step| axis.reached(*step) == Reached::Ahead));
@@ -51,7 +51,7 @@ fn a_drive_that_lost_what_was_not_saved_is_set_up_from_there() {
     assert_eq!((axis.step(), axis.fallen()), (AxisStep::Test, None));
 }
 
-/// Issue 21.6 (c): whoever changes pitch, reference or a limit makes everything behind it undone; taught limits as well.
+/// Issue 21.6 (c): any change of pitch, reference or a limit makes all later results void, including taught limits.
 #[test]
 fn what_rests_on_a_changed_fact_falls_with_it() {
     let tested = || {
@@ -61,12 +61,12 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
         (axis, seen)
     };
     let done = |axis: &Axis| AxisStep::ALL.into_iter().filter(|step| axis.reached(*step) == Reached::Done).count();
-    // Changed by somebody else, on another page, by another master: the drive has it, and that counts.
+    // Changed on another page or by another master: the drive has it, and that counts.
     type Case<'c> = (&'c str, fn(&mut DriveFacts), AxisStep);
     let cases: [Case<'_>; 5] = [
         ("a limit", |seen| seen.limits = Some((-1000, 2001)), AxisStep::Confirm),
         ("the reference to another number", |seen| _ = seen.values.insert(198, 34_800), AxisStep::Reference),
-        // By another master at another place: `standstill`.
+        // By another master at another place: see `standstill`.
         ("the reference from this window, to the same number", |seen| seen.times_set += 1, AxisStep::Reference),
         ("the pitch", |seen| seen.pitch = Some(Length { nanometres: 5_000_000 }), AxisStep::Scale),
         ("the request", |seen| seen.requested = Some(false), AxisStep::Request),
@@ -80,7 +80,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
         assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""), "{label}");
         assert!(axis.ask(Button::Go(TestTarget::Upper), &seen).is_err(), "{label}");
     }
-    // The same by the run itself: back to the reference, 13.44 mm beside the one before. 1500 steps become 1472.
+    // The same by the run itself: back to the reference, 13.44 mm from the one before. 1500 steps become 1472.
     let (mut axis, mut seen) = tested();
     (0..3).for_each(|_| axis.back(&seen));
     assert_eq!((axis.step(), done(&axis)), (AxisStep::Reference, 6));
@@ -90,7 +90,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     assert_eq!(done(&axis), 5);
     assert_eq!((axis.entries().lower.as_str(), axis.entries().upper.as_str()), ("", ""));
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
-    // Another lower limit: the test was between others.
+    // Another lower limit: the test was between other limits.
     let (mut axis, mut seen) = tested();
     (0..2).for_each(|_| axis.back(&seen));
     axis.edit(Entries { lower: "-9".to_owned(), ..axis.entries().clone() });
@@ -99,7 +99,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(158, -900), (160, 2000)]));
     next(&mut axis, &seen, AxisStep::Test);
     assert_eq!(axis.fallen(), None, "the review of their plan confirms them");
-    // Who only looks back and goes on loses nothing.
+    // Going back to look, and forward again, loses nothing.
     let (mut axis, seen) = tested();
     (0..4).for_each(|_| axis.back(&seen));
     for step in [AxisStep::Reference, AxisStep::Lower, AxisStep::Upper, AxisStep::Test] {
@@ -108,7 +108,7 @@ fn what_rests_on_a_changed_fact_falls_with_it() {
     assert!(axis.outcome(TestTarget::Middle).is_some());
 }
 
-/// Issue 21.6 (b): a jump of the position, and motion that no pad makes, are no jog.
+/// Issue 21.6 (b): a jump of the position, and motion without a held button, are not a jog.
 #[test]
 fn only_motion_under_a_held_pad_is_a_jog() {
     let (mut axis, mut seen) = until_jog();
@@ -118,7 +118,7 @@ fn only_motion_under_a_held_pad_is_a_jog() {
         axis.look(&seen);
     }
     assert_eq!((axis.travel(), axis.may_go_on(&seen).unwrap_err().id()), (Travel::default(), "hd_axis.needs_up"));
-    // The first packets under a held pad: none of them is a position yet.
+    // The first packets while a button is held: none of them contains a position yet.
     seen.held = Some((7, Direction::Clockwise));
     seen.position = None;
     axis.look(&seen);
@@ -128,7 +128,7 @@ fn only_motion_under_a_held_pad_is_a_jog() {
     at(&mut seen, 5100);
     axis.look(&seen);
     assert_eq!((axis.travel().up, axis.travel().clockwise_is_up), (100, Some(true)));
-    // Let go, it is moved by something else, and pressed again.
+    // Released, moved by something else, and pressed again.
     seen.held = None;
     at(&mut seen, -9000);
     axis.look(&seen);
@@ -137,7 +137,7 @@ fn only_motion_under_a_held_pad_is_a_jog() {
     assert_eq!((axis.travel().up, axis.travel().down), (100, 0));
 }
 
-/// Issue 21.6 (e): a connection that was lost and found again is no proof that the supply was off.
+/// Issue 21.6 (e): a connection that was lost and restored is no proof that the supply was off.
 #[test]
 fn a_restart_is_read_or_said() {
     let found = |axis: &Axis, seen: &DriveFacts| {
@@ -147,7 +147,7 @@ fn a_restart_is_read_or_said() {
         axis.lose();
         axis.surveyed(seen, false);
     };
-    // Nothing was marked: a person has to say it, and the result tells so.
+    // Nothing was marked: the user has to state it, and the result says so.
     let (mut axis, mut seen) = until_power();
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.needs_power");
     again(&mut axis, &seen);
@@ -159,18 +159,18 @@ fn a_restart_is_read_or_said() {
         "{}",
         found(&axis, &seen)
     );
-    // It was marked, and still is: nobody can say anything else.
+    // It was marked, and still is: the user cannot state the opposite.
     let (mut axis, mut seen) = until_power();
     press(&mut axis, &mut seen, Button::Do);
     again(&mut axis, &seen);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
-    // Then it is off indeed.
+    // Then it really is off.
     axis.lose();
     seen.values.insert(182, 1000);
     axis.surveyed(&seen, false);
     assert!(axis.survived() && found(&axis, &seen).contains("The restart was detected"));
-    // Somebody else has changed it before: that proves it as well.
+    // Another master has changed it before: that proves it as well.
     let (mut axis, mut seen) = until_power();
     seen.values.insert(182, 500);
     axis.look(&seen);
@@ -181,7 +181,7 @@ fn a_restart_is_read_or_said() {
     assert!(axis.survived());
 }
 
-/// Issue 21.6 (g): a fault is told with its code, keeps everything from moving, and can be acknowledged here.
+/// Issue 21.6 (g): a fault is shown with its code, blocks all motion, and can be acknowledged here.
 #[test]
 fn a_fault_is_told_and_acknowledged_in_the_run() {
     let (axis, mut seen) = until_test();
@@ -199,7 +199,8 @@ fn a_fault_is_told_and_acknowledged_in_the_run() {
     }
 }
 
-/// Issue 21.6 (d, h): what is other than saved is told, and written back and compared; a position is set at its place.
+/// Issue 21.6 (d, h): differences from the saved values are reported, written back and compared; a position is set at its
+/// place.
 #[test]
 fn what_is_other_than_saved_is_told_and_written_back() {
     let (mut axis, mut seen) = (run(), fresh());
@@ -230,14 +231,14 @@ fn what_is_other_than_saved_is_told_and_written_back() {
     assert_eq!(axis.ask(Button::Recall, &seen).unwrap_err().id(), "hd_axis.nothing_back");
 }
 
-/// Issue 21.6 (f): a pitch that nobody confirmed is no spindle: 65536 steps a turn stay steps until there is one.
+/// Issue 21.6 (f): an unconfirmed pitch is no spindle: 65536 steps per turn stay steps until there is one.
 #[test]
 fn millimetres_come_with_a_spindle() {
     let (mut axis, mut seen) = (run(), fresh());
     let position = |seen: &DriveFacts| words::millimetres(seen.ruler(), 400).words(Language::English);
     press(&mut axis, &mut seen, Button::Do);
     next(&mut axis, &seen, AxisStep::Scale);
-    // A drive with 400 steps a turn, of whatever spindle: nothing is proposed that would fit it by accident.
+    // A drive with 400 steps per turn of an unknown spindle: no pitch is proposed that would fit it by accident.
     seen.scale = PositionScale::new(400, 256).ok();
     assert_eq!(axis.entries().pitch, "");
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "entry.missing");
@@ -250,7 +251,7 @@ fn millimetres_come_with_a_spindle() {
     assert_eq!((known.entries().pitch.as_str(), known.entries().resolution.as_str()), ("8", "0.02"));
 }
 
-/// Issue 21.6 (j): the end as text, in millimetres, on lines that fit a page.
+/// Issue 21.6 (j): the report of the end, in millimetres, in lines that fit a page.
 #[test]
 fn the_end_of_a_run_is_a_report() {
     let device = Device { name: "HIPERDRIVE HUB-4 · 16".to_owned(), variant: None, serial_number: "77".to_owned() };
@@ -259,7 +260,7 @@ fn the_end_of_a_run_is_a_report() {
     axis.lose();
     axis.surveyed(&seen, true);
     go_on(&mut axis, &seen);
-    // What comes later is not of this run.
+    // Later changes are not part of this run.
     at(&mut seen, 0);
     seen.limits = Some((-5, 5));
     for language in [Language::English, Language::German] {

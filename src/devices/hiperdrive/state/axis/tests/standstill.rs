@@ -1,4 +1,4 @@
-//! A reference that was set again at the same number: what a position that changes at a standstill tells, and what it does not.
+//! A reference set again to the same number: what a position that changes at a standstill proves, and what not.
 
 use std::time::Duration;
 
@@ -16,7 +16,7 @@ fn read(seen: &mut DriveFacts, ms: u64, position: i32, word: u16) {
     seen.actual_at = Some(Moment::START + Duration::from_millis(ms));
 }
 
-/// In the test, read at 10 s: the axis stands at 2000, with 400 steps a turn.
+/// In the test step, read at 10 s: the axis stands still at 2000, with 400 steps per turn.
 fn standing() -> (Axis, DriveFacts) {
     let (mut axis, mut seen) = until_test();
     read(&mut seen, 10_000, 2000, STANDS);
@@ -24,8 +24,8 @@ fn standing() -> (Axis, DriveFacts) {
     (axis, seen)
 }
 
-/// Issue 21.6 (c): 198 keeps its number where the reference is set again elsewhere; a shaft turns at most 35 rpm (166), which
-/// are 210° a second, readjusts by up to 5°, and reports up to 0.1 s late.
+/// Issue 21.6 (c): 198 keeps its number if the reference is set again elsewhere; a shaft turns at most 35 rpm (166), which
+/// is 210° per second, readjusts by up to 5°, and reports up to 0.1 s late.
 #[test]
 fn a_position_that_jumps_at_a_standstill_is_another_reference() {
     let case = |ms: u64, position: i32, word: u16| {
@@ -59,7 +59,7 @@ fn a_position_that_jumps_at_a_standstill_is_another_reference() {
     assert_eq!(axis.may_move(&seen).unwrap_err().id(), "hd_axis.fallen");
 }
 
-/// Issue 21.6 (c): what is known to change the position is no jump.
+/// Issue 21.6 (c): a known change of the position is no jump.
 #[test]
 fn a_position_that_is_changed_from_here_is_no_jump() {
     type Case<'c> = (&'c str, fn(&mut DriveFacts));
@@ -75,7 +75,7 @@ fn a_position_that_is_changed_from_here_is_no_jump() {
         axis.look(&seen);
         assert_eq!((axis.fallen(), words::unexplained(&axis, &seen)), (None, None), "{label}");
     }
-    // Set from here: the run is at the step behind it, and the new numbers are what it counts by.
+    // Set by this program: the run is at the step after it, and counts by the new numbers.
     let (mut axis, mut seen) = standing();
     (0..3).for_each(|_| axis.back(&seen));
     axis.edit(Entries { reference: "1".to_owned(), ..axis.entries().clone() });
@@ -88,14 +88,14 @@ fn a_position_that_is_changed_from_here_is_no_jump() {
     assert_eq!((axis.fallen(), axis.reference()), (None, Some(128)));
 }
 
-/// Issue 21.6 (c): over a connection that was lost nobody can tell a motion from a reference; that is said, also in the report,
-/// until a person has been at the reference again.
+/// Issue 21.6 (c): after a lost connection a motion cannot be distinguished from a new reference; this is reported, also in
+/// the report, until the user has been at the reference again.
 #[test]
 fn a_position_that_changed_unseen_is_told_and_not_guessed() {
     let again = |position: i32| {
         let (mut axis, mut seen) = standing();
         axis.lose();
-        // The clock of the next session begins anew.
+        // The clock of the next session starts again.
         read(&mut seen, 0, position, STANDS);
         axis.look(&seen);
         (axis, seen)
@@ -107,7 +107,7 @@ fn a_position_that_changed_unseen_is_told_and_not_guessed() {
     let told =
         |axis: &Axis, seen: &DriveFacts| words::unexplained(axis, seen).map(|text| text.words(Language::English));
     assert!(told(&axis, &seen).unwrap().starts_with("The position changed by -3.48 mm while"));
-    // Nobody has set or confirmed a reference yet: nothing counts by it.
+    // No reference was set or confirmed yet: nothing counts by it.
     let (mut early, mut fresh) = until_jog();
     read(&mut fresh, 0, 0, STANDS);
     early.look(&fresh);

@@ -1,8 +1,8 @@
-//! The last step where its own write is refused or cut off.
+//! The last step if its own write is refused or interrupted.
 
 use super::*;
 
-/// Issue 21.6 (e): the mark is never saved, so that a write of it that fails leaves everything else as it was saved.
+/// Issue 21.6 (e): the mark is never saved, so a failed write of it leaves everything else as saved.
 #[test]
 fn a_mark_that_was_not_written_takes_nothing_back() {
     for begun in [false, true] {
@@ -15,7 +15,7 @@ fn a_mark_that_was_not_written_takes_nothing_back() {
     }
 }
 
-/// Issue 21.6 (e): the line is lost in the middle of the write of the mark. It has come, or it has not.
+/// Issue 21.6 (e): the connection is lost during the write of the mark. The mark has arrived, or it has not.
 #[test]
 fn a_mark_that_was_cut_off_is_read() {
     let cut_off = |value: i64| {
@@ -36,12 +36,12 @@ fn a_mark_that_was_cut_off_is_read() {
         let Some(Power::Back { restart, .. }) = axis.power() else { panic!("{:?}", axis.power()) };
         (restart, axis.survived(), axis.is_saved())
     };
-    // It has come: the drive was not off, whatever a person says, and its restart can be read.
+    // It has arrived: the drive was not off, whatever the user states, and a restart can be read.
     let (mut axis, mut seen) = cut_off(1001);
     assert_eq!(axis.ask(Button::Restarted, &seen).unwrap_err().id(), "hd_axis.not_restarted");
     assert_eq!(axis.ask(Button::Do, &seen).unwrap_err().id(), "hd_axis.already");
     assert_eq!(off_and_on(&mut axis, &mut seen), (Restart::Read, true, true));
-    // It has not: the check can be prepared once more, without leaving the step.
+    // It has not arrived: the check can be prepared once more, without leaving the step.
     let (mut axis, mut seen) = cut_off(1000);
     assert_eq!(axis.may_go_on(&seen).unwrap_err().id(), "hd_axis.needs_proof");
     assert_eq!(press(&mut axis, &mut seen, Button::Do), DriveRequest::Try(vec![(182, 1001)]));

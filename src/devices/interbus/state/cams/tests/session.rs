@@ -1,5 +1,5 @@
-//! A long session of edits: chart and table stay equal, and both are what a model of another make says. The model knows a
-//! cam as its first position and its length around the range, and goes back by a list of everything that ever was.
+//! A long session of edits: chart and table stay equal, and both agree with an independent model. The model stores a cam as
+//! its first position and its length around the range, and undoes by a list of all earlier states.
 
 use proptest::prelude::*;
 use proptest::test_runner::{Config, TestRunner};
@@ -29,9 +29,9 @@ struct Model {
 enum Step {
     /// Program, cam, the stop and not the start, and by how far.
     Drag(usize, usize, bool, i64),
-    /// Program, cam, the stop and not the start, and where to.
+    /// Program, cam, whether it is the stop, and the new position.
     Type(usize, usize, bool, u32),
-    /// Program, cam, where from and how long.
+    /// Program, cam, start and length.
     Draw(usize, usize, u32, u32),
     Switch(usize, usize, bool),
     Copy(usize, usize),
@@ -65,7 +65,7 @@ impl Model {
         &self.past[self.at]
     }
 
-    /// What a step makes of it; none where it is refused or changes nothing.
+    /// Applies a step; nothing if it is refused or changes nothing.
     fn play(&mut self, step: &Step) {
         let range = self.range;
         let wrap = |at: i64| at.rem_euclid(i64::from(range)) as u32;
@@ -120,7 +120,7 @@ impl Model {
             self.past.truncate(self.at + 1);
             self.past.push(next);
             self.at += 1;
-            // Two hundred steps back, and no further.
+            // At most two hundred steps can be undone.
             if self.past.len() > 201 {
                 self.past.remove(0);
                 self.at -= 1;
@@ -137,12 +137,12 @@ fn cam(cam: usize) -> CamNumber {
     CamNumber::new(cam as u8).unwrap()
 }
 
-/// The stop of a cam that begins there and is so long.
+/// Returns the stop of a cam with this start and length.
 fn stop(start: u32, length: u32, range: u32) -> u32 {
     (start + length.min(range) - 1) % range
 }
 
-/// The same step through what is tested.
+/// Applies the same step to the tested code.
 fn play(staged: &mut Staged, step: &Step, range: u32) {
     let edit = match *step {
         Step::Undo => {
@@ -187,7 +187,7 @@ fn play(staged: &mut Staged, step: &Step, range: u32) {
     assert_eq!(staged.edit(&edit).is_err(), outside, "{step:?}");
 }
 
-/// The chart shows what the table says, and both what the model has.
+/// Checks that the chart equals the table, and both equal the model.
 fn compare(staged: &Staged, model: &Model, program: usize) {
     let range = model.range;
     let chart = Chart::of(staged, number(program)).unwrap();

@@ -1,4 +1,4 @@
-//! The handles in the lanes: edges, cams, and the room for new ones.
+//! The handles in the lanes: edges, cams, and the space for new ones.
 
 use egui::accesskit::Role;
 use egui::{CursorIcon, Rect, Response, Sense, WidgetInfo};
@@ -11,8 +11,7 @@ use crate::devices::interbus::state::cams::{Hold, Lane, Stretch, words};
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, Drag};
 
 impl Lanes<'_> {
-    /// All of them: what they look like, and what was done to one. Where they are taken hold of is where they were before
-    /// the drag.
+    /// Draws all handles, and returns the user's action. They are grabbed at their places before the drag.
     pub(super) fn grips(&self, drag: Option<Drag>) -> Option<CamEvent> {
         let mut event = None;
         for lane in &self.model.chart.lanes {
@@ -27,7 +26,7 @@ impl Lanes<'_> {
         event
     }
 
-    /// The lane itself, below its cam.
+    /// Handles the lane itself, below its cam.
     fn room(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let id = self.base.with("room").with(lane.cam);
         let draws = self.model.movable && !lane.on;
@@ -45,7 +44,7 @@ impl Lanes<'_> {
         event.or(clicked)
     }
 
-    /// The cam as a whole: its widest stretch has the keyboard.
+    /// Handles the cam as a whole: its widest section has the keyboard focus.
     fn whole(&self, lane: &Lane, drag: Option<Drag>) -> Option<CamEvent> {
         let stretches = lane.stretches(self.model.chart.range);
         let widest = stretches.iter().max_by_key(|stretch| stretch.last - stretch.first).copied();
@@ -172,7 +171,7 @@ impl Lanes<'_> {
         self.snap().apart.unwrap_or(1.0)
     }
 
-    /// The pointer: where it would bring something, and where it lets it go.
+    /// Handles the pointer: the target of a drag, and its end.
     fn pulled(&self, response: &Response, hold: Hold, drag: Option<Drag>) -> Option<CamEvent> {
         if !self.model.movable || !response.dragged() && !response.drag_stopped() {
             return None;

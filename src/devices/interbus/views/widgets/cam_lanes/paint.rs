@@ -11,9 +11,9 @@ use crate::ui::widgets::{focus_ring, hatch};
 
 /// Least distance of the numbers of a ruler, in points.
 const APART: f64 = 64.0;
-/// Width of what is hatched at the end of the range.
+/// Width of the hatching at the end of the range.
 const BEYOND: f32 = 14.0;
-/// Less wide nothing looks hollow.
+/// Minimum width of a hollow bar.
 const NARROW: f32 = 6.0;
 
 /// The state of an edge.
@@ -24,7 +24,7 @@ pub(super) struct Grip {
 }
 
 impl Lanes<'_> {
-    /// All but the handles.
+    /// Draws everything except the handles.
     pub(super) fn paint(&self, drag: Option<Drag>) {
         let (theme, place) = (self.theme, self.place);
         let painter = self.ui.painter();
@@ -47,7 +47,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// Lines and numbers: steps above, the machine's units below.
+    /// Draws lines and numbers: steps above, the machine's units below.
     fn rulers(&self) {
         let (model, place, theme) = (self.model, self.place, self.theme);
         let apart = APART * place.steps_in_point();
@@ -119,7 +119,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// A cam that goes over the end of the range shows that it goes on there.
+    /// Draws the mark of a cam that continues over the end of the range.
     fn over_the_end(&self, painter: &Painter, lane: &Lane, bar: Rect, at_first: bool, at_last: bool) {
         if !lane.edges.is_some_and(|cam| cam.wraps()) {
             return;
@@ -167,7 +167,7 @@ impl Lanes<'_> {
         self.model.ghost(theme, painter, drag, pos2(x, lane.top() - 6.0));
     }
 
-    /// An edge that is pointed at or has the keyboard.
+    /// Draws an edge that is pointed at or has the keyboard.
     pub(super) fn paint_grip(&self, cam: CamNumber, edge: Edge, state: Grip) {
         let lit = state.active || state.focused;
         let is_selected = self.model.selected == Some(cam) && self.model.movable;
@@ -190,7 +190,7 @@ impl Lanes<'_> {
         }
     }
 
-    /// The ring around a cam that has the keyboard.
+    /// Draws the ring around a cam that has the keyboard focus.
     pub(super) fn paint_focus(&self, cam: CamNumber) {
         let Some(lane) = self.shown.lane(cam) else { return };
         let painter = self.ui.painter();

@@ -34,7 +34,7 @@ fn edges(start: u32, stop: u32) -> Cam {
     Cam { start: Value::new(start).unwrap(), stop: Value::new(stop).unwrap() }
 }
 
-/// 1000 steps: cam 0 from 100 to 299, cam 3 from 900 over the end to 49, cam 4 off.
+/// Returns a page with 1000 steps: cam 0 from 100 to 299, cam 3 from 900 over the end to 49, cam 4 off.
 fn page() -> Page {
     let parameters =
         Parameters { steps: 1000, revolutions: 1, direction: Direction::Clockwise, preset: 0, zero_shift: 0 };
@@ -87,7 +87,7 @@ fn lanes() -> Harness<'static, Page> {
     draw(page(), false)
 }
 
-/// What was changed, in order.
+/// Returns the changes in order.
 fn changes(harness: &Harness<'_, Page>) -> Vec<CamEvent> {
     let events = harness.state().events.iter().copied();
     events.filter(|event| matches!(event, CamEvent::Moved { .. } | CamEvent::Switched(..))).collect()
@@ -101,10 +101,10 @@ fn value(harness: &Harness<'_, Page>, label: &str) -> String {
     harness.get_by_label(label).value().unwrap()
 }
 
-/// Points between two positions, from the edges of a cam of 200 steps.
+/// Returns the points between two positions, from the edges of a cam of 200 steps.
 fn steps(harness: &Harness<'_, Page>, count: f32) -> Vec2 {
     let x = |label| harness.get_by_label(label).rect().center().x;
-    // The two handles lie inside their cam, four points and a half from the middle of what they are taken hold by.
+    // The two handles are inside their cam, four and a half points from the middle of their grab areas.
     let width = x("Cam 0: stop") - x("Cam 0: start") + 2.0 * 2.5;
     Vec2::new(width / 200.0 * count, 0.0)
 }
@@ -128,7 +128,7 @@ fn edges_are_moved_by_keys() {
     press(&mut harness, &[(NONE, Key::ArrowRight), (NONE, Key::ArrowLeft), (NONE, Key::ArrowLeft)]);
     assert_eq!(changes(&harness), [moved(0, 101, 299), moved(0, 100, 299), moved(0, 99, 299)]);
     assert_eq!(harness.state().selected, Some(cam(0)));
-    // The grid is of 20 steps here: ten points are at least fourteen steps, at most twenty.
+    // The grid has 20 steps here: ten points are at least fourteen steps, at most twenty.
     press(&mut harness, &[(SHIFT, Key::ArrowRight), (SHIFT, Key::ArrowRight), (SHIFT, Key::ArrowLeft)]);
     assert_eq!(changes(&harness)[3..], [moved(0, 100, 299), moved(0, 120, 299), moved(0, 100, 299)]);
     press(&mut harness, &[(NONE, Key::Tab)]);
@@ -190,7 +190,7 @@ fn a_cam_is_drawn_in_the_lane_of_one_that_does_not_work() {
     assert_eq!(own, cam(4));
     assert!(to.start.get().abs_diff(100) <= 8 && to.stop.get().abs_diff(300) <= 8, "{to:?}");
     assert!(harness.state().staged.wanted().unwrap().is_on(program(), cam(4)));
-    // In the lane of one that works nothing is drawn.
+    // In the lane of an active one nothing is drawn.
     let lane = harness.get_by_label("Cam 0 · feed").rect();
     drag(&mut harness, egui::pos2(lane.right() + 100.0, lane.center().y), by);
     assert_eq!(changes(&harness).len(), 1);

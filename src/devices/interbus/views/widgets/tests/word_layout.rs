@@ -22,7 +22,7 @@ fn groups_say_what_the_bits_are() {
     harness.get_by_label("Always 0, bits 30 to 25: 000000");
     harness.get_by_label("Position, bits 20 to 4, bits 24 to 8: 01011110011011110");
     harness.get_by_label("Cam outputs, bits 7 to 0: 00100000");
-    // From a shift of 9 on the window is wider than what is left of the position.
+    // From a shift of 9 on the window is wider than the rest of the position.
     let harness = draw(20, None, 860.0);
     harness.get_by_label("Always 0, bits 30 to 13");
     harness.get_by_label("Position, bits 24 to 20, bits 12 to 8");

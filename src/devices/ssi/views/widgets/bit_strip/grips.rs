@@ -11,7 +11,7 @@ use crate::devices::ssi::state::strip::{self, Handle, Strip};
 const BESIDE: f32 = 5.0;
 const WIDTH: f32 = 9.0;
 
-/// All of them: what they look like, and what was done to one.
+/// Draws all handles, and returns the user's action.
 pub(super) fn grips(view: &StripContext<'_>, drag: Option<Drag>) -> Option<StripEvent> {
     let (ui, model) = (view.ui, view.model);
     let mut event = None;
@@ -74,25 +74,25 @@ fn place(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
         let (first, last) = strip.position()?;
         let runs = rows.runs(first, last);
         let widest = runs.into_iter().max_by(|a, b| a.width().total_cmp(&b.width()))?;
-        // Its ends are for the boundaries there.
+        // Its ends belong to the boundaries there.
         let lane = Rows::lane(widest);
         return Some(lane.shrink2(Vec2::new(WIDTH.min(lane.width() / 3.0), 0.0)));
     }
     let edge = edge(rows, strip, handle)?;
     let x = edge.center().x + side(handle) * if is_second(strip, handle) { WIDTH } else { BESIDE };
     let (top, bottom) = match handle {
-        // Other boundaries may stand on the same edge.
+        // Other boundaries may be on the same edge.
         Handle::AreaEnd => (edge.top() - BESIDE * 3.0, edge.top()),
         _ => (edge.top(), edge.bottom()),
     };
     Some(Rect::from_x_y_ranges(x - WIDTH / 2.0..=x + WIDTH / 2.0, top..=bottom))
 }
 
-/// The edge on which a boundary stands.
+/// Returns the edge of a boundary.
 pub(super) fn edge(rows: &Rows, strip: &Strip, handle: Handle) -> Option<Rect> {
     let begins = matches!(handle, Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd);
     let clocks = strip.layout().clocks();
-    // Bits shifted out of the area are behind the last clock.
+    // Bits shifted out of the area are after the last clock.
     let clock = strip.clock(handle)?.min(clocks);
     Some(rows.edge(clock, begins, clocks))
 }
@@ -102,12 +102,13 @@ pub(super) fn tab(strip: &Strip, handle: Handle) -> f32 {
     side(handle) * if is_second(strip, handle) { WIDTH - 1.0 } else { BESIDE * 0.6 }
 }
 
-/// A boundary between turns and steps stands on the edge itself; where zeros may come between, is beside it.
+/// Returns whether a boundary is beside the edge: one between turns and steps is on the edge itself, one where zeros are
+/// possible is beside it.
 fn is_second(strip: &Strip, handle: Handle) -> bool {
     handle == Handle::BetweenEnd && strip.handles().contains(&Handle::Split)
 }
 
-/// On which side of its edge a boundary belongs to a field: -1 before, 1 behind, 0 to both.
+/// Returns on which side of its edge the field of a boundary is: -1 before, 1 after, 0 for both.
 const fn side(handle: Handle) -> f32 {
     match handle {
         Handle::LeadEnd | Handle::BetweenEnd | Handle::GapEnd | Handle::FrameEnd => 1.0,
@@ -116,7 +117,7 @@ const fn side(handle: Handle) -> f32 {
     }
 }
 
-/// The pointer: where it would bring the handle, and where it lets it go.
+/// Handles the pointer: the target of the handle, and its release.
 fn pulled(
     view: &StripContext<'_>,
     response: &Response,
@@ -158,7 +159,7 @@ fn pulled(
     to.map(|to| StripEvent::Preview(handle, to))
 }
 
-/// The keyboard: by one clock, or as far as it goes.
+/// Handles the keyboard: by one clock, or as far as possible.
 fn keys(view: &StripContext<'_>, response: &Response, handle: Handle, at: u8) -> Option<StripEvent> {
     if !response.has_focus() {
         return None;

@@ -1,5 +1,5 @@
-//! The names of the fields below their brackets: in the middle where there is room, else beside a line that leads down
-//! to them, as many lines of them as keep them apart.
+//! The names of the fields below their brackets: centred if they fit, else beside a line that leads down to them, on as
+//! many lines as needed to separate them.
 
 use std::cmp::Ordering;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use crate::devices::ssi::protocol::Meaning;
 use crate::devices::ssi::state::strip::{Field, Strip, bare, name, short};
 use crate::ui::{Theme, controls};
 
-/// A name and where it is.
+/// Name with its place.
 pub(super) struct Tag {
     /// Index of its field in the strip.
     pub(super) field: usize,
@@ -22,25 +22,25 @@ pub(super) struct Tag {
     level: usize,
     /// From the first cell of its line.
     left: f32,
-    /// From where a line leads down to it, counted likewise.
+    /// Start of the line that leads down to it, from the same origin.
     leader: Option<f32>,
     galley: Arc<Galley>,
 }
 
 /// Between two names on a line.
 const APART: f32 = 6.0;
-/// Longer names are cut off; the field's tooltip has them whole.
+/// Longer names are truncated; the field's tooltip contains the whole name.
 const WIDEST: f32 = 160.0;
-/// Lines of names at most, before the last: as many as a frame has error bits.
+/// Maximum number of lines of names before the last: as many as a frame has error bits.
 const LEVELS: usize = 8;
 
-/// A name that is wider than its field.
+/// Name that is wider than its field.
 struct Narrow {
     index: usize,
     line: usize,
     /// The middle of the field.
     x: f32,
-    /// None of its neighbours is such a name.
+    /// No neighbour is such a name.
     alone: bool,
     /// It begins at its line instead of ending there.
     begins: bool,
@@ -79,7 +79,7 @@ impl Narrow {
         own.map(Tag::span).all(|(from, to)| right + APART <= from || to + APART <= left)
     }
 
-    /// Returns whether there is no other name, no line to a name further down, and nothing in the way of its own line.
+    /// Returns whether there is no other name, no line to a lower name, and nothing in the way of its own line.
     fn is_free(&self, tags: &[Tag], left: f32, level: usize) -> bool {
         let right = left + self.galley.size().x;
         let mut others = tags.iter().filter(|tag| tag.line == self.line);
@@ -100,7 +100,7 @@ impl Tag {
         (self.left, self.left + self.galley.size().x)
     }
 
-    /// The rectangle of its words.
+    /// Returns the rectangle of its text.
     pub(super) fn rect(&self, rows: &Rows, lane: Rect) -> Rect {
         let top = lane.bottom() + self.level as f32 * NAME;
         Rect::from_min_size(pos2(rows.left() + self.left, top), Vec2::new(self.galley.size().x, NAME))
@@ -117,8 +117,8 @@ impl Tag {
     }
 }
 
-/// The names of all fields, and how many lines of them there are below each line of cells. `rows` are at no place yet:
-/// how high they are depends on this.
+/// Returns the names of all fields, and the number of lines of them below each line of cells. `rows` has no place yet:
+/// their height depends on this.
 pub(super) fn tags(
     ui: &Ui,
     theme: &Theme,
@@ -157,8 +157,8 @@ pub(super) fn tags(
         Narrow { index, line, x: run.center().x, alone: true, begins, room, galley }
     });
     let mut narrow: Vec<Narrow> = narrow.collect();
-    // Of several side by side, each ends at its own line, so that the next one's passes it; at the start, where there
-    // is no room for that, each begins at its own, the last of them the highest.
+    // Of several adjacent ones, each ends at its own line, so that the next one's passes it; at the start, where there is
+    // no space for that, each begins at its own, the last of them highest.
     for group in narrow.chunk_by_mut(|a, b| a.index + 1 == b.index && a.line == b.line) {
         let (alone, begins) = (group.len() == 1, group.iter().any(|own| own.begins));
         for own in group {
@@ -185,7 +185,7 @@ pub(super) const fn verdict(meaning: Meaning) -> Verdict {
     }
 }
 
-/// The widest of a field's runs, and its line.
+/// Returns the widest of a field's runs, and its line.
 pub(super) fn widest(rows: &Rows, field: &Field) -> (Rect, usize) {
     let runs = rows.runs(field.first, field.last);
     let line = rows.line(field.first);

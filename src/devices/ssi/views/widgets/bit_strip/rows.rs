@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2, pos2};
 
-/// Widths that a cell may have; below the least the strip goes to another line.
+/// Widths of a cell; below the minimum the strip wraps.
 const LEAST: f32 = 17.0;
 const MOST: f32 = 28.0;
 /// Heights of the numbers, of a cell, of the lane with the brackets, and of a line of names.
@@ -10,7 +10,7 @@ const NUMBERS: f32 = 15.0;
 const CELL: f32 = 26.0;
 const LANE: f32 = 16.0;
 pub(super) const NAME: f32 = 15.0;
-/// Room beside the cells, in which the first and the last handle stand.
+/// Space beside the cells for the first and the last handle.
 const MARGIN: f32 = 10.0;
 const GAP: f32 = 10.0;
 
@@ -18,10 +18,10 @@ const GAP: f32 = 10.0;
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
     origin: Pos2,
-    /// Width of a cell with the gap behind it.
+    /// Width of a cell with the gap after it.
     pub(super) cell: f32,
     columns: u8,
-    /// The top of each line, with its end behind the last.
+    /// The top of each line, and the bottom of the last.
     tops: Vec<f32>,
 }
 
@@ -32,11 +32,11 @@ impl Rows {
         let count = f32::from(clocks.max(1));
         if count * LEAST <= room {
             let cell = (room / count).floor().min(MOST);
-            // More clocks have room beside them while the end of the frame is dragged.
+            // More clocks need space while the end of the frame is dragged.
             let columns = (room / cell).floor().min(64.0) as u8;
             return Rows { origin: Pos2::ZERO, cell, columns, tops: Vec::new() };
         }
-        // As few lines as there can be, each of whole bytes.
+        // As few lines as possible, each of whole bytes.
         let columns = |lines: u8| clocks.div_ceil(lines).next_multiple_of(8);
         let columns = (2..=8).map(columns).find(|columns| f32::from(*columns) * LEAST <= room).unwrap_or(8);
         let cell = (room / f32::from(columns)).floor().clamp(LEAST, MOST);
@@ -48,7 +48,7 @@ impl Rows {
         self.origin.x
     }
 
-    /// Lines of so many clocks.
+    /// Returns the number of lines for this number of clocks.
     pub(super) fn count(&self, clocks: u8) -> usize {
         usize::from(clocks.max(1).div_ceil(self.columns))
     }
@@ -89,13 +89,13 @@ impl Rows {
         Rect::from_min_size(at, Vec2::new(self.cell - 1.0, CELL))
     }
 
-    /// The middle of its number.
+    /// Returns the centre of its number.
     pub(super) fn number(&self, clock: u8) -> Pos2 {
         let cell = self.cell(clock);
         pos2(cell.center().x, cell.top() - NUMBERS / 2.0)
     }
 
-    /// The cells from one clock to another, one rectangle a line.
+    /// Returns the cells from one clock to another, one rectangle a line.
     pub(super) fn runs(&self, first: u8, last: u8) -> Vec<Rect> {
         let mut runs: Vec<Rect> = Vec::new();
         for clock in first..=last {
@@ -108,12 +108,12 @@ impl Rows {
         runs
     }
 
-    /// The lane below a run of cells.
+    /// Returns the lane below a run of cells.
     pub(super) fn lane(run: Rect) -> Rect {
         Rect::from_min_max(pos2(run.left(), run.bottom()), pos2(run.right(), run.bottom() + LANE))
     }
 
-    /// The edge behind a clock: of that clock's own cell, or of the next one's where something begins there.
+    /// Returns the edge after a clock: of that clock's own cell, or of the next one's if something begins there.
     pub(super) fn edge(&self, clock: u8, begins: bool, clocks: u8) -> Rect {
         let begins = clock == 0 || begins && clock < clocks;
         let cell = self.cell(if begins { clock + 1 } else { clock });
@@ -121,13 +121,13 @@ impl Rows {
         Rect::from_min_max(pos2(x, cell.top()), pos2(x, cell.bottom() + LANE))
     }
 
-    /// The clock behind which the edge is that is nearest to the pointer.
+    /// Returns the clock whose edge is nearest to the pointer.
     pub(super) fn boundary(&self, pos: Pos2, clocks: u8) -> u8 {
         let column = ((pos.x - self.origin.x) / self.cell).round().clamp(0.0, f32::from(self.columns));
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8)
     }
 
-    /// The clock under the pointer, or the one nearest to it in its line.
+    /// Returns the clock under the pointer, or the nearest one in its line.
     pub(super) fn clock(&self, pos: Pos2, clocks: u8) -> u8 {
         let column = ((pos.x - self.origin.x) / self.cell).floor().clamp(0.0, f32::from(self.columns) - 1.0);
         self.line_at(pos, clocks).saturating_mul(self.columns).saturating_add(column as u8 + 1)

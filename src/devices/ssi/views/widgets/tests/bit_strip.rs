@@ -20,7 +20,7 @@ fn layout(family: &str, settings: &Settings) -> Layout {
     settings.resolve(Families::built_in().named(family).unwrap()).unwrap().layout
 }
 
-/// A frame that becomes what is wished of it.
+/// Draws a frame that takes the user's changes.
 fn strip(layout: &Layout, width: f32) -> Harness<'static, Design> {
     let state = Design { strip: Strip::of(layout), frame: Some(0), selected: None, events: Vec::new() };
     window(state, move |ui, state: &mut Design| {
@@ -91,7 +91,7 @@ fn zeros_between_take_the_keyboard_along() {
     assert_eq!(value(&harness, "Start of the steps"), "after clock 13");
 }
 
-/// Presses a handle, moves the pointer by so many cells of 28 points, and lets go.
+/// Presses a handle, moves the pointer by this number of cells of 28 points, and releases it.
 fn drag(harness: &mut Harness<'_, Design>, label: &str, cells: f32) {
     let from = harness.get_by_label(label).rect().center();
     harness.drag_at(from);
@@ -190,7 +190,7 @@ fn every_frame_lies_within_its_width() {
 #[test]
 fn a_handle_says_what_it_does_and_how_far_it_goes() {
     let mut harness = tree();
-    // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five behind.
+    // Turns and steps keep a bit each of clocks 5 to 20; the position has four zeros before it and five after it.
     for (label, reach) in [("Boundary between turns and steps", "Range: 5 to 19"), ("Whole position", "Range: 1 to 10")]
     {
         let rect = harness.get_by_label(label).rect();
@@ -205,7 +205,7 @@ fn a_handle_says_what_it_does_and_how_far_it_goes() {
     harness.get_by_label("This boundary cannot be moved: the adjacent bits are in use.");
 }
 
-/// Eight error bits with long names, at the beginning of a line and at its end: none lies over another.
+/// Eight error bits with long names, at the beginning of a line and at its end: none overlaps another.
 #[test]
 fn names_stay_off_each_other() {
     for (first, width) in [(1_u8, 860.0), (20, 860.0), (40, 600.0), (56, 300.0)] {

@@ -1,4 +1,4 @@
-//! A burst in time by what a screen reader and the pointer find.
+//! A burst in time by its accessible values and the pointer.
 
 use std::time::Duration;
 
@@ -49,7 +49,7 @@ fn the_pointer_tells_the_clock() {
         timing_diagram(ui, &theme(), &TimingDiagram { label: "Burst", diagram: own, frame: None });
     });
     let rect = harness.get_by_label("Burst").rect();
-    // The burst is a quarter of the axis to its first break at least: from its beginning on, one clock after the other.
+    // The burst is at least a quarter of the axis to its first break: from its beginning on, clock by clock.
     let mut seen: Vec<u8> = Vec::new();
     for step in 0..16 {
         let x = rect.left() + rect.width() * (0.06 + 0.02 * step as f32);

@@ -1,4 +1,4 @@
-//! From times to places: to scale within each piece of the axis, with a gap where it is broken.
+//! From times to coordinates: to scale within each section of the axis, with a gap at each break.
 
 use egui::Rangef;
 
@@ -12,12 +12,12 @@ pub(super) const BREAK: f32 = 24.0;
 pub(super) struct Axis {
     pieces: Vec<Piece>,
     left: f32,
-    /// Points a second.
+    /// Points per second.
     scale: f64,
 }
 
 impl Axis {
-    /// The pieces in so much room.
+    /// Creates the axis of these sections in this width.
     pub(super) fn new(pieces: &[Piece], room: Rangef) -> Self {
         let breaks = pieces.len().saturating_sub(1) as f32 * BREAK;
         let drawn: f64 = pieces.iter().map(|piece| piece.to - piece.from).sum();
@@ -44,7 +44,7 @@ impl Axis {
         left - BREAK
     }
 
-    /// The time of a place; `None` in a break and beyond the ends.
+    /// Returns the time at a coordinate; `None` in a break and beyond the ends.
     pub(super) fn at(&self, x: f32) -> Option<f64> {
         let mut left = self.left;
         for piece in &self.pieces {
@@ -57,7 +57,7 @@ impl Axis {
         None
     }
 
-    /// The gaps, from the first to the last.
+    /// Returns the gaps, from the first to the last.
     pub(super) fn breaks(&self) -> Vec<Rangef> {
         let ends = self.pieces.iter().map(|piece| self.x(piece.to));
         let ends: Vec<f32> = ends.collect();
@@ -73,7 +73,7 @@ mod tests {
     #[test]
     fn times_have_places_and_places_times() {
         let pieces = [Piece { from: 0.0, to: 60.0 }, Piece { from: 1000.0, to: 1040.0 }];
-        // 224 points less a break of 24 are two a second.
+        // 224 points minus a break of 24 are two per second.
         let axis = Axis::new(&pieces, Rangef::new(10.0, 234.0));
         for (at, x) in [(0.0, 10.0), (60.0, 130.0), (1000.0, 154.0), (1040.0, 234.0), (500.0, 142.0), (9999.0, 234.0)] {
             assert!((axis.x(at) - x).abs() < 1e-3, "{at}: {}", axis.x(at));

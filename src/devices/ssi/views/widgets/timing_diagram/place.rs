@@ -1,15 +1,15 @@
-//! Words that stay off each other: those of moments above their lines, those of times beside theirs.
+//! Texts that do not overlap: those of moments above their lines, those of times beside theirs.
 
 /// A moment's words.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flag {
-    /// Position of its line.
+    /// X coordinate of its line.
     pub(super) x: f32,
-    /// Width of its words.
+    /// Width of its text.
     pub(super) width: f32,
 }
 
-/// Placement of words: their line, 0 the lowest, and their left edge.
+/// Placement of a text: its line, 0 the lowest, and its left edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Put {
     pub(super) level: usize,
@@ -19,8 +19,8 @@ pub(super) struct Put {
 /// Between words, and between words and a line.
 const APART: f32 = 6.0;
 
-/// The words of moments on as few lines as they need: no words lie over others, nor over the line of one that stands
-/// higher. Whatever cannot be kept apart lies on lines of its own.
+/// Places the texts of moments on as few lines as possible: no text overlaps another, or the line of a higher one. Texts
+/// that cannot be separated are on lines of their own.
 pub(super) fn flags(flags: &[Flag], (from, to): (f32, f32)) -> Vec<Put> {
     for levels in 1..=flags.len() {
         let mut put = Vec::new();
@@ -72,11 +72,11 @@ fn agree((a, at): (&Flag, &Put), (b, bt): (&Flag, &Put)) -> bool {
 pub(super) struct Bar {
     /// Start and end.
     pub(super) ends: (f32, f32),
-    /// Width of its words.
+    /// Width of its text.
     pub(super) width: f32,
 }
 
-/// Times on lanes, each with where its words begin: within their line where they fit, else beside it.
+/// Places times on lanes, each with the start of its text: within its line if it fits, else beside it.
 pub(super) fn bars(bars: &[Bar], (from, to): (f32, f32)) -> Vec<Put> {
     let mut taken: Vec<(usize, f32, f32)> = Vec::new();
     let mut put = Vec::new();
@@ -114,7 +114,7 @@ mod tests {
     fn words_of_moments_stand_beside_their_lines() {
         let two = [flag((10.0, 80.0)), flag((300.0, 60.0))];
         assert_eq!(flags(&two, (0.0, 400.0)), [Put { level: 0, left: 16.0 }, Put { level: 0, left: 306.0 }]);
-        // At the end there is room before the line only.
+        // At the end there is only space before the line.
         assert_eq!(flags(&two[1..], (0.0, 350.0)), [Put { level: 0, left: 234.0 }]);
     }
 
