@@ -18,7 +18,7 @@ pub trait Write {
     /// What was written.
     type Written: WriteRecord;
     /// In which state a write that ended early has left the device.
-    type Left;
+    type EndState;
 
     /// Reads again what the plan rests upon, and writes nothing: first of all, whether it is the device for which the plan
     /// was made.
@@ -72,7 +72,7 @@ pub trait Write {
     }
 
     /// Returns in which state a write that ended early has left the device.
-    fn left(&mut self, cause: &Self::Error) -> Self::Left;
+    fn end_state(&mut self, cause: &Self::Error) -> Self::EndState;
 }
 
 /// Why an operation of a plan ended early.
@@ -125,12 +125,12 @@ pub struct Interrupted<Op, E, Done, Left> {
     /// Why it ended.
     pub cause: E,
     /// In which state the device was left.
-    pub left: Left,
+    pub end_state: Left,
 }
 
 /// [`Interrupted`], of a kind of device.
 pub(crate) type InterruptedWrite<W> =
-    Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::Left>;
+    Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
     /// Checks the consent, and has the device read again what the plan rests upon; `None` where the consent is for another
@@ -169,8 +169,8 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         };
         let ended = carry_out();
         let Err(cause) = write.lead_back(self, ended, &mut done) else { return Ok(done) };
-        let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.left(&cause));
-        Err(Box::new(Interrupted { done, unfinished, cause, left }))
+        let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.end_state(&cause));
+        Err(Box::new(Interrupted { done, unfinished, cause, end_state: left }))
     }
 }
 

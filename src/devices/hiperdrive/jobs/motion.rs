@@ -69,7 +69,7 @@ pub struct DriveView {
     /// The data received last.
     pub actual: Actual,
     /// When it said that; `None` before it has said anything.
-    pub heard_at: Option<Moment>,
+    pub received_at: Option<Moment>,
     /// The setpoint sent last.
     pub sent: Setpoint,
     /// The phase of its motion.
@@ -99,11 +99,11 @@ impl Motion {
 
     /// A person wants something of a drive: an act of its own, whose number comes back. It replaces the one before; what
     /// moved by that stops. It has to be kept [fresh](Self::refresh). Without a cyclic connection nothing comes of it.
-    pub fn intend(&self, drive: DriveNumber, wish: MotionRequest) -> u64 {
+    pub fn intend(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
-        cell.intent = Intent { drive, wish, number, refreshed };
+        cell.intent = Intent { drive, request, number, refreshed };
         number
     }
 
@@ -232,7 +232,7 @@ impl Motion {
         let of = |man: &DeadMan| DriveView {
             number: man.drive(),
             actual: man.actual(),
-            heard_at: man.heard_at(),
+            received_at: man.received_at(),
             sent: man.sent(),
             phase: man.phase(),
             act: man.act(),

@@ -47,7 +47,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = EndState;
+    type EndState = EndState;
 
     /// Checks that this is the encoder for which the plan was made, by its memory too: two new encoders have the same.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
@@ -109,7 +109,7 @@ impl Write for EncoderWrite<'_, '_> {
         ended
     }
 
-    fn left(&mut self, _: &Error) -> EndState {
+    fn end_state(&mut self, _: &Error) -> EndState {
         std::mem::take(&mut self.left)
     }
 }

@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub struct Intent {
     /// Of which drive. The others rest.
     pub drive: DriveNumber,
-    pub wish: MotionRequest,
+    pub request: MotionRequest,
     /// The act of a person that it came with: each has a number of its own, higher than those before.
     pub number: u64,
     /// When it was last said. After [`Intent::FRESH`] nothing that moves goes on.
@@ -125,19 +125,19 @@ pub enum Phase {
     /// It is led to this state.
     Leading(Goal),
     /// A motion is about to begin.
-    Starting(Motive),
-    Moving(Motive),
+    Starting(MotionKind),
+    Moving(MotionKind),
     /// Its job waits.
     Paused {
         target: i32,
     },
     /// It is to stand.
-    Stopping(Rung),
+    Stopping(StopLevel),
 }
 
 /// A motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motive {
+pub enum MotionKind {
     /// To a place.
     Job {
         /// In steps as scaled.
@@ -147,9 +147,9 @@ pub enum Motive {
     Run { direction: Direction, end: RunEnd },
 }
 
-/// A rung of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
+/// A level of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rung {
+pub enum StopLevel {
     /// The stop of its mode. Torque stays on.
     Mode,
     /// 0401h: operation is taken away.
@@ -259,7 +259,7 @@ impl Intent {
 
     /// Creates an act that requests nothing.
     pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
-        Intent { drive, wish: MotionRequest::Rest, number, refreshed: now }
+        Intent { drive, request: MotionRequest::Rest, number, refreshed: now }
     }
 
     /// Returns whether it was not refreshed in time.
@@ -366,17 +366,17 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn check(&self, wish: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
-        if !wish.moves() {
+    pub fn check(&self, request: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
+        if !request.moves() {
             return Ok(());
         }
         if let Some(lock) = self.locks.first() {
             return Err(Refusal::Locked(*lock));
         }
-        if wish.effort().is_some_and(Effort::is_none) {
+        if request.effort().is_some_and(Effort::is_none) {
             return Err(Refusal::NoEffort);
         }
-        if matches!(wish, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
+        if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
             return Err(Refusal::Endless);
         }
         match (target, self.limits) {
