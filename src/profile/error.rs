@@ -18,7 +18,7 @@ pub enum ProfileError {
         what: SyntaxProblem,
     },
     /// The name of an entry is not known, and one like it is missing.
-    #[error("line {line}, column {column}: {path} is not known, and {meant} is missing")]
+    #[error("line {line}, column {column}: {path} is not known, and {intended} is missing")]
     Misspelt {
         /// Counted from 1.
         line: usize,
@@ -27,7 +27,7 @@ pub enum ProfileError {
         /// Path of the entry, such as `fields[2].statsu`.
         path: String,
         /// The name that is missing.
-        meant: String,
+        intended: String,
     },
     /// No version of a profile's form, or a later one where it has to be known as a whole.
     #[error("schema {found}; this program knows schema 1 to {known}")]

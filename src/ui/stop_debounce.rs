@@ -22,12 +22,12 @@ fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
 
 /// The pointer goes down on a button that stops, in this picture.
 pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
-    let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
-    if goes {
+    let is_press = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    if is_press {
         let now = ui.input(|input| input.time);
         with(ui.ctx(), |presses| presses.goes_down(now));
     }
-    goes
+    is_press
 }
 
 /// Returns when the press that counts in this frame, on a button that stops, began.
@@ -38,6 +38,6 @@ pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
 
 /// Esc goes down in this picture; a key that is held and repeats itself does not.
 pub(super) fn escape_goes_down(ctx: &Context) -> bool {
-    let goes = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
-    ctx.input(|input| input.events.iter().any(goes))
+    let is_press = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
+    ctx.input(|input| input.events.iter().any(is_press))
 }

@@ -293,8 +293,8 @@ impl DeadMan {
 
     /// The last line of defence: no word that could begin a motion leaves without an act that moves.
     fn guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
-        let meant = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
-        if meant || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
+        let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
+        if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
     }
 
     const fn mark(&self, now: Moment) -> Mark {

@@ -62,7 +62,7 @@ pub struct VisibleRange {
 
 /// An output at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lamp {
+pub struct OutputState {
     /// As the program that is wanted gives it; `None`: nothing is known of the position or the program.
     pub simulated: Option<bool>,
     /// As the encoder gives it; `None`: it does not.
@@ -129,10 +129,10 @@ impl Chart {
     }
 
     /// The outputs as indicators: those of this program at a position, beside the encoder's own.
-    pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [Lamp; Program::CAMS] {
+    pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [OutputState; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
-        CamNumber::EACH.map(|cam| Lamp { simulated: bit(simulated, cam), own: bit(own, cam) })
+        CamNumber::EACH.map(|cam| OutputState { simulated: bit(simulated, cam), own: bit(own, cam) })
     }
 
     /// A cam's edge; `None` where the cam has none.
@@ -148,7 +148,7 @@ impl Lane {
     }
 }
 
-impl Lamp {
+impl OutputState {
     /// The encoder says something else than this program gives.
     pub fn differs(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)

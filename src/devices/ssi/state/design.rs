@@ -70,7 +70,7 @@ pub struct Designer {
 }
 
 impl Design {
-    /// A layout with what its family makes of it. Of several settings with the same frame it is those that were `wished`,
+    /// A layout with what its family makes of it. Of several settings with the same frame it is those that were `requested`,
     /// else the fewest.
     ///
     /// # Errors
