@@ -155,7 +155,7 @@ impl DeviceConnection for Naive {
 
     fn intend(&self, wish: MotionRequest) {
         let intent = &mut self.shared.lock().unwrap().0;
-        *intent = Intent { wish, number: intent.number + 1, refreshed: self.clock.now(), ..*intent };
+        *intent = Intent { request: wish, number: intent.number + 1, refreshed: self.clock.now(), ..*intent };
     }
 
     fn refresh(&self) {

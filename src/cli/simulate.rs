@@ -115,10 +115,10 @@ impl Device {
         while !ended.load(Ordering::SeqCst) {
             let now = self.clock.now();
             let wait = self.simulated.poll_at().map_or(PATIENCE, |next| next.since(now).min(PATIENCE));
-            let heard = client.read(&mut buffer, wait)?;
+            let outcome = client.read(&mut buffer, wait)?;
             let now = self.clock.now();
             self.follow_format(client.baud());
-            match heard {
+            match outcome {
                 ReadOutcome::Bytes(count) => self.simulated.on_bytes(now, buffer.get(..count).unwrap_or_default()),
                 ReadOutcome::Nothing => {}
                 ReadOutcome::End => return Ok(()),

@@ -60,9 +60,9 @@ impl Document {
         ron::Options::default().from_str_seed(text, UniqueNames { twice: &twice }).map_err(syntax)?;
         let reading = Rc::new(Reading::default());
         Self::read(value, &reading, formats).map_err(|error| match reading.reported_error(error) {
-            ProfileError::Misspelt { path, meant, .. } => {
+            ProfileError::Misspelt { path, intended, .. } => {
                 let (line, column) = place_of(text, &path).unwrap_or((1, 1));
-                ProfileError::Misspelt { line, column, path, meant }
+                ProfileError::Misspelt { line, column, path, intended }
             }
             error => error,
         })

@@ -18,7 +18,7 @@ pub enum ProfileError {
         what: SyntaxProblem,
     },
     /// The name of an entry is not known, and a similar one is missing.
-    #[error("line {line}, column {column}: {path} is unknown, and {meant} is missing")]
+    #[error("line {line}, column {column}: {path} is unknown, and {intended} is missing")]
     Misspelt {
         /// Counted from 1.
         line: usize,
@@ -27,7 +27,7 @@ pub enum ProfileError {
         /// Path of the entry, such as `fields[2].statsu`.
         path: String,
         /// The name that is missing.
-        meant: String,
+        intended: String,
     },
     /// The version of the form is missing, or newer than known where the whole profile has to be known.
     #[error("schema {found}; this program knows schema 1 to {known}")]

@@ -22,14 +22,14 @@ pub(super) struct Misspelling {
     pub(super) letters: usize,
     pub(super) path: String,
     /// The intended name.
-    pub(super) meant: String,
+    pub(super) intended: String,
 }
 
 impl Misspelling {
     /// Returns the error without its line, which is added later.
     pub(super) fn error(self) -> ProfileError {
-        let Misspelling { path, meant, .. } = self;
-        ProfileError::Misspelt { line: 0, column: 0, path, meant }
+        let Misspelling { path, intended, .. } = self;
+        ProfileError::Misspelt { line: 0, column: 0, path, intended }
     }
 }
 
@@ -68,7 +68,7 @@ impl Reading {
         let Some(slip) = self.slip.take() else { return error };
         let is_it = match &error {
             ProfileError::Misspelt { .. } => false,
-            ProfileError::Missing { path } => path.ends_with(&slip.meant),
+            ProfileError::Missing { path } => path.ends_with(&slip.intended),
             _ => slip.letters <= 1,
         };
         if is_it { slip.error() } else { error }
@@ -77,14 +77,14 @@ impl Reading {
 
 /// Returns how many letters differ between a name and the intended one, if that looks like a typing error: a few do, or
 /// one is the beginning of the other. Case, hyphens and underscores do not count.
-pub(super) fn letters_apart(name: &str, meant: &str) -> Option<usize> {
+pub(super) fn letters_apart(name: &str, intended: &str) -> Option<usize> {
     let plain = |text: &str| -> Vec<char> {
         text.chars().filter(|c| !matches!(c, '_' | '-' | ' ')).flat_map(char::to_lowercase).collect()
     };
-    let (name, meant) = (plain(name), plain(meant));
-    let (shorter, longer) = if name.len() < meant.len() { (&name, &meant) } else { (&meant, &name) };
+    let (name, intended) = (plain(name), plain(intended));
+    let (shorter, longer) = if name.len() < intended.len() { (&name, &intended) } else { (&intended, &name) };
     let begins = shorter.len() >= 3 && longer.starts_with(shorter);
-    let letters = distance(&name, &meant);
+    let letters = distance(&name, &intended);
     (begins || letters <= (longer.len() / 2).clamp(1, 3)).then_some(letters)
 }
 

@@ -65,10 +65,10 @@ impl Entries {
             return None;
         }
         let left = self.entries.keys().filter(|name| *name != EXTRA);
-        let pairs = left.flat_map(|name| self.missed.iter().map(move |meant| (name, meant)));
-        let slips = pairs.filter_map(|(name, meant)| {
-            let letters = letters_apart(name, meant).filter(|letters| *letters <= most)?;
-            Some(Misspelling { letters, path: self.path_of(name), meant: meant.clone() })
+        let pairs = left.flat_map(|name| self.missed.iter().map(move |intended| (name, intended)));
+        let slips = pairs.filter_map(|(name, intended)| {
+            let letters = letters_apart(name, intended).filter(|letters| *letters <= most)?;
+            Some(Misspelling { letters, path: self.path_of(name), intended: intended.clone() })
         });
         slips.min()
     }

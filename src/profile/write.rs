@@ -18,7 +18,7 @@ pub trait Write {
     /// The record of the write.
     type Written: WriteRecord;
     /// The state in which an interrupted write left the device.
-    type Left;
+    type EndState;
 
     /// Reads the base of the plan again, and writes nothing: first it checks that it is the device for which the plan was
     /// made.
@@ -72,7 +72,7 @@ pub trait Write {
     }
 
     /// Returns in which state a write that ended early has left the device.
-    fn left(&mut self, cause: &Self::Error) -> Self::Left;
+    fn end_state(&mut self, cause: &Self::Error) -> Self::EndState;
 }
 
 /// The reason why an operation of a plan ended early.
@@ -125,12 +125,12 @@ pub struct Interrupted<Op, E, Done, Left> {
     /// The cause of the interruption.
     pub cause: E,
     /// The state in which the device was left.
-    pub left: Left,
+    pub end_state: Left,
 }
 
 /// [`Interrupted`], of a kind of device.
 pub(crate) type InterruptedWrite<W> =
-    Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::Left>;
+    Interrupted<<W as Write>::Op, <W as Write>::Error, <W as Write>::Written, <W as Write>::EndState>;
 
 impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
     /// Checks the consent, and lets the device read the base of the plan again; `None` if the consent is for another plan.
@@ -168,8 +168,8 @@ impl<'p, Base: Hash, Op: Clone + Hash> Confirmed<'p, Base, Op> {
         };
         let ended = carry_out();
         let Err(cause) = write.lead_back(self, ended, &mut done) else { return Ok(done) };
-        let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.left(&cause));
-        Err(Box::new(Interrupted { done, unfinished, cause, left }))
+        let (unfinished, left) = (self.plan.ops.get(at).cloned(), write.end_state(&cause));
+        Err(Box::new(Interrupted { done, unfinished, cause, end_state: left }))
     }
 }
 

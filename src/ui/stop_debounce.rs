@@ -22,12 +22,12 @@ fn with<T>(ctx: &Context, act: impl FnOnce(&mut StopPresses) -> T) -> T {
 
 /// Returns whether the pointer goes down on a button that stops, in this frame.
 pub(crate) fn goes_down(ui: &Ui, response: &Response) -> bool {
-    let goes = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
-    if goes {
+    let is_press = response.is_pointer_button_down_on() && ui.input(|input| input.pointer.primary_pressed());
+    if is_press {
         let now = ui.input(|input| input.time);
         with(ui.ctx(), |presses| presses.goes_down(now));
     }
-    goes
+    is_press
 }
 
 /// Returns when the press that counts in this frame, on a button that stops, began.
@@ -38,6 +38,6 @@ pub(crate) fn pressed_at(ui: &Ui, goes_down: bool) -> f64 {
 
 /// Returns whether Esc is pressed in this frame; a held key that repeats does not count.
 pub(super) fn escape_goes_down(ctx: &Context) -> bool {
-    let goes = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
-    ctx.input(|input| input.events.iter().any(goes))
+    let is_press = |event: &Event| matches!(event, Event::Key { key: Key::Escape, pressed: true, repeat: false, .. });
+    ctx.input(|input| input.events.iter().any(is_press))
 }

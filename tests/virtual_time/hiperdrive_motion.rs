@@ -7,7 +7,7 @@ mod model;
 mod watch;
 
 use encoder_studio::devices::hiperdrive::procedures::dead_man::{
-    Effort, Ended, Goal, Lock, MotionRequest, Motive, Permit, Phase, Refusal,
+    Effort, Ended, Goal, Lock, MotionKind, MotionRequest, Permit, Phase, Refusal,
 };
 use encoder_studio::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd};
 use encoder_studio::devices::hiperdrive::sim::SpindleLoad;
@@ -69,7 +69,10 @@ fn a_jog_runs_while_it_is_held() {
         bench.act(jog(direction));
         bench.run(1000);
         let phase = bench.man.phase();
-        assert!(matches!(phase, Phase::Moving(Motive::Run { direction: way, .. }) if way == direction), "{phase:?}");
+        assert!(
+            matches!(phase, Phase::Moving(MotionKind::Run { direction: way, .. }) if way == direction),
+            "{phase:?}"
+        );
         // 10 % of 35 rpm, in tenths.
         assert_eq!(bench.actual().speed, sign * 35);
         assert_eq!((bench.man.sent().speed.get(), bench.man.sent().torque.get()), (10, 25));

@@ -103,7 +103,7 @@ impl Ending<'_> {
     fn assert_cancelled_cleanly(&self, interrupted: &Interrupted) {
         let Ending { context, .. } = self;
         assert_eq!(interrupted.cause, Error::Cancelled, "{context}");
-        assert_eq!(interrupted.left.unlocked, Vec::<u8>::new(), "{context}");
+        assert_eq!(interrupted.end_state.unlocked, Vec::<u8>::new(), "{context}");
         let done = applied(self.before, &self.prepared.plan.ops[..interrupted.done.ops]);
         assert_eq!(self.desk.memory(), locked_again(done), "{context}");
         assert_eq!(interrupted.done.write_cycles, self.desk.wear() - self.worn_before, "{context}");
@@ -123,12 +123,15 @@ impl Ending<'_> {
         assert!(interrupted.cause.is_lost(), "{context}: {interrupted:?}");
         for field in [1, 4] {
             let open = memory.get(usize::from(field)).is_some_and(|(status, _)| status & 0x40 != 0);
-            let told = interrupted.left.unlocked.contains(&field);
+            let told = interrupted.end_state.unlocked.contains(&field);
             let changes_it = |op: &Op| op.field() == Some(field) && (op.unlocks() || op.locks(field));
             let unclear = in_flight.is_some_and(changes_it);
             assert!(open == told || told && unclear, "{context}: field {field} open {open}, told {told}");
         }
-        assert!(interrupted.left.unlocked.iter().all(|field| [1, 4].contains(field)), "{context}: {interrupted:?}");
+        assert!(
+            interrupted.end_state.unlocked.iter().all(|field| [1, 4].contains(field)),
+            "{context}: {interrupted:?}"
+        );
         let spent = self.desk.wear() - self.worn_before;
         let reported = interrupted.done.write_cycles;
         assert!(reported == spent || reported == spent + 1, "{context}: {reported} told, {spent} spent");
@@ -317,7 +320,7 @@ fn power_lost_in_the_middle_of_every_store() {
             8 => vec![4],
             _ => vec![],
         };
-        assert_eq!(interrupted.left.unlocked, expected, "store {store}");
+        assert_eq!(interrupted.end_state.unlocked, expected, "store {store}");
         let reconnected = desk.reconnected();
         assert_can_be_completed(&reconnected, &wanted, &before, Some(&backup(&path)));
     }

@@ -65,11 +65,11 @@ pub fn setting(error: &ConfigError) -> Text {
 pub fn document(error: &ProfileError, kinds: Kinds) -> Text {
     match error {
         ProfileError::Syntax { line, column, what } => syntax(*line, *column, syntax_problem(what)),
-        ProfileError::Misspelt { line, column, path, meant } => Text::new("detail.misspelt")
+        ProfileError::Misspelt { line, column, path, intended } => Text::new("detail.misspelt")
             .with("line", line)
             .with("column", column)
             .with("path", path)
-            .with("meant", meant),
+            .with("meant", intended),
         ProfileError::Missing { path } => Text::new("detail.missing").with("path", path),
         ProfileError::Shape { path, expected: shape } => {
             Text::new("detail.shape").with("path", path).with_text("expected", expected(shape))

@@ -60,7 +60,7 @@ impl Write for Spy {
     type Op = Op;
     type Error = Cancelled;
     type Written = Written;
-    type Left = &'static str;
+    type EndState = &'static str;
 
     fn confirm(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
         self.steps.push("confirm");
@@ -101,7 +101,7 @@ impl Write for Spy {
         ended
     }
 
-    fn left(&mut self, _: &Cancelled) -> &'static str {
+    fn end_state(&mut self, _: &Cancelled) -> &'static str {
         "as it was"
     }
 }
@@ -185,7 +185,7 @@ fn every_write_takes_all_steps_in_their_order() {
             Ok(done) => assert!(label == "done" && done.written.verified == 2 && done.logbook_warning.is_none()),
             Err(JobError::Interrupted { interrupted, backup, planned: 2, kind: 'k' }) => {
                 assert!(label == "cut off" && interrupted.cause == Cancelled && backup.exists());
-                assert_eq!((interrupted.unfinished.map(|op| op.0), interrupted.left), (Some(2), "as it was"));
+                assert_eq!((interrupted.unfinished.map(|op| op.0), interrupted.end_state), (Some(2), "as it was"));
             }
             Err(JobError::Device(())) => assert_eq!(label, "refused"),
             Err(JobError::NotBegun(NotBegun::Worn { seen: 9, cost: 3, limit: 10 })) => assert_eq!(label, "worn"),
@@ -215,7 +215,7 @@ fn a_logbook_that_cannot_be_used_stops_a_write() {
         type Op = Op;
         type Error = Cancelled;
         type Written = Written;
-        type Left = ();
+        type EndState = ();
         fn confirm(&mut self, _: &Plan<(), Op>) -> Result<(), ()> {
             Ok(())
         }
@@ -223,7 +223,7 @@ fn a_logbook_that_cannot_be_used_stops_a_write() {
             self.0 += 1;
             Ok(())
         }
-        fn left(&mut self, _: &Cancelled) {}
+        fn end_state(&mut self, _: &Cancelled) {}
     }
     let root = tempfile::tempdir().unwrap();
     let store = Store::at(root.path());

@@ -19,7 +19,7 @@ impl Write for NovoWrite<'_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = ();
+    type EndState = ();
 
     fn confirm(&mut self, plan: &NovoPlan) -> Result<(), Error> {
         let now = self.novo.survey(self.context)?;
@@ -36,7 +36,7 @@ impl Write for NovoWrite<'_> {
         done.carried_out(1);
         Ok(())
     }
-    fn left(&mut self, _: &Error) {}
+    fn end_state(&mut self, _: &Error) {}
 }
 
 impl DeviceError for Error {

@@ -96,7 +96,7 @@ fn assert_can_be_led_back(
     steps: &mut Vec<ProcedureStep>,
     context: &str,
 ) {
-    let first = !steps.contains(&told.left.at);
+    let first = !steps.contains(&told.end_state.at);
     let mut again = if first { bench.reconnected() } else { bench.reconnected_knowing() };
     again.motor().set_rpm(0.0);
     again.lead_back().unwrap_or_else(|error| panic!("{context}: {error}"));
@@ -104,7 +104,7 @@ fn assert_can_be_led_back(
     if !first {
         return;
     }
-    steps.push(told.left.at);
+    steps.push(told.end_state.at);
     let prepared = again.prepare((scene.change)()).unwrap_or_else(|error| panic!("{context}: {error}"));
     let mut hands = Hands::on(&again);
     hands.rpm = (500.0, 2000.0);
@@ -147,7 +147,7 @@ fn cut_at_every_exchange(scene: &Scene, way: Transport) {
                 }
                 Ended::Interrupted(told) => {
                     assert!(told.cause.is_lost(), "{context}: {told}");
-                    assert_told(&told.left, &bench, &context);
+                    assert_told(&told.end_state, &bench, &context);
                     assert_cycles(&told, bench.flash_cycles() - before, &context);
                     assert_can_be_led_back(&bench, scene, &told, &mut steps, &context);
                 }
@@ -224,7 +224,7 @@ fn power_lost_before_every_exchange() {
                     assert_cycles(&told, spent, &context);
                     let lost = !bench.encoder(|encoder, _| encoder.flash().is_calibrated());
                     let running = Activity::Running(Run::CalibrationClockwise);
-                    let warned = told.left.standing.as_ref().is_some_and(|own| own.activity == running);
+                    let warned = told.end_state.standing.as_ref().is_some_and(|own| own.activity == running);
                     assert!(!lost || warned, "{context}: {told:?}");
                     // Power is back, and the encoder is in operation.
                     let mut again = bench.reconnected_knowing();
@@ -249,7 +249,7 @@ fn power_lost_in_every_store() {
                 bench.encoder(|encoder, _| encoder.set_faults(&format!("die-in-store:{store}").parse().unwrap()));
             });
             let Ended::Interrupted(told) = ended else { panic!("{context}") };
-            assert!(told.cause.is_lost() && told.left.standing.is_some(), "{context}: {told:?}");
+            assert!(told.cause.is_lost() && told.end_state.standing.is_some(), "{context}: {told:?}");
             assert_eq!(told.done.write_cycles, store, "{context}");
             bench.encoder(|encoder, _| encoder.set_faults(&Default::default()));
             assert_can_be_led_back(&bench, scene, &told, &mut Vec::new(), &context);
@@ -280,7 +280,7 @@ fn cancelled_at_every_exchange() {
                 Ended::Refused(error) => assert_eq!((error, spent), (Error::Cancelled, 0), "{context}"),
                 Ended::Interrupted(told) => {
                     assert_eq!(told.cause, Failure::Device(Error::Cancelled), "{context}");
-                    assert_eq!((told.left.standing, told.done.write_cycles), (None, spent), "{context}");
+                    assert_eq!((told.end_state.standing, told.done.write_cycles), (None, spent), "{context}");
                     assert!(!done, "{context}");
                 }
             }
@@ -305,7 +305,7 @@ fn a_mounting_that_is_cut_off_tells_what_was_done() {
             Ended::Done => break,
             Ended::Refused(error) => assert!(error.is_lost(), "{context}"),
             Ended::Interrupted(told) => {
-                assert_told(&told.left, &bench, &context);
+                assert_told(&told.end_state, &bench, &context);
                 assert_cycles(&told, bench.flash_cycles() - before, &context);
                 assert_eq!(told.done.outcomes.len(), told.done.ops, "{context}");
                 ops.push(told.done.ops);

@@ -243,7 +243,7 @@ fn whoever_cancels_at_the_motor_finds_the_encoder_in_operation() {
         hands.instead.push((task, Answer::Cancel));
         let told = interrupted(*bench.commit(&prepared, &mut hands).unwrap_err());
         assert_eq!(
-            (told.cause, told.left.at, told.left.standing),
+            (told.cause, told.end_state.at, told.end_state.standing),
             (Failure::Device(Error::Cancelled), ProcedureStep::Await(task), None)
         );
         assert_eq!(bench.mode_and_password(), IN_OPERATION, "{task:?}");
@@ -267,7 +267,7 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
         let (before, from) = (bench.flash_cycles(), bench.now());
         let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
         let Failure::NotReady { blockers, .. } = &told.cause else { panic!("{query}: {told}") };
-        assert_eq!((blockers.contains(&blocker), told.left.standing), (true, None), "{query}: {blockers:?}");
+        assert_eq!((blockers.contains(&blocker), told.end_state.standing), (true, None), "{query}: {blockers:?}");
         assert_eq!((bench.flash_cycles(), bench.mode_and_password()), (before, IN_OPERATION));
         assert!(bench.now() - from < Duration::from_secs(7), "{query}");
     }
@@ -280,8 +280,8 @@ fn without_anybody_a_start_comes_as_soon_as_it_fits_or_not_at_all() {
     let mut bench = Bench::new(Transport::ConfigPin, "rpm=1000");
     let prepared = bench.prepare(wiegand_test(true)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::from_secs(5)).unwrap_err());
-    assert_eq!(told.left.at, ProcedureStep::Await(Task::Turn(Run::WiegandCounterclockwise)));
-    assert_eq!((told.left.standing, bench.mode_and_password()), (None, IN_OPERATION));
+    assert_eq!(told.end_state.at, ProcedureStep::Await(Task::Turn(Run::WiegandCounterclockwise)));
+    assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
     // Outside the speeds: too slow for the test, too fast for the calibration.
     for (query, change) in [("rpm=400", wiegand_test(false)), ("rpm=-900", calibration())] {
         let mut bench = Bench::new(Transport::ConfigPin, query);
@@ -324,7 +324,7 @@ fn a_calibration_that_fails_says_why() {
         let words: Vec<&str> = job(&error).iter().map(Text::id).collect();
         let told = interrupted(*error);
         assert_eq!(told.cause, Failure::Calibration { run, status });
-        assert_eq!((told.left.at, told.left.standing), (ProcedureStep::Run(run), None));
+        assert_eq!((told.end_state.at, told.end_state.standing), (ProcedureStep::Run(run), None));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
         // The state of the encoder's flash is not known: a lost table counts as a write.
         let lost = run == Run::CalibrationClockwise;
@@ -406,7 +406,7 @@ fn a_run_that_never_ends_is_given_up() {
         .unwrap_err();
     let told = interrupted(*error);
     assert!(matches!(told.cause, Failure::TooLong { run: Run::WiegandClockwise, seconds: 71..=73 }), "{told}");
-    assert_eq!((told.left.standing, bench.mode_and_password()), (None, IN_OPERATION));
+    assert_eq!((told.end_state.standing, bench.mode_and_password()), (None, IN_OPERATION));
 }
 
 /// Obstacles known before a procedure begins are refused before anything is written.

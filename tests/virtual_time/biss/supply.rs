@@ -106,7 +106,7 @@ fn an_encoder_that_could_not_be_led_back_keeps_its_power() {
         let error = *bench.commit(&prepared, &mut hands).unwrap_err();
         bench.tap().mute_from = None;
         let unknown =
-            matches!(&error, JobError::Interrupted { interrupted, .. } if interrupted.left.standing.is_some());
+            matches!(&error, JobError::Interrupted { interrupted, .. } if interrupted.end_state.standing.is_some());
         bench.session.leave();
         assert_eq!(has_power(&bench), unknown, "cut in part {part}: {error}");
         if unknown {

@@ -264,7 +264,7 @@ fn one_lost_answer_or_request_at_every_exchange() {
                         let told = interrupted(error);
                         let unheard = matches!(told.cause, Failure::Status { .. } | Failure::NotVerified { .. });
                         assert!(unheard, "{context}: {told}");
-                        assert_eq!(told.left.standing, None, "{context}");
+                        assert_eq!(told.end_state.standing, None, "{context}");
                         assert!(told.done.write_cycles >= u64::from(spent) && spent < cost, "{context}");
                     }
                 }
@@ -298,7 +298,7 @@ fn what_cannot_be_read_back_is_unclear() {
             .unwrap_err();
         let told = interrupted(*error);
         assert!(matches!(told.cause, Failure::Device(Error::Unclear { value: 5, .. })), "{lost}: {told}");
-        assert_eq!((told.left.standing, told.done.write_cycles), (None, 1));
+        assert_eq!((told.end_state.standing, told.done.write_cycles), (None, 1));
         assert_eq!(bench.mode_and_password(), IN_OPERATION);
     }
 }
@@ -319,7 +319,7 @@ fn a_noisy_line_writes_right_or_tells() {
                 }
                 Err(JobError::Interrupted { interrupted, .. }) => {
                     told += 1;
-                    super::hands::assert_told(&interrupted.left, &bench, &format!("{noise}, seed {seed}"));
+                    super::hands::assert_told(&interrupted.end_state, &bench, &format!("{noise}, seed {seed}"));
                 }
                 Err(_) => told += 1,
             }
@@ -341,7 +341,7 @@ fn a_single_register_is_written_and_read_back() {
     let prepared = bench.prepare(write("0x50", 1)).unwrap();
     let told = interrupted(bench.commit_alone(&prepared, Duration::ZERO).unwrap_err());
     assert!(matches!(told.cause, Failure::Device(Error::Refused { .. })), "{told}");
-    assert_eq!((told.done.write_cycles, told.left.standing), (0, None));
+    assert_eq!((told.done.write_cycles, told.end_state.standing), (0, None));
     for place in ["0x6A", "0x6B", "0x00:0x1A", "0x01:0x02"] {
         let error = bench.prepare(write(place, 1)).unwrap_err();
         assert!(matches!(error, JobError::Plan(PlanError::Guarded { .. })), "{place}: {error}");

@@ -106,7 +106,7 @@ fn any_session_ends_at_a_standstill() {
             let now = bench.now;
             let sent = bench.cycle();
             model.look(now, sent, bench.man.actual(), bench.man.ended());
-            let wanted = bench.intent.wish.moves() && !stale && bench.permit.locks.is_empty();
+            let wanted = bench.intent.request.moves() && !stale && bench.permit.locks.is_empty();
             assert!(wanted || sent.control.is_standing(), "{seed}/{step}: {:?} after {word:?}", sent.control);
             word = sent.control;
             unwanted = if wanted { 0 } else { unwanted + 1 };

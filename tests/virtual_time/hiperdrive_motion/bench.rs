@@ -61,7 +61,7 @@ impl Bench {
     /// Makes a request of the user; returns the number of the act.
     pub(super) fn act(&mut self, wish: MotionRequest) -> u64 {
         let number = self.intent.number + 1;
-        self.intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: self.now };
+        self.intent = Intent { drive: DriveNumber::FIRST, request: wish, number, refreshed: self.now };
         number
     }
 
@@ -79,8 +79,8 @@ impl Bench {
         let setpoint = self.man.next(self.now, self.heard.or(heard), &self.intent, &self.permit);
         let word = setpoint.control;
         assert!(!word.has(ControlBit::JogOne) && !word.has(ControlBit::JogTwo), "{word:?}");
-        if let Some(begins) = word.begins(self.before, report.status) {
-            let wish = self.intent.wish;
+        if let Some(begins) = word.motion_start(self.before, report.status) {
+            let wish = self.intent.request;
             let act = fresh && wish.moves() && self.intent.number > spent && self.permit.locks.is_empty();
             assert!(act, "{begins:?} by {word:?} behind {:?}, {:?} is wanted", self.before, self.intent);
         }

@@ -1,6 +1,6 @@
 //! All ends of a motion: the stop word is sent with the same call, and escalates on the ladder while the drive moves.
 
-use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, MotionRequest, Phase, Rung};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::{Ended, Goal, Lock, MotionRequest, Phase, StopLevel};
 use encoder_studio::devices::hiperdrive::protocol::{Direction, DriveNumber};
 use proptest::prelude::*;
 
@@ -42,7 +42,7 @@ const CAUSES: [(&str, Cause, Ended); 7] = [
     ),
     ("locked", |bench| bench.permit.locks.push(Lock::LimitsUnconfirmed), Ended::Locked(Lock::LimitsUnconfirmed)),
     ("an older act", |bench| bench.intent.number -= 1, Ended::Stopped),
-    ("the same act with another wish", |bench| bench.intent.wish = to(9), Ended::Replaced),
+    ("the same act with another wish", |bench| bench.intent.request = to(9), Ended::Replaced),
 ];
 
 #[test]
@@ -120,7 +120,10 @@ fn up_the_ladder_while_it_does_not_stand() {
                 rungs.push((rung, ms));
             }
         }
-        assert_eq!(rungs, [(Rung::Mode, 0), (Rung::Operational, 200), (Rung::Off, 400), (Rung::Close, 600)]);
+        assert_eq!(
+            rungs,
+            [(StopLevel::Mode, 0), (StopLevel::Operational, 200), (StopLevel::Off, 400), (StopLevel::Close, 600)]
+        );
         assert!(bench.man.gives_up());
         let moved = if stop == "0469" { "0479" } else { "1459" };
         assert_eq!(super::words(&mut bench), format!("{moved} {stop} 0401 0000"));

@@ -119,7 +119,7 @@ fn a_write_that_is_cut_ends_in_time_and_says_in_which_state_the_encoder_may_be()
                 Err(JobError::Interrupted { interrupted, backup, .. }) => {
                     assert!(backup.exists() && interrupted.cause.is_lost(), "{at}: {interrupted}");
                     assert!(spent <= interrupted.done.write_cycles, "{at}: {interrupted}");
-                    match interrupted.left {
+                    match interrupted.end_state {
                         EndState::Unknown(standing) => {
                             assert_eq!(standing.found, Some(StartupMode::Cams(program(2))), "{at}");
                             assert!(

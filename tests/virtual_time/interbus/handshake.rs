@@ -86,7 +86,7 @@ fn an_error_at_any_step_is_told_and_led_back_from() {
             let interrupted = ended.unwrap_err();
             assert!(matches!(interrupted.cause, Error::Refused { sent, .. } if sent.emit() == word), "{interrupted}");
             assert!(interrupted.cause.to_string().contains(meaning), "{interrupted}");
-            assert_eq!(interrupted.left, EndState::AsFound, "{interrupted}");
+            assert_eq!(interrupted.end_state, EndState::AsFound, "{interrupted}");
             assert_eq!((interrupted.done.ops, interrupted.done.write_cycles), (0, 1), "a store may have been spent");
             assert_eq!(interrupted.unfinished.unwrap().items().len(), 4);
             // The words up to that one, then the return.
@@ -236,7 +236,7 @@ fn a_word_that_a_gateway_may_have_written_is_led_back_from() {
         let interrupted = ended.unwrap_err();
         let asked = RequestedItem::Write { register: 0, word: STEPS };
         assert_eq!(interrupted.cause, Error::Exception { requested: asked, exception: Exception::new(code) });
-        assert_eq!(interrupted.left, EndState::AsFound, "{code:02X}");
+        assert_eq!(interrupted.end_state, EndState::AsFound, "{code:02X}");
         assert_eq!(sent.contains(&STEPS), wrote, "{sent:08X?}");
         assert!(sent.ends_with(&[RUN, 0]), "{code:02X}: {sent:08X?}");
     }

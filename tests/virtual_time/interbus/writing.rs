@@ -347,7 +347,7 @@ fn a_wish_to_end_leaves_an_encoder_that_runs() {
             Err(JobError::Interrupted { interrupted, .. }) => {
                 interrupted_ones += 1;
                 assert!(interrupted.cause.is_cancelled(), "after {after}: {interrupted}");
-                assert_eq!(interrupted.left, EndState::AsFound, "after {after}");
+                assert_eq!(interrupted.end_state, EndState::AsFound, "after {after}");
                 assert!(u64::from(spent) <= interrupted.done.write_cycles, "after {after}: {spent}");
             }
             Err(JobError::Device(error)) => assert_eq!((error.is_cancelled(), spent), (true, 0), "after {after}"),

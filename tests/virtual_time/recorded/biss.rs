@@ -33,7 +33,7 @@ fn recorded(name: &str, change: fn(&mut Bench) -> Change, every: usize) {
                         if interrupted.cause == Failure::Device(Error::Cancelled) { "cancelled" } else { "cut off" },
                         interrupted.done.ops,
                         interrupted.done.write_cycles,
-                        if interrupted.left.standing.is_none() { "in operation" } else { "not led back" },
+                        if interrupted.end_state.standing.is_none() { "in operation" } else { "not led back" },
                     ),
                     Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
                     Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),

@@ -57,7 +57,7 @@ fn recorded_on(name: &str, original: Desk, change: Change) {
                 if interrupted.cause == Error::Cancelled { "cancelled" } else { "cut off" },
                 interrupted.done.ops,
                 interrupted.done.write_cycles,
-                interrupted.left.unlocked,
+                interrupted.end_state.unlocked,
             ),
             Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
             Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),

@@ -24,7 +24,7 @@ fn recorded(name: &str, change: fn(&mut Stand) -> Change, every: usize) {
                 if interrupted.cause == Error::Cancelled { "cancelled" } else { "cut off" },
                 interrupted.done.ops,
                 interrupted.done.write_cycles,
-                if interrupted.left == EndState::AsFound { "as found" } else { "not led back" },
+                if interrupted.end_state == EndState::AsFound { "as found" } else { "not led back" },
             ),
             Err(JobError::Device(Error::Cancelled)) => "cancelled, nothing written".to_owned(),
             Err(JobError::Device(error)) if error.is_lost() => "cut off, nothing written".to_owned(),

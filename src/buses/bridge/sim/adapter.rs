@@ -405,8 +405,8 @@ fn noisy(faults: &Faults, rng: &mut Rng, bytes: &[u8]) -> Vec<u8> {
 impl ByteDevice for Adapter {
     fn on_bytes(&mut self, now: Moment, bytes: &[u8]) {
         self.advance(now);
-        let heard = noisy(&self.faults, &mut self.rng, bytes);
-        self.receiver.push(&heard);
+        let received = noisy(&self.faults, &mut self.rng, bytes);
+        self.receiver.push(&received);
         while let Some(packet) = self.receiver.next_packet() {
             self.take(&packet);
         }

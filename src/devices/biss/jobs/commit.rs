@@ -31,7 +31,7 @@ pub(super) fn commit(
     match &ended {
         Ok(_) => encoder.station.unfinished = false,
         Err(JobError::Interrupted { interrupted, .. }) => {
-            encoder.station.unfinished = interrupted.left.standing.is_some();
+            encoder.station.unfinished = interrupted.end_state.standing.is_some();
         }
         Err(_) => {}
     }

@@ -93,7 +93,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Failure;
     type Written = Written;
-    type Left = EndState;
+    type EndState = EndState;
 
     /// Checks that this is the encoder of the plan, by its memory as well: two new encoders have the same identity.
     fn confirm(&mut self, plan: &BissPlan) -> Result<(), Error> {
@@ -147,7 +147,7 @@ impl Write for EncoderWrite<'_, '_> {
         Ok(led?)
     }
 
-    fn left(&mut self, _: &Failure) -> EndState {
+    fn end_state(&mut self, _: &Failure) -> EndState {
         let standing = self.guide.standing();
         EndState { at: self.at, standing: (!standing.is_in_operation()).then(|| standing.clone()) }
     }

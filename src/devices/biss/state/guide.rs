@@ -82,8 +82,8 @@ impl Guide {
         &self.ops
     }
 
-    pub(super) fn take_progress(&mut self, news: ProcedureProgress) {
-        self.progress = Some(news);
+    pub(super) fn take_progress(&mut self, progress: ProcedureProgress) {
+        self.progress = Some(progress);
     }
 
     /// Returns the detail of the present step.

@@ -66,8 +66,8 @@ impl Encoder {
         let (before, may_lead_back) = match error {
             None => (Vec::new(), true),
             Some(JobError::Interrupted { interrupted, .. }) => {
-                guide.cut = Some(interrupted.left.at);
-                (interrupted.done.outcomes.clone(), interrupted.left.standing.is_some())
+                guide.cut = Some(interrupted.end_state.at);
+                (interrupted.done.outcomes.clone(), interrupted.end_state.standing.is_some())
             }
             Some(JobError::Device(Error::NotInOperation { .. })) => (Vec::new(), true),
             Some(_) => (Vec::new(), false),

@@ -31,7 +31,7 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
     if !drives.is_empty() {
         return Ok(Done::Well);
     }
-    let heard = match others.len() {
+    let summary = match others.len() {
         0 => "Nobody answered.".to_owned(),
         others => format!("No HIPERDRIVE answered; other EtherNet/IP devices: {others}."),
     };
@@ -41,7 +41,7 @@ pub(super) fn find(common: &Common, output: &Output) -> Result {
         }
         Some(_) => "only this address was searched; without --link, the whole network of this computer is searched.",
     };
-    Err(Failure::Failed(vec![format!("{heard} Check supply, cable and address: {hint}")]))
+    Err(Failure::Failed(vec![format!("{summary} Check supply, cable and address: {hint}")]))
 }
 
 /// Returns the addresses of a link: one device, or all in a network (enip:192.168.1.255).

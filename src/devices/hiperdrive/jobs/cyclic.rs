@@ -157,7 +157,7 @@ impl Pump {
     fn apply_commands(&mut self) {
         let now = self.clock.now();
         if let Some(why) = self.commands.lost.lock().unwrap_or_else(PoisonError::into_inner).take() {
-            self.drives.lose(now, why);
+            self.drives.connection_lost(now, why);
         }
         if self.commands.end.load(Ordering::SeqCst) || self.motion.is_shutting_down() {
             self.drives.close(now);
@@ -165,7 +165,7 @@ impl Pump {
     }
 
     fn is_gone(&mut self, why: CyclicLost) -> bool {
-        self.drives.lose(self.clock.now(), why);
+        self.drives.connection_lost(self.clock.now(), why);
         self.motion.publish(&self.drives);
         false
     }

@@ -69,7 +69,7 @@ pub struct DriveView {
     /// The data received last.
     pub actual: Actual,
     /// Time of the data in `actual`; `None` before the first.
-    pub heard_at: Option<Moment>,
+    pub received_at: Option<Moment>,
     /// The setpoint sent last.
     pub sent: Setpoint,
     /// The phase of its motion.
@@ -99,11 +99,11 @@ impl Motion {
 
     /// Requests a motion of a drive and returns the number of this new act. It replaces the previous one, whose motion
     /// stops. It must be [refreshed](Self::refresh). Without a cyclic connection it has no effect.
-    pub fn intend(&self, drive: DriveNumber, wish: MotionRequest) -> u64 {
+    pub fn intend(&self, drive: DriveNumber, request: MotionRequest) -> u64 {
         let refreshed = self.0.clock.now();
         let mut cell = self.lock();
         let number = cell.intent.number + 1;
-        cell.intent = Intent { drive, wish, number, refreshed };
+        cell.intent = Intent { drive, request, number, refreshed };
         number
     }
 
@@ -231,7 +231,7 @@ impl Motion {
         let of = |man: &DeadMan| DriveView {
             number: man.drive(),
             actual: man.actual(),
-            heard_at: man.heard_at(),
+            received_at: man.received_at(),
             sent: man.sent(),
             phase: man.phase(),
             act: man.act(),

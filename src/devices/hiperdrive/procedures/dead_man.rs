@@ -24,7 +24,7 @@ mod watch;
 
 use std::time::Duration;
 
-pub use act::{Effort, Ended, Goal, Intent, Lock, MotionRequest, Motive, Permit, Phase, Refusal, Rung};
+pub use act::{Effort, Ended, Goal, Intent, Lock, MotionKind, MotionRequest, Permit, Phase, Refusal, StopLevel};
 pub use watch::{Outside, Side};
 
 use lead::Lead;
@@ -38,7 +38,7 @@ use crate::units::Moment;
 #[derive(Clone, Debug)]
 pub struct DeadMan {
     drive: DriveNumber,
-    heard: Option<(Moment, Actual)>,
+    received: Option<(Moment, Actual)>,
     /// Time of the first report.
     first: Option<Moment>,
     /// Number of reports received.
@@ -55,7 +55,7 @@ pub struct DeadMan {
     /// Speed mode was entered, and the drive may remember the run: it must first go below operational.
     after_run: bool,
     /// No reports at the moment: no motion starts.
-    deaf: bool,
+    is_out_of_contact: bool,
     ended: Option<(u64, Ended)>,
 }
 
@@ -64,7 +64,7 @@ pub struct DeadMan {
 struct Act {
     number: u64,
     /// The latest request of the act: pausing a job counts as one, too.
-    said: MotionRequest,
+    request: MotionRequest,
     /// The motion, if any.
     motion: Option<Motion>,
     /// Supervision of a motion that has begun.
@@ -74,22 +74,22 @@ struct Act {
 #[derive(Clone, Copy, Debug)]
 struct Motion {
     /// The request that started it.
-    wish: MotionRequest,
-    motive: Motive,
+    request: MotionRequest,
+    kind: MotionKind,
 }
 
-/// A rung of the stop ladder.
-pub const RUNG: Duration = Duration::from_millis(200);
+/// Time for a drive to stop at a level of the ladder, before the next one.
+pub const LEVEL_TIME: Duration = Duration::from_millis(200);
 /// Time for a drive to obey a word on the way to another state.
 const STEP: Duration = Duration::from_secs(2);
 /// Time for a drive to begin a motion.
 const START: Duration = Duration::from_secs(1);
 /// Without a report for this time, nothing moves: more than three of the longest intervals.
-const DEAF: Duration = Duration::from_millis(350);
+const CONTACT_TIMEOUT: Duration = Duration::from_millis(350);
 /// How late a report may be behind what it reports, between a hub and its drives (`U`).
 pub const SETTLE: Duration = Duration::from_millis(100);
 /// How long positions have to arrive before they count as the drive's (`U`: a hub first queries all its drives).
-pub const HEARD: Duration = Duration::from_millis(250);
+pub const ARRIVAL_TIME: Duration = Duration::from_millis(250);
 /// Time after which a drive at standstill counts as not having reached its target.
 const SHORT: Duration = Duration::from_millis(500);
 
@@ -98,7 +98,7 @@ impl DeadMan {
     pub const fn new(drive: DriveNumber, spent: u64) -> Self {
         DeadMan {
             drive,
-            heard: None,
+            received: None,
             first: None,
             reports: 0,
             sent: NONE,
@@ -108,25 +108,25 @@ impl DeadMan {
             spent,
             effort: Effort::NONE,
             after_run: false,
-            deaf: false,
+            is_out_of_contact: false,
             ended: None,
         }
     }
 
-    /// Returns the setpoint to send now. `heard` is the data received since the last call; `None` if nothing arrived.
-    pub fn next(&mut self, now: Moment, heard: Option<Actual>, intent: &Intent, permit: &Permit) -> Setpoint {
-        if let Some(actual) = heard {
-            self.hear(now, actual);
+    /// Returns the setpoint to send now. `received` is the data since the last call; `None` if nothing arrived.
+    pub fn next(&mut self, now: Moment, received: Option<Actual>, intent: &Intent, permit: &Permit) -> Setpoint {
+        if let Some(actual) = received {
+            self.receive(now, actual);
         }
-        self.sent = match self.heard {
+        self.sent = match self.received {
             Some((_, actual)) => {
-                self.look_for_an_end(now, actual, intent, permit);
+                self.check_for_end(now, actual, intent, permit);
                 self.advance(now, actual);
                 self.take(now, actual, intent, permit);
                 self.guarded(self.setpoint(actual), actual)
             }
             None => {
-                self.forget_what_is_void(now, intent);
+                self.drop_void_state(now, intent);
                 NONE
             }
         };
@@ -139,12 +139,12 @@ impl DeadMan {
 
     /// Returns the data received last; zero before the first.
     pub fn actual(&self) -> Actual {
-        self.heard.map(|(_, actual)| actual).unwrap_or_default()
+        self.received.map(|(_, actual)| actual).unwrap_or_default()
     }
 
     /// Returns the time of the data received last; `None` before the first.
-    pub fn heard_at(&self) -> Option<Moment> {
-        self.heard.map(|(at, _)| at)
+    pub fn received_at(&self) -> Option<Moment> {
+        self.received.map(|(at, _)| at)
     }
 
     /// Returns the setpoint sent last.
@@ -164,13 +164,13 @@ impl DeadMan {
 
     /// Returns the phase of the motion.
     pub fn phase(&self) -> Phase {
-        let motive = self.act.and_then(|act| act.motion).map(|motion| motion.motive);
-        match (&self.stage, motive) {
-            (Stage::Stop { rung, .. }, _) => Phase::Stopping(*rung),
+        let kind = self.act.and_then(|act| act.motion).map(|motion| motion.kind);
+        match (&self.stage, kind) {
+            (Stage::Stop { level, .. }, _) => Phase::Stopping(*level),
             (Stage::Lead(lead), _) => Phase::Leading(lead.goal()),
-            (Stage::Arm { .. } | Stage::Start { .. }, Some(motive)) => Phase::Starting(motive),
-            (Stage::Go { .. }, Some(motive)) => Phase::Moving(motive),
-            (Stage::Paused { .. }, Some(Motive::Job { target })) => Phase::Paused { target },
+            (Stage::Arm { .. } | Stage::Start { .. }, Some(kind)) => Phase::Starting(kind),
+            (Stage::Go { .. }, Some(kind)) => Phase::Moving(kind),
+            (Stage::Paused { .. }, Some(MotionKind::Job { target })) => Phase::Paused { target },
             _ => Phase::Idle,
         }
     }
@@ -178,7 +178,7 @@ impl DeadMan {
     /// Returns whether no rung of the ladder helped: the connection is to be closed, so that the drives' watchdog stops
     /// them.
     pub const fn gives_up(&self) -> bool {
-        matches!(self.stage, Stage::Stop { rung: Rung::Close, .. })
+        matches!(self.stage, Stage::Stop { level: StopLevel::Close, .. })
     }
 
     /// Returns whether no act is running and the drive need not be stopped.
@@ -187,27 +187,27 @@ impl DeadMan {
     }
 
     /// Handles the end or loss of the connection: ends the running act, and stops the motion.
-    pub fn lose(&mut self, now: Moment) {
+    pub fn connection_lost(&mut self, now: Moment) {
         if self.stage.has_motion() {
             self.stop(now, Ended::Lost);
         } else if matches!(self.stage, Stage::Lead(_)) {
             self.end(Ended::Lost);
-            self.hold_what_is(self.actual().status.state());
+            self.hold_state(self.actual().status.state());
         }
     }
 
     /// Handles lost positions, for whatever reason: motion is stopped, and none begins.
-    pub fn fall_deaf(&mut self, now: Moment) {
-        self.deaf = true;
+    pub fn contact_lost(&mut self, now: Moment) {
+        self.is_out_of_contact = true;
         if self.stage.has_motion() {
             self.stop(now, Ended::Deaf);
         }
     }
 
-    fn hear(&mut self, now: Moment, actual: Actual) {
+    fn receive(&mut self, now: Moment, actual: Actual) {
         self.reports += 1;
-        self.deaf = false;
-        self.heard = Some((now, actual));
+        self.is_out_of_contact = false;
+        self.received = Some((now, actual));
         self.first = self.first.or(Some(now));
         let below = Goal::of_word(self.sent.control) < Goal::Operational;
         let forgotten = |bit| !actual.status.has(bit);
@@ -218,8 +218,8 @@ impl DeadMan {
 
     /// Marks the request as spent if it is a rest or a stop, is for another drive, or was not refreshed in time: neither it
     /// nor an earlier one starts any more.
-    fn forget_what_is_void(&mut self, now: Moment, intent: &Intent) {
-        let rests = matches!(intent.wish, MotionRequest::Rest | MotionRequest::Stop);
+    fn drop_void_state(&mut self, now: Moment, intent: &Intent) {
+        let rests = matches!(intent.request, MotionRequest::Rest | MotionRequest::Stop);
         let stale = intent.is_stale(now);
         if intent.number <= self.spent || !(intent.drive != self.drive || rests || stale) {
             return;
@@ -240,43 +240,43 @@ impl DeadMan {
 
     /// Starts a new act if there is one and the last one has ended.
     fn take(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
-        self.forget_what_is_void(now, intent);
+        self.drop_void_state(now, intent);
         // A step counts from the present position.
-        let is_heard = self.first.is_some_and(|first| now.since(first) >= HEARD);
-        let has_place = is_heard || !matches!(intent.wish, MotionRequest::Step { .. });
+        let has_arrived = self.first.is_some_and(|first| now.since(first) >= ARRIVAL_TIME);
+        let has_place = has_arrived || !matches!(intent.request, MotionRequest::Step { .. });
         let waits = self.act.is_some() || !has_place || !matches!(self.stage, Stage::Rest { .. } | Stage::Lead(_));
         if intent.drive != self.drive || intent.number <= self.spent || waits {
             return;
         }
-        self.act = Some(Act { number: intent.number, said: intent.wish, motion: None, watch: None });
-        if self.deaf && intent.wish.moves() {
+        self.act = Some(Act { number: intent.number, request: intent.request, motion: None, watch: None });
+        if self.is_out_of_contact && intent.request.moves() {
             self.end(Ended::Deaf);
-        } else if let Err(refusal) = self.begin(now, actual, intent.wish, permit) {
+        } else if let Err(refusal) = self.begin(now, actual, intent.request, permit) {
             self.end(Ended::Refused(refusal));
         }
     }
 
-    fn begin(&mut self, now: Moment, actual: Actual, wish: MotionRequest, permit: &Permit) -> Result<(), Refusal> {
+    fn begin(&mut self, now: Moment, actual: Actual, request: MotionRequest, permit: &Permit) -> Result<(), Refusal> {
         let status = actual.status;
         if !status.is_present() {
             return Err(Refusal::Absent);
         }
-        let motive = match wish {
+        let kind = match request {
             MotionRequest::Rest | MotionRequest::Stop => return Ok(()),
             MotionRequest::Lead(goal) => return self.lead(now, actual, goal),
             MotionRequest::Acknowledge => return self.acknowledge(now, actual),
             MotionRequest::Pause => return Err(Refusal::NothingToPause),
             MotionRequest::Resume => return Err(Refusal::NothingToResume),
-            MotionRequest::Move { target, .. } => Motive::Job { target },
-            MotionRequest::Step { by, .. } => Motive::Job { target: actual.position.saturating_add(by) },
-            MotionRequest::Jog { direction, .. } => Motive::Run { direction, end: RunEnd::RangeEnd },
-            MotionRequest::Run { direction, end, .. } => Motive::Run { direction, end },
+            MotionRequest::Move { target, .. } => MotionKind::Job { target },
+            MotionRequest::Step { by, .. } => MotionKind::Job { target: actual.position.saturating_add(by) },
+            MotionRequest::Jog { direction, .. } => MotionKind::Run { direction, end: RunEnd::RangeEnd },
+            MotionRequest::Run { direction, end, .. } => MotionKind::Run { direction, end },
         };
-        permit.check(wish, motive.target())?;
+        permit.check(request, kind.target())?;
         if permit.doubted {
             return Err(Refusal::Locked(Lock::Outdated));
         }
-        permit.check_place(wish, actual)?;
+        permit.check_place(request, actual)?;
         if status.has(StatusBit::Fault) {
             return Err(Refusal::Fault);
         }
@@ -284,9 +284,9 @@ impl DeadMan {
             return Err(Refusal::SwitchOnLock);
         }
         if let Some(act) = &mut self.act {
-            act.motion = Some(Motion { wish, motive });
+            act.motion = Some(Motion { request, kind });
         }
-        self.effort = wish.effort().unwrap_or(self.effort);
+        self.effort = request.effort().unwrap_or(self.effort);
         self.stage = Stage::Lead(Lead::to(Goal::Enabled));
         self.advance(now, actual);
         Ok(())
@@ -294,8 +294,8 @@ impl DeadMan {
 
     /// Applies the last safeguard: replaces any word that could start a motion unless an act with a motion is running.
     fn guarded(&self, setpoint: Setpoint, actual: Actual) -> Setpoint {
-        let meant = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
-        if meant || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
+        let is_commanded = self.act.is_some_and(|act| act.motion.is_some()) && self.stage.moves();
+        if is_commanded || setpoint.control.is_standing() { setpoint } else { Setpoint::standing(actual) }
     }
 
     const fn mark(&self, now: Moment) -> Mark {
@@ -303,11 +303,11 @@ impl DeadMan {
     }
 }
 
-impl Motive {
+impl MotionKind {
     pub const fn target(self) -> Option<i32> {
         match self {
-            Motive::Job { target } => Some(target),
-            Motive::Run { .. } => None,
+            MotionKind::Job { target } => Some(target),
+            MotionKind::Run { .. } => None,
         }
     }
 }

@@ -47,7 +47,7 @@ impl Write for DeviceWrite<'_, '_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = ();
+    type EndState = ();
 
     /// The drives have to be the same, and none moves.
     fn confirm(&mut self, plan: &HiperdrivePlan) -> Result<(), Error> {
@@ -91,7 +91,7 @@ impl Write for DeviceWrite<'_, '_> {
         Ok(())
     }
 
-    fn left(&mut self, _: &Error) {}
+    fn end_state(&mut self, _: &Error) {}
 }
 
 /// Returns the drives that a plan concerns: all if it concerns the device as a whole.

@@ -53,7 +53,7 @@ pub enum RunEnd {
 
 /// Motion that a control word starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Begins {
+pub enum MotionStart {
     /// A move to the target.
     Job,
     /// A run in speed mode.
@@ -214,23 +214,23 @@ impl ControlWord {
     /// Returns the motion that starts when this word follows `before`, for a drive that reports `status` and has
     /// operation enabled. A job starts on a difference of levels, not on an edge (reference 8.10): clearing bit 12
     /// after a run starts one to a stale target.
-    pub fn begins(self, before: ControlWord, status: StatusWord) -> Option<Begins> {
+    pub fn motion_start(self, before: ControlWord, status: StatusWord) -> Option<MotionStart> {
         let rises = |bit: ControlBit| self.has(bit) && !before.has(bit);
         let acknowledged = status.has(StatusBit::SetpointAcknowledged);
         let enabled = self.has(ControlBit::On) && self.has(ControlBit::Enable) && self.has(ControlBit::Control);
         if !enabled || !status.has(StatusBit::OperationEnabled) || status.has(StatusBit::Fault) {
             None
         } else if self.has(ControlBit::SpeedMode) {
-            if rises(ControlBit::Start) { Some(Begins::Run) } else { None }
+            if rises(ControlBit::Start) { Some(MotionStart::Run) } else { None }
         } else if rises(ControlBit::JogOne) {
-            Some(Begins::JogOne)
+            Some(MotionStart::JogOne)
         } else if rises(ControlBit::JogTwo) {
-            Some(Begins::JogTwo)
+            Some(MotionStart::JogTwo)
         } else if self.has(ControlBit::NoStop)
             && self.has(ControlBit::NoPause)
             && self.has(ControlBit::Start) != acknowledged
         {
-            Some(Begins::Job)
+            Some(MotionStart::Job)
         } else {
             None
         }

@@ -32,7 +32,7 @@ pub const VENDOR: u16 = 1010;
 /// Assemblies of the cyclic connection: configuration, output to the drives, input from them.
 pub const ASSEMBLIES: [u16; 3] = [104, 100, 101];
 
-pub use control_word::{Begins, ControlBit, ControlWord, Direction, Refused, RunEnd};
+pub use control_word::{ControlBit, ControlWord, Direction, MotionStart, Refused, RunEnd};
 pub use error_code::{ERROR_CODES, ErrorCode, ErrorCodeRow};
 pub use leds::{
     BUS_LEDS, BusLamp, BusLedRow, BusLight, DriveLight, LedRow, LedSubject, PORT_LEDS, PortLedRow, PortLight,

@@ -97,26 +97,26 @@ fn a_stop_is_the_modes_own() {
 #[test]
 fn what_begins_with_a_word() {
     let cases = [
-        ("job", 0x0439, 0x0479, 0x2A37, Some(Begins::Job)),
-        ("next job", 0x0479, 0x0439, 0x3E37, Some(Begins::Job)),
+        ("job", 0x0439, 0x0479, 0x2A37, Some(MotionStart::Job)),
+        ("next job", 0x0479, 0x0439, 0x3E37, Some(MotionStart::Job)),
         ("bit 6 as acknowledged", 0x0439, 0x0479, 0x3E37, None),
         ("held", 0x0409, 0x0439, 0x2A37, None),
-        ("a level, no edge", 0x0479, 0x0479, 0x2A37, Some(Begins::Job)),
+        ("a level, no edge", 0x0479, 0x0479, 0x2A37, Some(MotionStart::Job)),
         ("stopped", 0x0439, 0x0469, 0x2A37, None),
         ("paused", 0x0439, 0x0459, 0x2A37, None),
         ("not enabled yet", 0x0439, 0x0479, 0x2A33, None),
         ("fault", 0x0439, 0x0479, 0x2ABF, None),
-        ("run", 0x1419, 0x1459, 0x2A37, Some(Begins::Run)),
+        ("run", 0x1419, 0x1459, 0x2A37, Some(MotionStart::Run)),
         ("runs already", 0x1459, 0x1459, 0x1A37, None),
         // The run has set ZSW12 and its stop left bit 6 clear: without bit 12 that is a job to a stale target.
-        ("out of speed mode", 0x1419, 0x0439, 0x3E37, Some(Begins::Job)),
+        ("out of speed mode", 0x1419, 0x0439, 0x3E37, Some(MotionStart::Job)),
         ("out of it through 0400", 0x1419, 0x0400, 0x3E37, None),
-        ("jog 1", 0x0409, 0x0509, 0x2A37, Some(Begins::JogOne)),
-        ("jog 2", 0x0409, 0x0609, 0x2A37, Some(Begins::JogTwo)),
+        ("jog 1", 0x0409, 0x0509, 0x2A37, Some(MotionStart::JogOne)),
+        ("jog 2", 0x0409, 0x0609, 0x2A37, Some(MotionStart::JogTwo)),
         ("jog 1 kept", 0x0509, 0x0509, 0x2A37, None),
     ];
     for (label, before, now, says, expected) in cases {
-        assert_eq!(word(now).begins(word(before), status(says)), expected, "{label}");
+        assert_eq!(word(now).motion_start(word(before), status(says)), expected, "{label}");
     }
 }
 
@@ -353,9 +353,9 @@ proptest! {
             prop_assert_eq!(ControlWord::parse(control.word()), Ok(control));
             prop_assert!(!control.has(C::JogOne) && !control.has(C::JogTwo));
         }
-        prop_assert_eq!(before.stopped().begins(before, says), None);
-        prop_assert_eq!(ControlWord::holding(says).begins(before, says), None);
-        prop_assert_eq!(ControlWord::READY.begins(before, says), None);
+        prop_assert_eq!(before.stopped().motion_start(before, says), None);
+        prop_assert_eq!(ControlWord::holding(says).motion_start(before, says), None);
+        prop_assert_eq!(ControlWord::READY.motion_start(before, says), None);
     }
 
     #[test]

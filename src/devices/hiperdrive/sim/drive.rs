@@ -13,8 +13,8 @@ use crate::devices::hiperdrive::protocol::drive_parameter::{
     DENOMINATOR, LOWER, NUMERATOR, SPEED_DENOMINATOR, SPEED_NUMERATOR, UPPER,
 };
 use crate::devices::hiperdrive::protocol::{
-    Actual, Begins, ControlBit, ControlWord, ErrorCode, Family, OutData, PositionScale, SpeedScale, State, StatusBit,
-    StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
+    Actual, ControlBit, ControlWord, ErrorCode, Family, MotionStart, OutData, PositionScale, SpeedScale, State,
+    StatusBit, StatusWord, Topology, Travel, Trigger, Variant, effective_torque,
 };
 use crate::units::Moment;
 
@@ -137,7 +137,7 @@ impl Drive {
         self.out = out;
         let before = std::mem::replace(&mut self.control, control);
         // A run and a jog step start on an edge; a job is a level, and starts with the next millisecond.
-        let begins = control.begins(before, self.status()).filter(|begins| *begins != Begins::Job);
+        let begins = control.motion_start(before, self.status()).filter(|begins| *begins != MotionStart::Job);
         self.enter(self.next(before));
         self.obey();
         if let Some(begins) = begins {
@@ -259,7 +259,7 @@ impl Drive {
 
     /// Returns whether only its temperature changes by itself.
     fn is_settled(&self) -> bool {
-        let begins = self.control.begins(self.control, self.status()).is_some();
+        let begins = self.control.motion_start(self.control, self.status()).is_some();
         self.motion == Motion::Rest && self.axis.is_standing() && !begins && self.next(self.control) == self.state
     }
 
@@ -278,8 +278,8 @@ impl Drive {
 
     fn tick(&mut self, ticks: u32) {
         self.enter(self.next(self.control));
-        if let Some(Begins::Job) = self.control.begins(self.control, self.status()) {
-            self.begin(Begins::Job);
+        if let Some(MotionStart::Job) = self.control.motion_start(self.control, self.status()) {
+            self.begin(MotionStart::Job);
         }
         let torque = effective_torque(self.percents().1);
         let wants = !matches!(self.motion, Motion::Rest | Motion::Paused { .. });
@@ -360,7 +360,7 @@ impl Drive {
         };
     }
 
-    fn begin(&mut self, begins: Begins) {
+    fn begin(&mut self, begins: MotionStart) {
         let (low, high) = self.limits();
         let jog = |step: u16, speed: u16, torque: u16| {
             let percent = |number| u8::try_from(self.word(number)).unwrap_or_default();
@@ -368,16 +368,16 @@ impl Drive {
             (self.position().saturating_add(step), Some(Jog { speed: percent(speed), torque: percent(torque) }))
         };
         let (target, jog) = match begins {
-            Begins::Run => {
+            MotionStart::Run => {
                 let clockwise = self.control.has(ControlBit::NoStop);
                 // Beyond the end it runs no further, and not back either.
                 let end = if clockwise { high.max(self.position()) } else { low.min(self.position()) };
                 let to = (!self.control.has(ControlBit::NoPause)).then(|| self.place_of(end));
                 return self.moves(Motion::Run { to, clockwise });
             }
-            Begins::Job => (self.out.target, None),
-            Begins::JogOne => jog(170, 172, 174),
-            Begins::JogTwo => jog(176, 178, 180),
+            MotionStart::Job => (self.out.target, None),
+            MotionStart::JogOne => jog(170, 172, 174),
+            MotionStart::JogTwo => jog(176, 178, 180),
         };
         if (low..=high).contains(&target) {
             self.moves(Motion::Job { at: self.place_of(target), jog });

@@ -7,7 +7,7 @@
 //! | `memory` | parameters that can be written, and what of them survives the supply |
 //! | `drive` | a drive: its state, its motion, its faults |
 //! | `parameters` | what reading and writing a drive's parameters does |
-//! | `hindrance` | writes that are refused, or cut off in the middle |
+//! | `write_fault` | writes that are refused, or cut off in the middle |
 //! | `station` | the drives together: process data, save and reset, the lost master |
 //! | `words` | answers to parameter words |
 //! | `config` | the settings of a `sim:` link |

@@ -56,7 +56,7 @@ impl Unit {
     /// Moves a drive; refused with a reason if it may not move.
     fn drive_by(&mut self, motor: Motor, services: &mut Services) {
         let drive = self.drive();
-        let wish = match motor {
+        let request = match motor {
             Motor::JogHold => return self.moves.hold(),
             Motor::JogRelease => return self.moves.release(),
             Motor::Stop => return self.moves.stop(),
@@ -87,14 +87,14 @@ impl Unit {
             Motor::Pause => MotionRequest::Pause,
             Motor::Resume => MotionRequest::Resume,
         };
-        if let Err(why) = self.may(drive, wish) {
+        if let Err(why) = self.may(drive, request) {
             // The present act continues: nothing else has started.
             return self.tell_of(drive, Severity::Warning, vec![why], services);
         }
-        match wish {
-            MotionRequest::Jog { .. } => self.moves.press(drive, wish),
+        match request {
+            MotionRequest::Jog { .. } => self.moves.press(drive, request),
             _ => {
-                self.moves.want(drive, wish);
+                self.moves.want(drive, request);
             }
         }
     }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::devices::hiperdrive::jobs::{DriveView, DrivesSnapshot, Motion, MotionSnapshot};
 use crate::devices::hiperdrive::procedures::dead_man::{
-    Effort, Ended, HEARD, Lock, MotionRequest, Motive, Permit, Phase,
+    ARRIVAL_TIME, Effort, Ended, Lock, MotionKind, MotionRequest, Permit, Phase,
 };
 use crate::devices::hiperdrive::procedures::{DriveLimits, LimitsSeen};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, DriveNumber, Setpoint, State};
@@ -164,11 +164,11 @@ impl Moves {
         self.drive(drive).and_then(|own| own.ended).is_some_and(|(own, _)| own >= number)
     }
 
-    fn intend(&mut self, drive: DriveNumber, wish: MotionRequest, kind: Kind) -> Option<u64> {
+    fn intend(&mut self, drive: DriveNumber, request: MotionRequest, kind: Kind) -> Option<u64> {
         // For one press: the next request needs it enabled again.
         self.freed = None;
-        let number = self.motion.as_ref()?.intend(drive, wish);
-        let moves = wish.moves() || wish == MotionRequest::Pause;
+        let number = self.motion.as_ref()?.intend(drive, request);
+        let moves = request.moves() || request == MotionRequest::Pause;
         self.act = Some(Act { drive, number, kind, moves, is_reported: false });
         Some(number)
     }
@@ -228,9 +228,9 @@ impl Moves {
 
     /// Starts a move, a step or a change of state, which frames refresh. Returns the number of the act; `None` while the
     /// session is not open.
-    pub(super) fn want(&mut self, drive: DriveNumber, wish: MotionRequest) -> Option<u64> {
-        let kind = if matches!(wish, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
-        self.intend(drive, wish, kind)
+    pub(super) fn want(&mut self, drive: DriveNumber, request: MotionRequest) -> Option<u64> {
+        let kind = if matches!(request, MotionRequest::Run { .. }) { Kind::Run } else { Kind::Other };
+        self.intend(drive, request, kind)
     }
 
     /// Stops all drives, whatever moves them.
@@ -359,7 +359,7 @@ impl Moves {
     pub fn held(&self, drive: DriveNumber) -> Option<(u64, Direction)> {
         let act = self.act.filter(|act| act.drive == drive && self.is_held())?;
         match self.phase(drive)? {
-            Phase::Moving(Motive::Run { direction, .. }) => Some((act.number, direction)),
+            Phase::Moving(MotionKind::Run { direction, .. }) => Some((act.number, direction)),
             _ => None,
         }
     }
@@ -368,7 +368,7 @@ impl Moves {
     pub fn is_heard(&self) -> bool {
         let link = &self.view.link;
         let packets = u32::try_from(link.received).unwrap_or(u32::MAX);
-        self.view.open && link.interval.saturating_mul(packets) >= HEARD
+        self.view.open && link.interval.saturating_mul(packets) >= ARRIVAL_TIME
     }
 
     /// Returns whether a drive moves, is about to, or is being prepared for it.

@@ -102,33 +102,33 @@ impl Unit {
     }
 
     /// Checks whether a drive accepts this request now.
-    pub(super) fn may(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
-        let asks_target = match wish {
+    pub(super) fn may(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
+        let asks_target = match request {
             MotionRequest::Move { target, .. } => Some(target),
             _ => None,
         };
-        self.may_end_what_moves(drive, wish)?;
-        match wish {
+        self.may_stop_other_drive(drive, request)?;
+        match request {
             MotionRequest::Run { end: RunEnd::Endless, .. } => self.may_run_endlessly(drive)?,
-            _ if wish.moves() => self.may_move(drive)?,
+            _ if request.moves() => self.may_move(drive)?,
             _ => self.may_be_led()?,
         }
         let Some(permit) = self.moves.permit(drive) else { return Err(TEXTS.text("hd_refused.not_taken")) };
         let place = |steps| self.place(drive, steps);
-        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(wish, actual));
-        permit.check(wish, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
+        let here = self.moves.actual(drive).map_or(Ok(()), |actual| permit.check_place(request, actual));
+        permit.check(request, asks_target).and(here).map_err(|refusal| words::refusal(refusal, place))
     }
 
     /// Checks that a request may end the present motion. A stop may, and so may a jog of the same drive. The motion of
     /// another drive must not be ended this way, and a step or move must not be replaced before its end.
-    fn may_end_what_moves(&self, drive: DriveNumber, wish: MotionRequest) -> Result<(), Text> {
+    fn may_stop_other_drive(&self, drive: DriveNumber, request: MotionRequest) -> Result<(), Text> {
         match self.moves.mover() {
-            Some(mover) if mover != drive && wish != MotionRequest::Stop => {
+            Some(mover) if mover != drive && request != MotionRequest::Stop => {
                 Err(TEXTS.text("hd_refused.other_moves").with("drive", mover.get()))
             }
             Some(_)
                 if matches!(
-                    wish,
+                    request,
                     MotionRequest::Step { .. } | MotionRequest::Move { .. } | MotionRequest::Run { .. }
                 ) =>
             {

@@ -207,11 +207,11 @@ impl Unit {
             DriveRequest::Take => self.act(super::HiperdriveAction::Take, services),
             DriveRequest::Give => self.act(super::HiperdriveAction::Give, services),
             DriveRequest::Move(target) => {
-                let wish = MotionRequest::Move { target: *target, effort: Effort::JOG };
-                if let Err(why) = self.may(drive, wish) {
+                let request = MotionRequest::Move { target: *target, effort: Effort::JOG };
+                if let Err(why) = self.may(drive, request) {
                     return self.tell_of(drive, Severity::Warning, vec![why], services);
                 }
-                let act = self.moves.want(drive, wish);
+                let act = self.moves.want(drive, request);
                 if let (Some(act), Button::Go(place), Some(axis)) = (act, button, self.axes.get_mut(&drive)) {
                     axis.went(place, *target, act);
                 }

@@ -208,7 +208,7 @@ impl Unit {
     /// Returns when a drive reported that, on the clock of its session; `None` if it was only part of a full reading.
     pub(super) fn actual_at(&self, drive: DriveNumber) -> Option<Moment> {
         match self.moves.drive(drive) {
-            Some(own) => own.heard_at,
+            Some(own) => own.received_at,
             None => self.readings.get(&drive).map(|reading| reading.at),
         }
     }

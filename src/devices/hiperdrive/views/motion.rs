@@ -5,7 +5,7 @@ use egui::{Id, RichText, Ui, UiBuilder, vec2};
 use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
-use crate::devices::hiperdrive::procedures::dead_man::{Effort, Lock, Motive, Phase};
+use crate::devices::hiperdrive::procedures::dead_man::{Effort, Lock, MotionKind, Phase};
 use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, RunEnd, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
@@ -215,7 +215,7 @@ fn to_position(
                 }
             }
             phase => {
-                let on_its_way = matches!(phase, Some(Phase::Moving(Motive::Job { .. })));
+                let on_its_way = matches!(phase, Some(Phase::Moving(MotionKind::Job { .. })));
                 if enabled_button(ui, on_its_way, icons::PAUSE, &say(theme, "hd_move.pause")).clicked() {
                     means_motion(ui.ctx(), true, ui.input(|input| input.time));
                     motor(actions, id, Motor::Pause);

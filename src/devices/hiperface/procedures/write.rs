@@ -47,7 +47,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = EndState;
+    type EndState = EndState;
 
     /// Checks that this is the encoder of the plan, by its memory as well: two new encoders have the same identity.
     fn confirm(&mut self, plan: &HiperfacePlan) -> Result<(), Error> {
@@ -109,7 +109,7 @@ impl Write for EncoderWrite<'_, '_> {
         ended
     }
 
-    fn left(&mut self, _: &Error) -> EndState {
+    fn end_state(&mut self, _: &Error) -> EndState {
         std::mem::take(&mut self.left)
     }
 }

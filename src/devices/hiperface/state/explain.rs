@@ -63,8 +63,8 @@ pub fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, ki
             text.with_text("cause", encoder(cause))
         }
     }];
-    if !interrupted.left.unlocked.is_empty() {
-        let fields: Vec<String> = interrupted.left.unlocked.iter().map(ToString::to_string).collect();
+    if !interrupted.end_state.unlocked.is_empty() {
+        let fields: Vec<String> = interrupted.end_state.unlocked.iter().map(ToString::to_string).collect();
         texts.push(TEXTS.text("write.left_unlocked").with("fields", fields.join(", ")));
     }
     // An operation that may have been carried out counts as a write cycle.
@@ -248,7 +248,7 @@ mod tests {
     fn cut_off(cause: Error, write_cycles: u64) -> Interrupted {
         let ops = usize::try_from(write_cycles).unwrap();
         let done = Written { ops, write_cycles, ..Written::default() };
-        Interrupted { done, unfinished: None, cause, left: EndState::default() }
+        Interrupted { done, unfinished: None, cause, end_state: EndState::default() }
     }
 
     #[test]

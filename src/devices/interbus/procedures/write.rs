@@ -47,7 +47,7 @@ impl Write for EncoderWrite<'_, '_> {
     type Op = Op;
     type Error = Error;
     type Written = Written;
-    type Left = EndState;
+    type EndState = EndState;
 
     fn confirm(&mut self, plan: &InterbusPlan) -> Result<(), Error> {
         let Self { master, identity } = self;
@@ -74,7 +74,7 @@ impl Write for EncoderWrite<'_, '_> {
         self.master.end(ended)
     }
 
-    fn left(&mut self, cause: &Error) -> EndState {
+    fn end_state(&mut self, cause: &Error) -> EndState {
         match cause {
             Error::NotLedBack { standing, .. } => EndState::Unknown(*standing),
             _ => EndState::AsFound,

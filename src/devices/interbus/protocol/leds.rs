@@ -2,7 +2,7 @@
 
 /// The state of an LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Lamp {
+pub enum LedState {
     /// Dark.
     Off,
     /// Lit.
@@ -15,13 +15,13 @@ pub enum Lamp {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Leds {
     /// UL.
-    pub ul: Lamp,
+    pub ul: LedState,
     /// BA.
-    pub ba: Lamp,
+    pub ba: LedState,
     /// RC.
-    pub rc: Lamp,
+    pub rc: LedState,
     /// RBDA.
-    pub rbda: Lamp,
+    pub rbda: LedState,
 }
 
 /// The meaning of a combination of LEDs, and what to do.
@@ -35,9 +35,9 @@ pub struct LedRow {
     pub remedy: &'static str,
 }
 
-use Lamp::{Blinking, Off, On};
+use LedState::{Blinking, Off, On};
 
-const fn leds(ul: Lamp, ba: Lamp, rc: Lamp, rbda: Lamp) -> Leds {
+const fn leds(ul: LedState, ba: LedState, rc: LedState, rbda: LedState) -> Leds {
     Leds { ul, ba, rc, rbda }
 }
 

@@ -39,7 +39,7 @@ pub use class::{Class, Interface, Single, class_of_id, id_code};
 pub use command::{Command, Refused};
 pub use compiled::Compiled;
 pub use gear::{Gear, GearError, STEPS_PER_TURN, TURNS};
-pub use leds::{LEDS, Lamp, LedRow, Leds};
+pub use leds::{LEDS, LedRow, LedState, Leds};
 pub use mode::Mode;
 pub use parameter::{OutOfRange, PARAMETERS, Parameter, ParameterRow};
 pub use read_out::{Flags, READ_OUTS, ReadOut, ReadOutRow, ReadOutValue, StartupMode};

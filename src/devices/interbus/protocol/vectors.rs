@@ -263,7 +263,7 @@ fn classes_say_who_they_are() {
 /// Reference 1.
 #[test]
 fn lamps_say_what_is_the_matter() {
-    use Lamp::{Blinking, Off, On};
+    use LedState::{Blinking, Off, On};
     let says = |ul, ba, rc, rbda| Leds { ul, ba, rc, rbda }.row().map(|row| row.meaning);
     assert_eq!(says(On, Off, On, Off), Some("no run"));
     assert_eq!(says(On, Blinking, On, Off), Some("configured"));

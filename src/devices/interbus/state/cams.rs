@@ -63,7 +63,7 @@ pub struct VisibleRange {
 
 /// An output at a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lamp {
+pub struct OutputState {
     /// Output by the edited program; `None`: the position or the program is not known.
     pub simulated: Option<bool>,
     /// Output reported by the encoder; `None`: not reported.
@@ -130,10 +130,10 @@ impl Chart {
     }
 
     /// Returns the outputs as indicators: those of this program at a position, and the encoder's own.
-    pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [Lamp; Program::CAMS] {
+    pub fn lamps(&self, position: Option<u32>, own: Option<u8>) -> [OutputState; Program::CAMS] {
         let simulated = position.filter(|position| *position < self.range).map(|position| self.outputs(position));
         let bit = |outputs: Option<u8>, cam: CamNumber| outputs.map(|outputs| outputs >> cam.get() & 1 == 1);
-        CamNumber::EACH.map(|cam| Lamp { simulated: bit(simulated, cam), own: bit(own, cam) })
+        CamNumber::EACH.map(|cam| OutputState { simulated: bit(simulated, cam), own: bit(own, cam) })
     }
 
     /// Returns a cam's edge; `None` if the cam has none.
@@ -149,7 +149,7 @@ impl Lane {
     }
 }
 
-impl Lamp {
+impl OutputState {
     /// Returns whether the encoder reports another state than this program gives.
     pub fn differs(self) -> bool {
         self.simulated.zip(self.own).is_some_and(|(simulated, own)| simulated != own)

@@ -71,7 +71,7 @@ pub fn flags(flags: Flags) -> Text {
 
 /// Returns the meaning of a combination of LEDs, and what to do.
 pub fn lamps(row: &LedRow) -> (Text, Text) {
-    use crate::devices::interbus::protocol::Lamp::{Blinking, On};
+    use crate::devices::interbus::protocol::LedState::{Blinking, On};
     let (meaning, remedy) = match (row.leds.ba, row.leds.rbda) {
         (On, _) => ("ib_leds.run", "ib_leds.run_remedy"),
         (Blinking, _) => ("ib_leds.configured", "ib_leds.configured_remedy"),

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use crate::app::Action;
-use crate::devices::interbus::protocol::{Class, Interface, Lamp, Leds, id_code};
+use crate::devices::interbus::protocol::{Class, Interface, LedState, Leds, id_code};
 use crate::devices::interbus::state::{TEXTS, words};
 use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, name, paragraph, row, two_columns};
@@ -16,7 +16,7 @@ pub(super) struct LedsUiState {
 
 impl Default for LedsUiState {
     fn default() -> Self {
-        LedsUiState { leds: Leds { ul: Lamp::On, ba: Lamp::On, rc: Lamp::On, rbda: Lamp::On } }
+        LedsUiState { leds: Leds { ul: LedState::On, ba: LedState::On, rc: LedState::On, rbda: LedState::On } }
     }
 }
 
@@ -54,21 +54,21 @@ fn lamps(ui: &mut Ui, theme: &Theme, view: &mut LedsUiState) {
 }
 
 /// Draws an LED: a press changes it from dark to lit, and to blinking if possible.
-fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut Lamp, blinks: bool) {
+fn lamp_ui(ui: &mut Ui, theme: &Theme, word: &str, lamp: &mut LedState, blinks: bool) {
     let palette = theme.palette;
     let (id, ink) = match lamp {
-        Lamp::Off => ("ib_leds.off", palette.muted),
-        Lamp::On => ("ib_leds.on", palette.good),
-        Lamp::Blinking => ("ib_leds.blinking", palette.warn),
+        LedState::Off => ("ib_leds.off", palette.muted),
+        LedState::On => ("ib_leds.on", palette.good),
+        LedState::Blinking => ("ib_leds.blinking", palette.warn),
     };
     let state = say(theme, id);
-    let icon = RichText::new(if *lamp == Lamp::Off { icons::STOP } else { icons::LIGHTNING }).color(ink);
+    let icon = RichText::new(if *lamp == LedState::Off { icons::STOP } else { icons::LIGHTNING }).color(ink);
     let button = egui::Button::new((icon, RichText::new(format!("{word}  {state}")))).min_size([LAMP, 28.0].into());
     if name(ui.add(button), true, &format!("{word}: {state}")).clicked() {
         *lamp = match lamp {
-            Lamp::Off => Lamp::On,
-            Lamp::On if blinks => Lamp::Blinking,
-            Lamp::On | Lamp::Blinking => Lamp::Off,
+            LedState::Off => LedState::On,
+            LedState::On if blinks => LedState::Blinking,
+            LedState::On | LedState::Blinking => LedState::Off,
         };
     }
 }

@@ -71,7 +71,7 @@ pub struct Designer {
 }
 
 impl Design {
-    /// Creates the design of a layout with its family. Of several settings with the same frame, the `wished` ones are
+    /// Creates the design of a layout with its family. Of several settings with the same frame, the `requested` ones are
     /// taken, else the fewest.
     ///
     /// # Errors

@@ -103,7 +103,7 @@ impl Master<'_> {
         self.station.line.sent(sent_at);
         self.line.send(&frame, MaskedBytes::clear(&frame), sent_at)?;
         let deadline = sent_at + self.longest_pin_exchange();
-        let heard = ReceivedBytes {
+        let received = ReceivedBytes {
             receiver: Receiver::new(NODE),
             sent: frame,
             raw: Vec::new(),
@@ -111,21 +111,21 @@ impl Master<'_> {
             echo_heard: false,
             damage: None,
         };
-        self.listen(request, heard, deadline)
+        self.listen(request, received, deadline)
     }
 
-    fn listen(&mut self, request: Request, mut heard: ReceivedBytes, deadline: Moment) -> Attempt<Timed> {
+    fn listen(&mut self, request: Request, mut received: ReceivedBytes, deadline: Moment) -> Attempt<Timed> {
         let gap = BYTE_TIME_OUT + self.station.line.margin;
         let mut last_at = self.now();
         let mut portion = Vec::new();
         loop {
-            let under_way = heard.receiver.is_waiting();
+            let under_way = received.receiver.is_waiting();
             // A frame that started in time may end later.
             let until = if under_way { self.now() + gap } else { deadline };
             portion.clear();
             self.line.receive(until, &mut portion)?;
             if portion.is_empty() && !under_way {
-                return Ok(Err(self.give_up(heard)));
+                return Ok(Err(self.give_up(received)));
             }
             if self.now() > deadline + NOISE {
                 return Err(Error::NeverSilent);
@@ -133,14 +133,14 @@ impl Master<'_> {
             if !portion.is_empty() {
                 last_at = self.now();
             }
-            heard.bytes += portion.len();
-            heard.raw.extend(portion.iter().take(MOST_KEPT.saturating_sub(heard.raw.len())));
-            heard.receiver.push(&portion);
+            received.bytes += portion.len();
+            received.raw.extend(portion.iter().take(MOST_KEPT.saturating_sub(received.raw.len())));
+            received.receiver.push(&portion);
             let next = if portion.is_empty() { Receiver::silence } else { Receiver::next_frame };
-            while let Some(frame) = next(&mut heard.receiver) {
-                if let Some(reply) = self.judge(request, &frame, &mut heard) {
+            while let Some(frame) = next(&mut received.receiver) {
+                if let Some(reply) = self.judge(request, &frame, &mut received) {
                     let at = last_at - self.characters(frame.len());
-                    self.understood(&heard, &frame, at);
+                    self.understood(&received, &frame, at);
                     self.line.show(at, MaskedBytes::clear(&frame));
                     return Ok(Ok(Timed { reply, at }));
                 }
@@ -149,49 +149,49 @@ impl Master<'_> {
     }
 
     /// Returns the reply in a frame, if it is one.
-    fn judge(&self, request: Request, frame: &[u8], heard: &mut ReceivedBytes) -> Option<Reply> {
-        if frame == heard.sent {
-            heard.echo_heard = true;
+    fn judge(&self, request: Request, frame: &[u8], received: &mut ReceivedBytes) -> Option<Reply> {
+        if frame == received.sent {
+            received.echo_heard = true;
             return None;
         }
         // The receiver returns whole frames only.
         let parsed = Reply::parse(&Frame::parse(frame).ok()?, request.command());
         match parsed {
             // Bytes before the echo belong to the reply to an earlier request.
-            Ok(_) if self.station.line.echo == Echo::On && !heard.echo_heard => heard.damage = Some(Damage::Echo),
+            Ok(_) if self.station.line.echo == Echo::On && !received.echo_heard => received.damage = Some(Damage::Echo),
             Ok(reply) => return Some(reply),
-            Err(error) => heard.damage = Some(Damage::Reply(error)),
+            Err(error) => received.damage = Some(Damage::Reply(error)),
         }
         None
     }
 
-    fn understood(&mut self, heard: &ReceivedBytes, reply: &[u8], at: Moment) {
+    fn understood(&mut self, received: &ReceivedBytes, reply: &[u8], at: Moment) {
         let state = &mut self.station.line;
         state.answered();
         state.answer_began(at);
-        state.echo.learn(heard.echo_heard);
-        if heard.receiver.skipped() > 0 || heard.damage.is_some() {
+        state.echo.learn(received.echo_heard);
+        if received.receiver.skipped() > 0 || received.damage.is_some() {
             // The checksum of this reply is right, but the line has damaged other bytes.
             state.damaged += 1;
             state.quality.damaged += 1;
             self.station.noisy = true;
-            let before = heard.raw.windows(reply.len()).position(|window| window == reply);
-            let before = heard.raw.get(..before.unwrap_or(heard.raw.len())).unwrap_or_default();
-            self.line.show(at, MaskedBytes::clear(before.strip_prefix(&*heard.sent).unwrap_or(before)));
+            let before = received.raw.windows(reply.len()).position(|window| window == reply);
+            let before = received.raw.get(..before.unwrap_or(received.raw.len())).unwrap_or_default();
+            self.line.show(at, MaskedBytes::clear(before.strip_prefix(&*received.sent).unwrap_or(before)));
         }
     }
 
     /// The time is up.
-    fn give_up(&mut self, heard: ReceivedBytes) -> ExchangeError {
-        let broken = heard.raw.strip_prefix(&*heard.sent).unwrap_or(&heard.raw);
-        let echo = if heard.echo_heard { heard.sent.len() } else { 0 };
-        let bytes = heard.bytes.saturating_sub(echo);
+    fn give_up(&mut self, received: ReceivedBytes) -> ExchangeError {
+        let broken = received.raw.strip_prefix(&*received.sent).unwrap_or(&received.raw);
+        let echo = if received.echo_heard { received.sent.len() } else { 0 };
+        let bytes = received.bytes.saturating_sub(echo);
         let now = self.now();
         self.line.show(now, MaskedBytes::clear(broken));
-        match heard.damage {
+        match received.damage {
             Some(damage) => ExchangeError::Damage(damage),
             None if bytes > 0 => ExchangeError::Damage(Damage::NoFrame { bytes }),
-            None => ExchangeError::Silence { echo_heard: heard.echo_heard },
+            None => ExchangeError::Silence { echo_heard: received.echo_heard },
         }
     }
 }

@@ -293,10 +293,10 @@ impl<'g, 'm> Guide<'g, 'm> {
     pub(super) fn attend(&mut self, task: Task) -> Result<Attended, Failure> {
         self.step(ProcedureStep::Await(task));
         let begun = self.master.now();
-        let mut gauge = SpeedMonitor::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
+        let mut monitor = SpeedMonitor::over(if matches!(task, Task::Turn(_)) { TURNING } else { STANDING });
         let mut is_told = false;
         loop {
-            let measured = self.measure(task, &mut gauge)?;
+            let measured = self.measure(task, &mut monitor)?;
             if !is_told {
                 // Answers from before the question was displayed are void.
                 self.operator.on_task_start();
@@ -315,7 +315,7 @@ impl<'g, 'm> Guide<'g, 'm> {
     }
 
     /// Reads positions for the time between two questions, and the temperature if it matters.
-    fn measure(&mut self, task: Task, gauge: &mut SpeedMonitor) -> Result<Measured, Failure> {
+    fn measure(&mut self, task: Task, monitor: &mut SpeedMonitor) -> Result<Measured, Failure> {
         let mut measured = Measured::default();
         let end = self.master.now() + ASKING;
         loop {
@@ -327,7 +327,7 @@ impl<'g, 'm> Guide<'g, 'm> {
             match reading {
                 Ok(reading) => {
                     measured.marked |= !reading.is_valid();
-                    gauge.next(&reading);
+                    monitor.next(&reading);
                 }
                 Err(error) if error == Error::Cancelled || error.is_lost() => return Err(error.into()),
                 Err(_) => measured.unreadable = true,
@@ -342,7 +342,7 @@ impl<'g, 'm> Guide<'g, 'm> {
         {
             measured.celsius = Some(Temperature::new(self.master.read(temperature)?).celsius());
         }
-        measured.motion = gauge.motion();
+        measured.motion = monitor.motion();
         Ok(measured)
     }
 }

@@ -118,8 +118,8 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         let text = Text::new("write.interrupted").with("done", done.ops).with("planned", planned);
         text.with_text("cause", failure(&interrupted.cause))
     }];
-    texts.push(TEXTS.text("biss_left.at").with_text("step", step(interrupted.left.at)));
-    texts.extend(match &interrupted.left.standing {
+    texts.push(TEXTS.text("biss_left.at").with_text("step", step(interrupted.end_state.at)));
+    texts.extend(match &interrupted.end_state.standing {
         None => vec![TEXTS.text("biss_left.operation")],
         Some(standing) => left(standing),
     });
@@ -137,7 +137,7 @@ pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: us
         (None, ChangeKind::Preset) => TEXTS.text("biss_write.preset"),
     };
     let what_next = what_next.with("backup", backup.display());
-    texts.push(match &interrupted.left.standing {
+    texts.push(match &interrupted.end_state.standing {
         None => what_next,
         Some(_) => Text::new("write.after_lead_back").with_text("next", what_next),
     });
@@ -252,7 +252,7 @@ mod tests {
     fn cut_off(write_cycles: u64, cause: Failure, standing: Option<LeftState>) -> Interrupted {
         let done = Written { ops: 1, write_cycles, ..Written::default() };
         let left = EndState { at: ProcedureStep::Run(Run::CalibrationClockwise), standing };
-        Interrupted { done, unfinished: None, cause, left }
+        Interrupted { done, unfinished: None, cause, end_state: left }
     }
 
     fn told(cause: Failure, left: Option<LeftState>) -> (Vec<String>, Vec<String>) {

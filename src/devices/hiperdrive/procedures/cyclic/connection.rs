@@ -21,7 +21,7 @@ pub struct Connection {
     count: u16,
     arrivals: Arrivals,
     /// Time of the last valid packet, or of the opening.
-    heard: Moment,
+    last_received: Moment,
     /// Start of the present period of uninterrupted listening.
     awake: Moment,
     /// Until the target gives us up.
@@ -53,7 +53,7 @@ impl Connection {
             sequence: 0,
             count: 0,
             arrivals: Arrivals::default(),
-            heard: now,
+            last_received: now,
             awake: now,
             timeout: opened.timeout,
             began: false,
@@ -79,7 +79,7 @@ impl Connection {
     /// Returns whether nothing has arrived for three intervals, for whatever reason: the positions of the drives are not
     /// known.
     pub fn is_quiet(&self, now: Moment) -> bool {
-        self.began && now.since(self.heard) > self.come_interval * LOST
+        self.began && now.since(self.last_received) > self.come_interval * LOST
     }
 
     /// Returns how long nothing has arrived, if that is too long. While something moves, the limit is three intervals of
@@ -90,8 +90,8 @@ impl Connection {
             self.awake = now;
         }
         let intervals = self.come_interval * LOST;
-        let silence = now.since(self.heard);
-        let listened = now.since(self.heard.max(self.awake));
+        let silence = now.since(self.last_received);
+        let listened = now.since(self.last_received.max(self.awake));
         let most = if self.began { self.timeout.max(intervals) } else { FIRST.max(self.timeout) };
         (moves && self.began && listened > intervals || silence > most).then_some(silence)
     }
@@ -113,10 +113,10 @@ impl Connection {
             Arrival::New { missing } => {
                 if self.began {
                     self.figures.missed += u64::from(missing);
-                    self.figures.intervals.count(self.come_interval, now.since(self.heard));
+                    self.figures.intervals.count(self.come_interval, now.since(self.last_received));
                 }
                 self.figures.received += 1;
-                (self.heard, self.began) = (now, true);
+                (self.last_received, self.began) = (now, true);
                 Some(image)
             }
         }

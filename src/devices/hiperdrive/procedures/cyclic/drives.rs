@@ -23,7 +23,7 @@ pub struct Drives {
 struct ControlledDrive {
     dead_man: DeadMan,
     /// The data received since the last packet.
-    heard: Option<Actual>,
+    received: Option<Actual>,
 }
 
 /// The end of the connection: the drives stop, then are switched off, then nothing more is sent.
@@ -44,7 +44,8 @@ impl Drives {
     pub fn new(opened: &Opened, drives: &[DriveNumber], spent: u64, now: Moment) -> Self {
         let places = opened.layout.topology.drives();
         let placed = drives.iter().filter(|drive| drive.get() <= places);
-        let men = placed.map(|drive| ControlledDrive { dead_man: DeadMan::new(*drive, spent), heard: None }).collect();
+        let men =
+            placed.map(|drive| ControlledDrive { dead_man: DeadMan::new(*drive, spent), received: None }).collect();
         Drives {
             connection: Connection::new(opened, now),
             controlled: men,
@@ -84,12 +85,12 @@ impl Drives {
     pub fn close(&mut self, now: Moment) {
         if self.ending.is_none() {
             self.ending = Some(Ending { since: now, off: 0 });
-            self.controlled.iter_mut().for_each(|man| man.dead_man.lose(now));
+            self.controlled.iter_mut().for_each(|man| man.dead_man.connection_lost(now));
         }
     }
 
     /// Notes that the connection was lost. The drives are told to stop, as they may still receive packets.
-    pub fn lose(&mut self, now: Moment, why: CyclicLost) {
+    pub fn connection_lost(&mut self, now: Moment, why: CyclicLost) {
         if self.lost.is_none() && !self.is_over() {
             self.lost = Some(why);
         }
@@ -100,7 +101,7 @@ impl Drives {
     pub fn on_packet(&mut self, now: Moment, bytes: &[u8]) -> bool {
         let Some(image) = self.connection.on_packet(now, bytes) else { return false };
         for man in &mut self.controlled {
-            man.heard = image.drives.get(place(man.dead_man.drive())).copied();
+            man.received = image.drives.get(place(man.dead_man.drive())).copied();
         }
         true
     }
@@ -117,17 +118,17 @@ impl Drives {
         }
         let moves = self.dead_men().any(|man| !man.is_idle());
         if let Some(after) = self.connection.silent(now, moves) {
-            self.lose(now, CyclicLost::Silent { after });
+            self.connection_lost(now, CyclicLost::Silent { after });
         }
         if self.connection.is_quiet(now) {
-            self.controlled.iter_mut().for_each(|man| man.dead_man.fall_deaf(now));
+            self.controlled.iter_mut().for_each(|man| man.dead_man.contact_lost(now));
         }
         let rest = Intent::rest(intent.drive, intent.number, now);
         let intent = if self.is_ending() { &rest } else { intent };
         let mut drives = vec![OutData::default(); self.places];
         for man in &mut self.controlled {
             let number = man.dead_man.drive();
-            let setpoint = man.dead_man.next(now, man.heard.take(), intent, &permit(number));
+            let setpoint = man.dead_man.next(now, man.received.take(), intent, &permit(number));
             if let Some(out) = drives.get_mut(place(number)) {
                 *out = setpoint.into();
             }

@@ -131,7 +131,7 @@ impl Bench {
     }
 
     fn act(&mut self, wish: MotionRequest) {
-        self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
+        self.intent = Intent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
     /// Returns the control word of the interval.
@@ -278,7 +278,7 @@ fn the_others_rest() {
     let mut moves = [false; 4];
     for ms in (0..3000).step_by(10) {
         intent = match ms {
-            500 => Intent { wish: MotionRequest::Move { target: 9999, effort }, number: 2, ..intent },
+            500 => Intent { request: MotionRequest::Move { target: 9999, effort }, number: 2, ..intent },
             1500 => Intent { drive: second, number: 3, ..intent },
             _ => intent,
         };

@@ -10,7 +10,7 @@ use crate::units::Moment;
 pub struct Intent {
     /// The drive to move. The others rest.
     pub drive: DriveNumber,
-    pub wish: MotionRequest,
+    pub request: MotionRequest,
     /// Number of the user's act: each has its own, higher than those before.
     pub number: u64,
     /// Time of the last refresh. After [`Intent::FRESH`] no motion continues.
@@ -125,19 +125,19 @@ pub enum Phase {
     /// It is being led to this state.
     Leading(Goal),
     /// A motion is about to begin.
-    Starting(Motive),
-    Moving(Motive),
+    Starting(MotionKind),
+    Moving(MotionKind),
     /// Its job is paused.
     Paused {
         target: i32,
     },
     /// It is being stopped.
-    Stopping(Rung),
+    Stopping(StopLevel),
 }
 
 /// A motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motive {
+pub enum MotionKind {
     /// A positioning job.
     Job {
         /// In scaled steps.
@@ -147,9 +147,9 @@ pub enum Motive {
     Run { direction: Direction, end: RunEnd },
 }
 
-/// A rung of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
+/// A level of the ladder with which a drive is stopped (reference 3, *STOP ladder*).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Rung {
+pub enum StopLevel {
     /// The stop of its mode. Torque stays on.
     Mode,
     /// 0401h: operation is disabled.
@@ -259,7 +259,7 @@ impl Intent {
 
     /// Creates an intent that requests nothing.
     pub const fn rest(drive: DriveNumber, number: u64, now: Moment) -> Self {
-        Intent { drive, wish: MotionRequest::Rest, number, refreshed: now }
+        Intent { drive, request: MotionRequest::Rest, number, refreshed: now }
     }
 
     /// Returns whether it was not refreshed in time.
@@ -366,17 +366,17 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal`].
-    pub fn check(&self, wish: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
-        if !wish.moves() {
+    pub fn check(&self, request: MotionRequest, target: Option<i32>) -> Result<(), Refusal> {
+        if !request.moves() {
             return Ok(());
         }
         if let Some(lock) = self.locks.first() {
             return Err(Refusal::Locked(*lock));
         }
-        if wish.effort().is_some_and(Effort::is_none) {
+        if request.effort().is_some_and(Effort::is_none) {
             return Err(Refusal::NoEffort);
         }
-        if matches!(wish, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
+        if matches!(request, MotionRequest::Run { end: RunEnd::Endless, .. }) && !self.endless {
             return Err(Refusal::Endless);
         }
         match (target, self.limits) {

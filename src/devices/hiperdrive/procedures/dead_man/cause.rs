@@ -1,12 +1,12 @@
 //! Why a running act ends early.
 
-use super::{DEAF, DeadMan, Ended, Intent, Lock, MotionRequest, Motive, Permit, Refusal, Stage};
+use super::{CONTACT_TIMEOUT, DeadMan, Ended, Intent, Lock, MotionKind, MotionRequest, Permit, Refusal, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, StatusBit};
 use crate::units::Moment;
 
 impl DeadMan {
     /// Ends the running act if there is a reason to.
-    pub(super) fn look_for_an_end(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
+    pub(super) fn check_for_end(&mut self, now: Moment, actual: Actual, intent: &Intent, permit: &Permit) {
         if self.act.is_none() {
             return;
         }
@@ -16,7 +16,7 @@ impl DeadMan {
                 self.stop(now, how);
             } else {
                 self.end(how);
-                self.hold_what_is(actual.status.state());
+                self.hold_state(actual.status.state());
             }
         }
     }
@@ -27,20 +27,20 @@ impl DeadMan {
         let mark = self.mark(now);
         let Some(act) = &mut self.act else { return };
         let fresh = intent.drive == self.drive && intent.number == act.number + 1 && !intent.is_stale(now);
-        let job = matches!(act.motion, Some(motion) if matches!(motion.motive, Motive::Job { .. }));
+        let job = matches!(act.motion, Some(motion) if matches!(motion.kind, MotionKind::Job { .. }));
         if !fresh || !job {
             return;
         }
-        match (self.stage, intent.wish) {
+        match (self.stage, intent.request) {
             (Stage::Go { acknowledged, .. }, MotionRequest::Pause) => {
-                (act.number, act.said) = (intent.number, intent.wish);
+                (act.number, act.request) = (intent.number, intent.request);
                 self.stage = Stage::Paused { since: mark, acknowledged };
             }
             (Stage::Paused { acknowledged, .. }, MotionRequest::Resume)
                 if permit.locks.is_empty() && !permit.doubted =>
             {
-                (act.number, act.said) = (intent.number, intent.wish);
-                self.stage = Stage::Go { since: mark, acknowledged, stands: None };
+                (act.number, act.request) = (intent.number, intent.request);
+                self.stage = Stage::Go { since: mark, acknowledged, standing_since: None };
             }
             _ => {}
         }
@@ -50,8 +50,8 @@ impl DeadMan {
         let act = self.act?;
         let status = actual.status;
         let state = status.state();
-        let deaf = self.heard.is_none_or(|(at, _)| now.since(at) > DEAF);
-        let (down, acknowledges) = match (self.stage, act.said) {
+        let is_out_of_contact = self.received.is_none_or(|(at, _)| now.since(at) > CONTACT_TIMEOUT);
+        let (down, acknowledges) = match (self.stage, act.request) {
             (Stage::Lead(lead), MotionRequest::Lead(_)) => (lead.only_down(state), lead.goal() == super::Goal::Off),
             (_, MotionRequest::Acknowledge) => (false, true),
             _ => (false, false),
@@ -60,10 +60,10 @@ impl DeadMan {
         if status.has(StatusBit::Fault) && !acknowledges {
             return Some(Ended::Fault);
         }
-        if deaf {
+        if is_out_of_contact {
             return Some(Ended::Deaf);
         }
-        if let Some(how) = self.overtaken(act.number, act.said, intent, permit) {
+        if let Some(how) = self.overtaken(act.number, act.request, intent, permit) {
             return Some(how);
         }
         if intent.is_stale(now) && !down {
@@ -79,7 +79,7 @@ impl DeadMan {
             return Some(Ended::Left(state));
         }
         let motion = act.motion?;
-        match permit.check(motion.wish, motion.motive.target()) {
+        match permit.check(motion.request, motion.kind.target()) {
             Ok(()) => self.watch_motion(now, actual, permit),
             Err(Refusal::Locked(lock)) => Some(Ended::Locked(lock)),
             Err(refusal) => Some(Ended::Refused(refusal)),
@@ -87,14 +87,14 @@ impl DeadMan {
     }
 
     /// Returns how the act ends if the intent is no longer for it; `None` if it still is.
-    fn overtaken(&self, number: u64, said: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
+    fn overtaken(&self, number: u64, request: MotionRequest, intent: &Intent, permit: &Permit) -> Option<Ended> {
         let rests = matches!(
-            intent.wish,
+            intent.request,
             MotionRequest::Rest | MotionRequest::Stop | MotionRequest::Pause | MotionRequest::Resume
         );
-        if intent.drive == self.drive && intent.number == number && intent.wish == said {
+        if intent.drive == self.drive && intent.number == number && intent.request == request {
             None
-        } else if intent.wish == MotionRequest::Resume && permit.doubted {
+        } else if intent.request == MotionRequest::Resume && permit.doubted {
             Some(Ended::Refused(Refusal::Locked(Lock::Outdated)))
         } else if rests || intent.number < number {
             Some(Ended::Stopped)

@@ -1,7 +1,7 @@
 //! Leading a drive through its states: one word after the other, each until the drive has followed or a time limit ends
 //! (reference 3, and the recipes of `devices/hiperdrive/protocol/recipe`).
 
-use super::{Act, DeadMan, Ended, Goal, Mark, Motive, Refusal, SETTLE, STEP, Stage};
+use super::{Act, DeadMan, Ended, Goal, Mark, MotionKind, Refusal, SETTLE, STEP, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, State, StatusBit, StatusWord};
 use crate::units::Moment;
 
@@ -15,7 +15,7 @@ pub(super) struct Lead {
 }
 
 /// Next step of leading a drive.
-enum Way {
+enum LeadStep {
     By(ControlWord),
     There,
     /// The drive does not follow.
@@ -71,7 +71,7 @@ impl Lead {
         self.word.map_or(ControlWord::OFF, |(word, _)| word)
     }
 
-    fn way(&self, now: Mark, status: StatusWord, after_run: bool) -> Way {
+    fn next_step(&self, now: Mark, status: StatusWord, after_run: bool) -> LeadStep {
         use ControlWord as W;
         let sends = |word: ControlWord| self.word.is_some_and(|(sent, _)| sent == word);
         // The drive has received a word for long enough to have processed it: the edge that follows must not be missed.
@@ -79,8 +79,8 @@ impl Lead {
             |word: ControlWord| self.word.is_some_and(|(sent, since)| sent == word && now.is_past(since, SETTLE));
         let state = status.state();
         let word = match (state, self.goal) {
-            (State::Fault | State::Locked, Goal::Off) => return Way::There,
-            (State::Fault, _) if !self.acknowledges => return Way::Lost,
+            (State::Fault | State::Locked, Goal::Off) => return LeadStep::There,
+            (State::Fault, _) if !self.acknowledges => return LeadStep::Lost,
             (State::Fault, _) if seen(W::ACKNOWLEDGE) || sends(W::OPERATIONAL) => W::OPERATIONAL,
             (State::Fault, _) => W::ACKNOWLEDGE,
             (State::Locked, _) if seen(W::OPERATIONAL) || sends(W::READY) => W::READY,
@@ -93,11 +93,11 @@ impl Lead {
                 // Nothing else starts before it stands still.
                 _ if state == State::Moving => W::ENABLED,
                 _ if after_run && goal == Goal::Ready && status.has(StatusBit::SetpointAcknowledged) => W::READY,
-                _ => return Way::There,
+                _ => return LeadStep::There,
             },
         };
         let patience = |(sent, since): (ControlWord, Mark)| sent == word && now.is_past(since, STEP);
-        if self.word.is_some_and(patience) { Way::Lost } else { Way::By(word) }
+        if self.word.is_some_and(patience) { LeadStep::Lost } else { LeadStep::By(word) }
     }
 }
 
@@ -125,37 +125,37 @@ impl DeadMan {
     /// Takes the next step.
     pub(super) fn go_on(&mut self, now: Moment, actual: Actual, mut lead: Lead) {
         let mark = self.mark(now);
-        match lead.way(mark, actual.status, self.after_run) {
-            Way::By(word) => {
+        match lead.next_step(mark, actual.status, self.after_run) {
+            LeadStep::By(word) => {
                 if lead.word.is_none_or(|(sent, _)| sent != word) {
                     lead.word = Some((word, mark));
                 }
                 self.stage = Stage::Lead(lead);
             }
-            Way::There => {
+            LeadStep::There => {
                 self.level = lead.goal;
                 self.stage = Stage::Rest { moves: None };
                 match self.act {
-                    Some(Act { motion: Some(motion), .. }) => self.arm(now, actual, motion.motive),
+                    Some(Act { motion: Some(motion), .. }) => self.arm(now, actual, motion.kind),
                     _ => self.end(Ended::Done),
                 }
             }
-            Way::Lost => {
-                self.hold_what_is(actual.status.state());
+            LeadStep::Lost => {
+                self.hold_state(actual.status.state());
                 self.end(Ended::NoAnswer(actual.status.state()));
             }
         }
     }
 
     /// Enters the stage whose word allows a motion to begin; nothing begins yet.
-    fn arm(&mut self, now: Moment, actual: Actual, motive: Motive) {
+    fn arm(&mut self, now: Moment, actual: Actual, kind: MotionKind) {
         let acknowledged = actual.status.has(StatusBit::SetpointAcknowledged);
-        self.after_run |= matches!(motive, Motive::Run { .. });
+        self.after_run |= matches!(kind, MotionKind::Run { .. });
         self.stage = Stage::Arm { since: self.mark(now), acknowledged };
     }
 
     /// Holds the present state or a lower one after the leading was given up.
-    pub(super) fn hold_what_is(&mut self, state: State) {
+    pub(super) fn hold_state(&mut self, state: State) {
         let highest = if self.after_run { Goal::Ready } else { Goal::Enabled };
         self.level = match state {
             // Bit 0 stays set for the acknowledgement.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::lead::Lead;
-use super::{DeadMan, Effort, Ended, Goal, Motion, Motive, RUNG, Rung, SETTLE, SHORT, START};
+use super::{DeadMan, Effort, Ended, Goal, LEVEL_TIME, Motion, MotionKind, SETTLE, SHORT, START, StopLevel};
 use crate::devices::hiperdrive::protocol::{Actual, ControlBit, ControlWord, Setpoint, State, StatusBit};
 use crate::units::Moment;
 
@@ -30,14 +30,14 @@ pub(super) enum Stage {
         since: Mark,
         acknowledged: bool,
         /// Since when the drive stands still.
-        stands: Option<Mark>,
+        standing_since: Option<Mark>,
     },
     /// A job is paused.
     Paused { since: Mark, acknowledged: bool },
     /// The drive is being stopped.
     Stop {
-        rung: Rung,
-        /// Start of this rung.
+        level: StopLevel,
+        /// Start of this level.
         since: Moment,
         begun: Mark,
         /// The stop of its mode.
@@ -74,12 +74,12 @@ impl Stage {
     }
 }
 
-impl Rung {
-    const fn next(self) -> Rung {
+impl StopLevel {
+    const fn next(self) -> StopLevel {
         match self {
-            Rung::Mode => Rung::Operational,
-            Rung::Operational => Rung::Off,
-            Rung::Off | Rung::Close => Rung::Close,
+            StopLevel::Mode => StopLevel::Operational,
+            StopLevel::Operational => StopLevel::Off,
+            StopLevel::Off | StopLevel::Close => StopLevel::Close,
         }
     }
 }
@@ -111,25 +111,25 @@ impl DeadMan {
                     toggled(acknowledged)
                 };
                 if begun {
-                    self.stage = Stage::Go { since: mark, acknowledged, stands: None };
+                    self.stage = Stage::Go { since: mark, acknowledged, standing_since: None };
                 } else if now.since(since.at) >= START {
                     let at_end = self.act.and_then(|act| act.watch).is_some_and(|watch| watch.at_end);
                     self.stop(now, if at_end { Ended::RangeEnd } else { Ended::NotStarted });
                 }
             }
-            Stage::Go { since, acknowledged, stands } => {
+            Stage::Go { since, acknowledged, standing_since: stands } => {
                 let stands = has(StatusBit::StandingStill).then(|| stands.unwrap_or(mark));
-                self.stage = Stage::Go { since, acknowledged, stands };
+                self.stage = Stage::Go { since, acknowledged, standing_since: stands };
                 if let Some(stands) = stands {
-                    self.look_whether_it_is_over(mark, actual, stands);
+                    self.check_motion_end(mark, actual, stands);
                 }
             }
             Stage::Paused { .. } => {}
-            Stage::Stop { .. } => self.climb(mark, actual),
+            Stage::Stop { .. } => self.raise_stop_level(mark, actual),
         }
     }
 
-    fn look_whether_it_is_over(&mut self, mark: Mark, actual: Actual, stands: Mark) {
+    fn check_motion_end(&mut self, mark: Mark, actual: Actual, stands: Mark) {
         let Stage::Go { since, .. } = self.stage else { return };
         // A report from before the start may still say that it stands still, or has reached another target.
         let late = mark.is_past(since, SETTLE);
@@ -140,7 +140,7 @@ impl DeadMan {
         } else if actual.status.has(StatusBit::TargetReached) {
             if late {
                 self.end(Ended::Arrived);
-                self.hold_what_is(actual.status.state());
+                self.hold_state(actual.status.state());
             }
         } else if mark.is_past(stands, SHORT) {
             self.stop(mark.at, Ended::Short);
@@ -149,7 +149,7 @@ impl DeadMan {
 
     /// Returns whether the motion is one in speed mode.
     pub(super) fn runs(&self) -> bool {
-        self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.motive, Motive::Run { .. }))
+        self.act.and_then(|act| act.motion).is_some_and(|motion| matches!(motion.kind, MotionKind::Run { .. }))
     }
 
     /// Ends the act, and stops its motion.
@@ -158,23 +158,23 @@ impl DeadMan {
         self.end(how);
         if moved {
             let (begun, word) = (self.mark(now), self.sent.control.stopped());
-            self.stage = Stage::Stop { rung: Rung::Mode, since: now, begun, word };
+            self.stage = Stage::Stop { level: StopLevel::Mode, since: now, begun, word };
         }
     }
 
     /// Climbs the ladder while the drive moves, and holds its state once it stands still. After a run that state is ready,
     /// from which the next motion leads up again.
-    fn climb(&mut self, mark: Mark, actual: Actual) {
-        let Stage::Stop { rung, since, begun, word } = self.stage else { return };
-        if rung == Rung::Close {
+    fn raise_stop_level(&mut self, mark: Mark, actual: Actual) {
+        let Stage::Stop { level, since, begun, word } = self.stage else { return };
+        if level == StopLevel::Close {
             return;
         }
         if mark.is_past(begun, SETTLE) && actual.status.has(StatusBit::StandingStill) {
-            // Not above the rung's own word.
-            self.hold_what_is(actual.status.state());
-        } else if mark.at.since(since) >= RUNG {
-            let rung = rung.next();
-            self.stage = Stage::Stop { rung, since: mark.at, begun, word };
+            // Not above the level's own word.
+            self.hold_state(actual.status.state());
+        } else if mark.at.since(since) >= LEVEL_TIME {
+            let level = level.next();
+            self.stage = Stage::Stop { level, since: mark.at, begun, word };
         }
     }
 
@@ -186,14 +186,14 @@ impl DeadMan {
         }
         let moves = (actual.status.state() == State::Moving).then(|| moves.unwrap_or(now));
         self.stage = Stage::Rest { moves };
-        if moves.is_some_and(|since| now.since(since) >= RUNG) {
-            let rung = match self.level {
-                Goal::Enabled => Rung::Operational,
-                Goal::Operational | Goal::Ready => Rung::Off,
-                Goal::Off => Rung::Close,
+        if moves.is_some_and(|since| now.since(since) >= LEVEL_TIME) {
+            let level = match self.level {
+                Goal::Enabled => StopLevel::Operational,
+                Goal::Operational | Goal::Ready => StopLevel::Off,
+                Goal::Off => StopLevel::Close,
             };
             let (begun, word) = (self.mark(now), self.resting());
-            self.stage = Stage::Stop { rung, since: now, begun, word };
+            self.stage = Stage::Stop { level, since: now, begun, word };
         }
     }
 
@@ -213,14 +213,14 @@ impl DeadMan {
         let control = match (&self.stage, motion) {
             (Stage::Rest { .. }, _) => self.resting(),
             (Stage::Lead(lead), _) => lead.word(),
-            (Stage::Stop { rung: Rung::Mode, word, .. }, _) => *word,
-            (Stage::Stop { rung: Rung::Operational, .. }, _) => ControlWord::OPERATIONAL,
-            (Stage::Stop { rung: Rung::Off | Rung::Close, .. }, _) => ControlWord::OFF,
-            (stage, Some(Motion { motive, .. })) => moving(stage, motive, actual),
+            (Stage::Stop { level: StopLevel::Mode, word, .. }, _) => *word,
+            (Stage::Stop { level: StopLevel::Operational, .. }, _) => ControlWord::OPERATIONAL,
+            (Stage::Stop { level: StopLevel::Off | StopLevel::Close, .. }, _) => ControlWord::OFF,
+            (stage, Some(Motion { kind, .. })) => moving(stage, kind, actual),
             // Without an act there is no motion in these stages.
             (_, None) => ControlWord::READY,
         };
-        let target = match (&self.stage, motion.and_then(|motion| motion.motive.target())) {
+        let target = match (&self.stage, motion.and_then(|motion| motion.kind.target())) {
             (Stage::Stop { .. }, _) => self.sent.target,
             (stage, Some(target)) if stage.has_motion() => target,
             _ => actual.position,
@@ -235,19 +235,19 @@ impl DeadMan {
     }
 }
 
-fn moving(stage: &Stage, motive: Motive, actual: Actual) -> ControlWord {
+fn moving(stage: &Stage, kind: MotionKind, actual: Actual) -> ControlWord {
     let toggled = |acknowledged: &bool, toggle: bool| {
         let status = actual.status.with(StatusBit::SetpointAcknowledged, acknowledged != &toggle);
         ControlWord::holding(status)
     };
-    match (stage, motive) {
-        (Stage::Arm { .. }, Motive::Run { direction, end }) => ControlWord::speed_mode(direction, end),
-        (_, Motive::Run { direction, end }) => ControlWord::running(direction, end),
-        (Stage::Arm { acknowledged, .. }, Motive::Job { .. }) => toggled(acknowledged, false),
-        (Stage::Start { acknowledged, .. } | Stage::Go { acknowledged, .. }, Motive::Job { .. }) => {
+    match (stage, kind) {
+        (Stage::Arm { .. }, MotionKind::Run { direction, end }) => ControlWord::speed_mode(direction, end),
+        (_, MotionKind::Run { direction, end }) => ControlWord::running(direction, end),
+        (Stage::Arm { acknowledged, .. }, MotionKind::Job { .. }) => toggled(acknowledged, false),
+        (Stage::Start { acknowledged, .. } | Stage::Go { acknowledged, .. }, MotionKind::Job { .. }) => {
             toggled(acknowledged, true)
         }
-        (Stage::Paused { acknowledged, .. }, Motive::Job { .. }) => toggled(acknowledged, true).paused(),
+        (Stage::Paused { acknowledged, .. }, MotionKind::Job { .. }) => toggled(acknowledged, true).paused(),
         _ => ControlWord::READY,
     }
 }

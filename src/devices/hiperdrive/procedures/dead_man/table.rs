@@ -19,7 +19,7 @@ struct Bench {
     position: i32,
     /// The request is refreshed in every interval.
     refreshes: bool,
-    heard: bool,
+    is_connected: bool,
 }
 
 /// Status words: ready; enabled and standing; enabled and moving, and standing, with the acknowledgement of a job or a run.
@@ -38,12 +38,12 @@ impl Bench {
             status,
             position: 0,
             refreshes: true,
-            heard: true,
+            is_connected: true,
         }
     }
 
     fn act(&mut self, wish: MotionRequest) {
-        self.intent = Intent { wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
+        self.intent = Intent { request: wish, number: self.intent.number + 1, refreshed: self.now, ..self.intent };
     }
 
     fn cycle(&mut self) {
@@ -52,7 +52,7 @@ impl Bench {
             self.intent.refreshed = self.now;
         }
         let actual = Actual { status: StatusWord::new(self.status), speed: 0, position: self.position };
-        self.man.next(self.now, self.heard.then_some(actual), &self.intent, &self.permit);
+        self.man.next(self.now, self.is_connected.then_some(actual), &self.intent, &self.permit);
     }
 
     fn cycles(&mut self, count: u32) {
@@ -117,13 +117,13 @@ impl Bench {
             }
             "another action" => self.act(MotionRequest::Lead(Goal::Operational)),
             "no status from the drive" => {
-                self.heard = false;
-                self.man.fall_deaf(self.now);
+                self.is_connected = false;
+                self.man.contact_lost(self.now);
                 // Leading alone takes longer.
                 let leads = matches!(self.man.phase(), Phase::Leading(_));
                 self.cycles(if leads { 36 } else { 0 });
             }
-            "the connection is lost or closed" => self.man.lose(self.now),
+            "the connection is lost or closed" => self.man.connection_lost(self.now),
             "fault" => self.status = 0x2AB8,
             "a lock" => self.permit.locks.push(Lock::NoAnswer),
             "parameters must be read again" => self.permit.doubted = true,

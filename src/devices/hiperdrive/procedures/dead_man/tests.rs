@@ -4,7 +4,9 @@ use std::time::Duration;
 
 use proptest::prelude::*;
 
-use super::{DeadMan, Effort, Ended, Goal, Intent, Lock, MotionRequest, Outside, Permit, Phase, RUNG, Refusal, Side};
+use super::{
+    DeadMan, Effort, Ended, Goal, Intent, LEVEL_TIME, Lock, MotionRequest, Outside, Permit, Phase, Refusal, Side,
+};
 use crate::devices::hiperdrive::protocol::{
     Actual, ControlBit, ControlWord, Direction, DriveNumber, Percent, RunEnd, Setpoint, StatusBit, StatusWord,
 };
@@ -92,7 +94,7 @@ fn nothing_begins_with_a_word_that_stands() {
         for acknowledged in [false, true] {
             let status = StatusWord::new(0x2A37).with(StatusBit::SetpointAcknowledged, acknowledged);
             for before in [ControlWord::OFF, ControlWord::ENABLED].iter().chain(&befores) {
-                assert_eq!(word.begins(*before, status), None, "{word:?} behind {before:?}");
+                assert_eq!(word.motion_start(*before, status), None, "{word:?} behind {before:?}");
             }
         }
     }
@@ -113,7 +115,8 @@ fn out_of_speed_mode_through_ready() {
     for at in 0..100u64 {
         let now = Moment::START + Duration::from_millis(at * 10);
         let wish = if at < 20 { jog } else { MotionRequest::Stop };
-        let intent = Intent { drive: DriveNumber::FIRST, wish, number: 1 + u64::from(at >= 20), refreshed: now };
+        let intent =
+            Intent { drive: DriveNumber::FIRST, request: wish, number: 1 + u64::from(at >= 20), refreshed: now };
         let word = man.next(now, heard(Some((status, 77))), &intent, &permit).control.word();
         // It acknowledges a run with bit 12, and forgets it only below operational.
         status = match word {
@@ -139,7 +142,7 @@ fn a_stop_that_nobody_has_seen_ends_the_job_all_the_same() {
         let mut now = Moment::START;
         let mut look = |man: &mut DeadMan, number: u64, wish: MotionRequest, status: u16| {
             now = now + Duration::from_millis(10);
-            let intent = Intent { drive: DriveNumber::FIRST, wish, number, refreshed: now };
+            let intent = Intent { drive: DriveNumber::FIRST, request: wish, number, refreshed: now };
             man.next(now, heard(Some((status, 0))), &intent, &permit).control
         };
         let job = MotionRequest::Move { target: 500, effort: FULL };
@@ -176,7 +179,7 @@ impl Looks {
     }
 
     fn act(&mut self, wish: MotionRequest) {
-        self.intent = Intent { wish, number: self.intent.number + 1, ..self.intent };
+        self.intent = Intent { request: wish, number: self.intent.number + 1, ..self.intent };
     }
 
     /// Calls the dead-man this number of times with a drive that reports this.
@@ -295,13 +298,13 @@ proptest! {
                 let carries = matches!(wish, MotionRequest::Pause | MotionRequest::Resume) && own && !intent.is_stale(now);
                 over = if carries { over } else { intent.number };
                 let drive = if own { DriveNumber::FIRST } else { other };
-                intent = Intent { drive, wish, number: intent.number + 1, refreshed: now };
+                intent = Intent { drive, request: wish, number: intent.number + 1, refreshed: now };
             }
             if let (Some(wish), None) = (meddled, act) {
                 // Of an act that has been taken; one that still waits may be another.
-                let taken = man.act() == intent.number && wish != intent.wish;
+                let taken = man.act() == intent.number && wish != intent.request;
                 over = if taken { intent.number } else { over };
-                intent.wish = wish;
+                intent.request = wish;
             }
             if intent.is_stale(now) {
                 over = intent.number;
@@ -315,7 +318,7 @@ proptest! {
             let word = sent.control;
             prop_assert_eq!(word.word() & NEVER, 0);
             let own = intent.drive == DriveNumber::FIRST;
-            let wanted = own && intent.wish.moves() && !intent.is_stale(now) && !locked;
+            let wanted = own && intent.request.moves() && !intent.is_stale(now) && !locked;
             let faulty = said.is_some_and(|(status, _)| status & 8 != 0);
             if !word.is_standing() {
                 prop_assert!(wanted && intent.number > over, "{:?} for {:?}, over: {}", word, intent, over);
@@ -332,7 +335,7 @@ proptest! {
             prop_assert!(!leaves || !word.has(ControlBit::Enable), "{:?} behind {:?}", word, before.control);
             // A drive that does not stop is led through the whole ladder.
             unmet = if matches!(man.phase(), Phase::Stopping(_)) { unmet + step } else { Duration::ZERO };
-            prop_assert!(unmet < RUNG * 3 + Duration::from_millis(240) || man.gives_up());
+            prop_assert!(unmet < LEVEL_TIME * 3 + Duration::from_millis(240) || man.gives_up());
             before = sent;
         }
     }

@@ -12,7 +12,7 @@
 //! Within one degree beyond a limit, a run has ended at the end of its range: a drive repeats a position no better than ±1°
 //! (manual, technical data; reference 5).
 
-use super::{DeadMan, Ended, Lock, Motion, MotionRequest, Motive, Permit, Refusal, SHORT, Stage};
+use super::{DeadMan, Ended, Lock, Motion, MotionKind, MotionRequest, Permit, Refusal, SHORT, Stage};
 use crate::devices::hiperdrive::protocol::{Actual, Direction, RunEnd, State, StatusBit};
 use crate::units::Moment;
 
@@ -105,7 +105,7 @@ impl Side {
 impl Motion {
     /// Returns the limits that apply to this motion: none for an endless run.
     fn limits(&self, permit: &Permit) -> Option<(i32, i32)> {
-        let endless = matches!(self.motive, Motive::Run { end: RunEnd::Endless, .. });
+        let endless = matches!(self.kind, MotionKind::Run { end: RunEnd::Endless, .. });
         permit.limits.filter(|_| !endless)
     }
 
@@ -113,10 +113,10 @@ impl Motion {
     /// moves in its direction.
     fn distance(&self, actual: Actual) -> i64 {
         let position = i64::from(actual.position);
-        match self.motive {
-            Motive::Job { target } => (position - i64::from(target)).abs(),
-            Motive::Run { direction: Direction::Clockwise, .. } => -position,
-            Motive::Run { direction: Direction::Counterclockwise, .. } => position,
+        match self.kind {
+            MotionKind::Job { target } => (position - i64::from(target)).abs(),
+            MotionKind::Run { direction: Direction::Clockwise, .. } => -position,
+            MotionKind::Run { direction: Direction::Counterclockwise, .. } => position,
         }
     }
 }
@@ -127,24 +127,24 @@ impl Watch {
         let limits = motion.limits(permit);
         let outside = limits.and_then(|_| permit.outside(actual));
         let best = motion.distance(actual);
-        let at_end = match (motion.motive, limits) {
-            (Motive::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
+        let at_end = match (motion.kind, limits) {
+            (MotionKind::Run { direction, .. }, Some(limits)) => [Side::Below, Side::Above].into_iter().any(|side| {
                 side.outward() == direction && side.beyond(actual.position, limits) >= -i64::from(permit.degree)
             }),
             _ => false,
         };
-        let freed = matches!(motion.wish, MotionRequest::Jog { outward: true, .. }) && outside.is_some();
+        let freed = matches!(motion.request, MotionRequest::Jog { outward: true, .. }) && outside.is_some();
         Watch { outside, best, waits_at: None, freed, at_end }
     }
 
     /// Compares a report with the limits and the target. Returns how the motion ends, if it must.
-    pub(super) fn look(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+    pub(super) fn check_report(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let degree = i64::from(permit.degree);
         let distance = motion.distance(actual);
         self.best = self.best.min(distance);
-        let is_job = matches!(motion.motive, Motive::Job { .. });
+        let is_job = matches!(motion.kind, MotionKind::Job { .. });
         // The target of a job is within the limits: up to a degree from it is no overrun.
-        let beyond = if is_job && distance <= degree { None } else { self.look_at_limits(motion, actual, permit) };
+        let beyond = if is_job && distance <= degree { None } else { self.check_limits(motion, actual, permit) };
         // At its target a job may overshoot by its accuracy.
         let arrives = is_job && self.best <= ACCURACY * degree;
         let allowed = if arrives { ACCURACY * degree } else { degree };
@@ -164,9 +164,9 @@ impl Watch {
         moves.then_some(Ended::Left(State::Moving))
     }
 
-    fn look_at_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
+    fn check_limits(&mut self, motion: &Motion, actual: Actual, permit: &Permit) -> Option<Ended> {
         let (limits, degree) = (motion.limits(permit)?, i64::from(permit.degree));
-        let runs = matches!(motion.motive, Motive::Run { .. });
+        let runs = matches!(motion.kind, MotionKind::Run { .. });
         let beyond = Some(Ended::Beyond { position: actual.position });
         let Some(began) = self.outside else {
             let is_end = match permit.outside(actual)? {
@@ -192,8 +192,8 @@ impl Permit {
     ///
     /// # Errors
     /// [`Refusal::Outward`], [`Refusal::Unclear`].
-    pub fn check_place(&self, wish: MotionRequest, actual: Actual) -> Result<(), Refusal> {
-        let direction = match wish {
+    pub fn check_place(&self, request: MotionRequest, actual: Actual) -> Result<(), Refusal> {
+        let direction = match request {
             MotionRequest::Jog { outward: true, .. } | MotionRequest::Run { end: RunEnd::Endless, .. } => return Ok(()),
             MotionRequest::Jog { direction, .. } | MotionRequest::Run { direction, .. } => Some(direction),
             MotionRequest::Move { .. } | MotionRequest::Step { .. } => None,
@@ -223,7 +223,7 @@ impl DeadMan {
             // Before the start, including the first report after leading up: the conditions for a start apply there as
             // well.
             let doubted = permit.doubted.then_some(Refusal::Locked(Lock::Outdated));
-            let refusal = doubted.or_else(|| permit.check_place(motion.wish, actual).err());
+            let refusal = doubted.or_else(|| permit.check_place(motion.request, actual).err());
             if refusal.is_none() && self.stage.has_motion() {
                 act.watch = Some(Watch::begin(motion, actual, permit));
             }
@@ -231,6 +231,6 @@ impl DeadMan {
         };
         let has_braked = matches!(self.stage, Stage::Paused { since, .. } if mark.is_past(since, SHORT));
         let waits = watch.wait(has_braked, actual, permit);
-        watch.look(motion, actual, permit).or(waits)
+        watch.check_report(motion, actual, permit).or(waits)
     }
 }

@@ -3,8 +3,8 @@
 mod session;
 
 use super::{
-    Chart, Hold, Lamp, Snap, Stretch, VisibleRange, drawn, moved, next_line, pulled, rounded, snap, stretches, ticks,
-    words,
+    Chart, Hold, OutputState, Snap, Stretch, VisibleRange, drawn, moved, next_line, pulled, rounded, snap, stretches,
+    ticks, words,
 };
 use crate::app::Language;
 use crate::devices::interbus::profile::{Direction, Edge, Image, Names, Parameters, Scale};
@@ -63,9 +63,9 @@ fn lamps_tell_what_is_simulated_from_what_the_encoder_says() {
         assert_eq!(chart.outputs(position), outputs, "{position}");
     }
     let lamps = chart.lamps(Some(50), Some(0b10_1000));
-    assert_eq!(lamps[3], Lamp { simulated: Some(true), own: Some(true) });
+    assert_eq!(lamps[3], OutputState { simulated: Some(true), own: Some(true) });
     assert!(!lamps[3].differs() && lamps[5].differs() && lamps[5].lit() == Some(true));
-    assert_eq!(chart.lamps(None, None)[0], Lamp { simulated: None, own: None });
+    assert_eq!(chart.lamps(None, None)[0], OutputState { simulated: None, own: None });
     assert_eq!(chart.lamps(Some(1000), None)[0].simulated, None, "beyond the range nothing is known");
     let says = |lamp| words::lamp(lamp).words(Language::English);
     assert_eq!(says(lamps[5]), "on from the encoder, off in the simulation");

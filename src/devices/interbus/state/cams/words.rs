@@ -1,6 +1,6 @@
 //! Texts of the chart.
 
-use super::{Chart, Lamp, Lane};
+use super::{Chart, Lane, OutputState};
 use crate::app::Text;
 use crate::devices::interbus::profile::{Edge, LONGEST_NAME, Scale, Unit};
 use crate::devices::interbus::protocol::{Cam, CamNumber, GearError, Parameter, ProgramNumber, TURNS};
@@ -69,7 +69,7 @@ pub fn troubles(chart: &Chart, lane: &Lane) -> Vec<Text> {
 }
 
 /// Returns the text of an indicator: whether the output is on, and a difference from the encoder.
-pub fn lamp(lamp: Lamp) -> Text {
+pub fn lamp(lamp: OutputState) -> Text {
     let state = |on| TEXTS.text(if on { "cams.lamp_on" } else { "cams.lamp_off" });
     match (lamp.own, lamp.simulated) {
         (None, None) => TEXTS.text("cams.lamp_unknown"),

@@ -154,7 +154,7 @@ fn a_write_that_was_cut_off_says_what_is_left_to_do() {
         let shift = Some((WindowShift::default(), WindowShift::default()));
         let program = ProgramNumber::new(1).unwrap();
         let unfinished = Some(Op::Program(ProgramChange { program, cams: Vec::new(), mask: None, shift }));
-        let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, left };
+        let interrupted = Interrupted { done, unfinished, cause: Error::NeverSilent, end_state: left };
         let texts = write::interruption(&interrupted, Path::new("b.ron"), 3, kind);
         assert!(texts.iter().all(|text| text.words(English) != text.words(German)), "{texts:?}");
         texts.iter().map(Text::terminal).collect()
@@ -181,7 +181,8 @@ fn what_completes_a_write_comes_after_leading_back() {
     for kind in [ChangeKind::Restore, ChangeKind::Edits, ChangeKind::Preset, ChangeKind::Default] {
         let done = Written { ops: 1, write_cycles: 1, written: 1, verified: 1 };
         let last = |left| {
-            let interrupted = Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, left };
+            let interrupted =
+                Interrupted { done: done.clone(), unfinished: None, cause: Error::NeverSilent, end_state: left };
             write::interruption(&interrupted, Path::new("b.ron"), 3, kind).pop().unwrap()
         };
         let (found, unknown) = (last(EndState::AsFound), last(EndState::Unknown(standing)));

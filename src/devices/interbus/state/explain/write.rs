@@ -149,7 +149,7 @@ pub fn written(written: &Written) -> Text {
 /// Returns the text of an interrupted write: how far it got, why, in which state the encoder was left, and where the backup
 /// is.
 pub(super) fn interruption(interrupted: &Interrupted, backup: &Path, planned: usize, kind: ChangeKind) -> Vec<Text> {
-    let Interrupted { done, unfinished, cause, left } = interrupted;
+    let Interrupted { done, unfinished, cause, end_state: left } = interrupted;
     let unclear = unfinished.as_ref().map(Op::items).unwrap_or_default();
     let mut texts = vec![if cause.is_cancelled() && *left == EndState::AsFound {
         Text::new("write.cancelled").with("done", done.ops).with("planned", planned)

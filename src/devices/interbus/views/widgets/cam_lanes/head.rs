@@ -6,7 +6,7 @@ use egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, StrokeKind, Vec2, 
 
 use super::Lanes;
 use crate::devices::interbus::state::TEXTS;
-use crate::devices::interbus::state::cams::{Lamp, Lane, words};
+use crate::devices::interbus::state::cams::{Lane, OutputState, words};
 use crate::devices::interbus::views::say;
 use crate::devices::interbus::views::widgets::cam_chart::{CamEvent, ink};
 use crate::ui::widgets::focus_ring;
@@ -113,7 +113,7 @@ impl Lanes<'_> {
         clicked
     }
 
-    fn lamp(&self, lane: &Lane, lamp: Lamp, head: Rect) {
+    fn lamp(&self, lane: &Lane, lamp: OutputState, head: Rect) {
         let (theme, palette) = (self.theme, self.theme.palette);
         let rect = Rect::from_min_max(pos2(head.right() - LAMP, head.top()), head.max);
         let response = self.ui.interact(rect, self.base.with("lamp").with(lane.cam), Sense::hover());
