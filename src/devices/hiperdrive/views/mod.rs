@@ -16,6 +16,7 @@ pub(crate) mod outside;
 mod parameters;
 mod scale;
 mod state_machine;
+mod travel;
 
 use std::collections::BTreeMap;
 
