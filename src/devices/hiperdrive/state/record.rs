@@ -8,7 +8,7 @@ use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
 use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
-use crate::devices::hiperdrive::procedures::DriveReading;
+use crate::devices::hiperdrive::procedures::{DriveReading, Temperature, TemperatureReading};
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
 /// A value recorded with the position.
@@ -18,6 +18,8 @@ pub(super) enum Beside {
     Speed,
     /// The target, in steps of this ruler.
     Target(Ruler),
+    /// A temperature, in degrees Celsius.
+    Temperature(Temperature),
 }
 
 /// The recorder of a drive, and what came last.
@@ -25,6 +27,8 @@ pub(super) enum Beside {
 pub struct Record {
     pub(super) track: Track<Beside>,
     last: Option<DriveReading>,
+    /// The temperatures that are recorded.
+    temperatures: Vec<Temperature>,
 }
 
 impl Record {
@@ -54,6 +58,7 @@ impl Record {
         let has_target = target.is_some() || self.track.watched().iter().any(|own| matches!(own, Beside::Target(_)));
         let mut beside = vec![Beside::Speed];
         beside.extend(has_target.then_some(Beside::Target(ruler)));
+        beside.extend(self.temperatures.iter().copied().map(Beside::Temperature));
         self.track.watch(&beside);
         let watching = |value| Watching { at, value: Some(value), is_warned: false, never: None };
         self.track.add_watched(&Beside::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
@@ -61,6 +66,22 @@ impl Record {
             self.track.add_watched(&Beside::Target(ruler), &watching(Value::Whole(i64::from(target))));
         }
         self.last = Some(reading);
+    }
+
+    /// Records these temperatures from now on. What was recorded of others stays.
+    pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
+        self.temperatures = wished.to_vec();
+        let others = self.track.watched().into_iter().filter(|own| !matches!(own, Beside::Temperature(_)));
+        let wished = wished.iter().copied().map(Beside::Temperature);
+        self.track.watch(&others.chain(wished).collect::<Vec<_>>());
+    }
+
+    /// Takes a temperature; one that is not recorded here is of another drive.
+    pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
+        let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
+        let value = reading.celsius.map(Value::Whole);
+        let watching = Watching { at: reading.at, value, is_warned: false, never };
+        self.track.add_watched(&Beside::Temperature(reading.what), &watching);
     }
 
     pub fn last(&self) -> Option<&DriveReading> {
@@ -95,7 +116,7 @@ fn meaning(ruler: Ruler) -> Meaning {
 
 impl Watchable for Beside {
     fn is_whole(&self) -> bool {
-        matches!(self, Beside::Target(_))
+        matches!(self, Beside::Target(_) | Beside::Temperature(_))
     }
 
     /// The pitch of a spindle is only how steps are seen; with another scale a step is another distance.
@@ -115,6 +136,14 @@ impl Watchable for Beside {
             Beside::Target(ruler) => {
                 let [scales, ..] = meaning(*ruler).scales;
                 Series::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
+            }
+            Beside::Temperature(what) => {
+                let (name, heading) = match what {
+                    Temperature::Device => ("hd_parameter.11", "device temperature"),
+                    Temperature::Drive(_) => ("hd_parameter.119", "drive temperature"),
+                };
+                let scales = vec![Scale::new("unit.celsius", 1.0, 0)];
+                Series::of(group, 0, TEXTS.text(name), heading.to_owned(), scales)
             }
         }
     }

@@ -188,6 +188,10 @@ impl TypedDeviceView for HiperdriveView {
         live::value_ui(ui, theme, unit, ink);
     }
 
+    fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, _view: &mut HiperdriveUiState, actions: &mut Vec<Action>) {
+        live::watch_menu(ui, theme, unit, actions);
+    }
+
     fn motion(unit: &Unit) -> Option<Text> {
         if !unit.is_moving() {
             return None;
