@@ -241,7 +241,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
 /// A text of a parameter for a person: with the number that it tells, where it tells one.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal(text).filter(|_| !unit.is_empty()) {
-        Some(number) => format!("{text} = {number} {unit}"),
+        Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),
         None => text.to_owned(),
     }
 }
