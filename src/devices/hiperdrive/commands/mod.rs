@@ -51,7 +51,8 @@ impl DeviceCommands for HiperdriveCommands {
             }
             CommandId::Write => {
                 "items: writable parameters, numbered as for read; the value is saved if the drive can store it. 101 to 104 move \
-                 a drive and are never written; for 47, 198 and 199 use \"do hiperdrive …\"."
+                 a drive and are never written. 47, 197 (with 0) and 198 do the same as save, acknowledge and set-position of \
+                 \"do hiperdrive\"; 199 resets a drive and is not written."
             }
             CommandId::Restore => {
                 "another type means another category (adapter, 4-port hub, 8-port hub), or another drive variant at a port"
