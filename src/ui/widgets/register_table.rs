@@ -5,8 +5,8 @@
 //! * **Size**: as wide as there is room, as high as given; columns that matter least fall away, and stand under the pointer.
 //!   Why something was not taken is told by what the table remembers ([`RegisterView::problem`]), for whoever has room.
 //! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
-//!   Enter, F2 or a character edits the value, Enter takes it, Escape gives it up; Backspace takes the device's value
-//!   back; Ctrl+C copies.
+//!   Enter, F2 or a character edits the value, Enter takes it, and so does an arrow up or down, which goes on to that
+//!   line; Escape gives it up; Backspace takes the device's value back; Ctrl+C copies.
 //! * **Pointer**: a press selects, on a heading or a caret folds, on the box of a number edits; a double click edits.
 //! * **Accessible**: a table with the label given, whose value is what is selected; a row a register in sight, with its
 //!   value and how it stands; a button a group.
@@ -138,6 +138,8 @@ pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
     /// The groups that are in sight.
     pub groups: Range<usize>,
+    /// Columns are hidden, for want of width.
+    pub hides_columns: bool,
 }
 
 /// Height of a line.
@@ -186,6 +188,7 @@ pub fn register_table(
     let id = ui.make_persistent_id(("register_table", table.label));
     let mut output = RegisterOutput::default();
     let mut lines = Lines::new(table, view);
+    keys::catch_up(ui, view, id);
     if ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
         output.event = keys::listen(ui, table, &lines, view);
         lines = Lines::new(table, view);
@@ -198,6 +201,7 @@ pub fn register_table(
             // The lines lie beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
+            output.hides_columns = columns.hides(table.kind);
             paint::header(ui, theme, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
             body(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)
