@@ -62,6 +62,7 @@ fn places_without_a_drive_are_named() {
     for words in [
         &["read", "hiperdrive", "158", "--drive", "2"][..],
         &["position", "hiperdrive", "--drive", "2"],
+        &["status", "hiperdrive", "--drive", "2"],
         &["do", "hiperdrive", "set-position", "0", "--drive", "2", "--yes"],
         &["write", "hiperdrive", "258", "0", "--yes"],
     ] {

@@ -69,7 +69,7 @@ impl DeviceCommands for HiperdriveCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Position | CommandId::Read | CommandId::Write => options_of::<OfDrive>(),
+            CommandId::Status | CommandId::Position | CommandId::Read | CommandId::Write => options_of::<OfDrive>(),
             CommandId::Do => options_of::<DoOptions>(),
             CommandId::Decode => options_of::<WordOptions>(),
             _ => Vec::new(),
@@ -96,7 +96,7 @@ impl DeviceCommands for HiperdriveCommands {
         Some(match command {
             Command::Find(_) => find::find(common, output),
             Command::Identify(_) => inspect::identify(common, output),
-            Command::Status(_) => inspect::status(common, output),
+            Command::Status(status) => inspect::status(common, output, status),
             Command::Position(position) => position::position(common, output, position),
             Command::Read(read) => inspect::read(common, output, read),
             Command::Save(save) => profiles::save(common, output, save),
