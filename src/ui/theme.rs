@@ -54,9 +54,12 @@ impl Theme {
         crate::app::decimal(value, decimals, self.language)
     }
 
-    /// Returns a number with its own number of decimals.
+    /// Returns a number with its own number of has, of twelve digits: the rest is what a calculation leaves over.
     pub fn plain(&self, value: f64) -> String {
-        let decimals = value.to_string().split_once('.').map_or(0, |(_, behind)| behind.len());
+        const DIGITS: i32 = 12;
+        let before = if value == 0.0 { 1 } else { (value.abs().log10().floor() as i32).saturating_add(1) };
+        let rounded = format!("{value:.*}", usize::try_from(DIGITS - before).unwrap_or(0));
+        let decimals = rounded.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len());
         self.number(value, decimals)
     }
 

@@ -34,7 +34,7 @@ fn what_cannot_be_written_is_refused_with_its_reason() {
         (&["101", "1"], 1, &["101", "move hiperdrive"]),
         (&["102", "50"], 1, &["102", "move hiperdrive"]),
         (&["104", "1000"], 1, &["104", "move hiperdrive"]),
-        (&["199", "1"], 1, &["199"]),
+        (&["199", "1"], 1, &["199", "presence-test", "factory --all"]),
         // Values that cannot be parsed.
         (&["155", "1"], 2, &["155"]),
         (&["limit", "1"], 2, &["limit", "158 drive 2"]),
@@ -62,6 +62,7 @@ fn places_without_a_drive_are_named() {
     for words in [
         &["read", "hiperdrive", "158", "--drive", "2"][..],
         &["position", "hiperdrive", "--drive", "2"],
+        &["status", "hiperdrive", "--drive", "2"],
         &["do", "hiperdrive", "set-position", "0", "--drive", "2", "--yes"],
         &["write", "hiperdrive", "258", "0", "--yes"],
     ] {

@@ -72,6 +72,28 @@ fn errors_of_now_are_errors_and_those_of_before_are_notes() {
     assert_eq!(notes, told["earlier"].as_array().unwrap().len(), "{text:?}");
 }
 
+/// Issue 26.7: the advice for an error is to write 0 to parameter 197, which does what an acknowledgement does.
+#[test]
+fn writing_0_to_197_acknowledges_and_status_is_of_one_drive() {
+    let bench = Bench::new();
+    let device = Tapped::start(&bench, &["--hub", "4", "--set", "drives=1,1", "--set", "requested=1"]);
+    // 258 = 7FFFFFFFh.
+    let refused = device.request(&[0x10, 3, 0x20, 0x66, 0x24, 1, 0x30, 0x9E, 0xFF, 0xFF, 0xFF, 0x7F]);
+    assert_eq!(refused[..3], [0x90, 0, 9]);
+    let status = |drive: &str| device.ask(&bench, &["status", "hiperdrive", "--drive", drive]).json();
+    for (drive, is_ok) in [("1", true), ("2", false)] {
+        let told = status(drive);
+        assert_eq!((&told["ok"], told["drives"].as_array().unwrap().len()), (&json!(is_ok), 1), "{told}");
+        assert_eq!(told["drives"][0]["number"].to_string(), drive, "{told}");
+    }
+    device.ask(&bench, &["write", "hiperdrive", "197", "0", "--drive", "2", "--yes"]).json();
+    assert_eq!(status("2")["ok"], json!(true));
+    // Nothing is left to acknowledge: nothing is sent.
+    device.sets();
+    device.ask(&bench, &["write", "hiperdrive", "297", "0", "--yes"]).says(&["Drive 2 has no fault"]);
+    assert!(device.sets().is_empty());
+}
+
 /// Issue 22.9: restoring onto a device with the same serial number and another type, of the device or of its drive: named,
 /// and refused without explicit permission.
 #[test]

@@ -21,6 +21,7 @@ mod hiperdrive_axis;
 mod hiperdrive_closing;
 mod hiperdrive_control;
 mod hiperdrive_drives;
+mod hiperdrive_jog;
 mod hiperdrive_keys;
 mod hiperdrive_motion;
 mod hiperdrive_recording;

@@ -5,8 +5,8 @@
 //! * **Size**: the available width, the given height; the least important columns are hidden, and shown in the tooltip. The
 //!   reason for refusing a value is in [`RegisterView::problem`], to be shown by the caller.
 //! * **Keyboard**: arrows, Page, Home and End go from line to line; right and left unfold and fold bit fields and groups;
-//!   Enter, F2 or a character edits the value, Enter accepts it, Escape cancels; Backspace restores the device's value;
-//!   Ctrl+C copies.
+//!   Enter, F2 or a character edits the value, Enter takes it, and so does an arrow up or down, which goes on to that
+//!   line; Escape gives it up; Backspace takes the device's value back; Ctrl+C copies.
 //! * **Pointer**: a press selects, on a heading or a caret folds, on the box of a number edits; a double click edits.
 //! * **Accessible**: a table with the given label, whose value is the selection; a row for each visible register, with its
 //!   value and state; a button for each group.
@@ -138,6 +138,8 @@ pub struct RegisterOutput {
     pub event: Option<RegisterEvent>,
     /// The visible groups.
     pub groups: Range<usize>,
+    /// Columns are hidden, for want of width.
+    pub hides_columns: bool,
 }
 
 /// Height of a line.
@@ -186,6 +188,7 @@ pub fn register_table(
     let id = ui.make_persistent_id(("register_table", table.label));
     let mut output = RegisterOutput::default();
     let mut lines = Lines::new(table, view);
+    keys::catch_up(ui, view, id);
     if ui.is_enabled() && ui.memory(|memory| memory.has_focus(id)) {
         output.event = keys::listen(ui, table, &lines, view);
         lines = Lines::new(table, view);
@@ -198,6 +201,7 @@ pub fn register_table(
             // The lines are beside their scroll bar.
             let width = ui.available_width() - ui.spacing().scroll.allocated_width();
             let columns = Columns::new(table.kind, width, value_width(theme, table.kind));
+            output.hides_columns = columns.hides(table.kind);
             paint::header(ui, theme, table.kind, &columns);
             let room = (height - 2.0 * f32::from(MARGIN) - paint::HEADER).max(LINE * 3.0);
             body(ui, theme, id, &columns, table, &lines, room, view, take, &mut output)

@@ -1,7 +1,7 @@
 //! The data that can be read of a device. Nothing is set, and no cyclic connection is opened.
 
 use encoder_studio::devices::hiperdrive::procedures::check::{CheckFinding, CheckStep, Verdict};
-use encoder_studio::devices::hiperdrive::procedures::{Error, Late};
+use encoder_studio::devices::hiperdrive::procedures::{Error, Late, Sample, Temperature};
 use std::sync::{Arc, Mutex};
 
 use encoder_studio::buses::ethernet_ip::protocol::{AddressSource, Service};
@@ -9,7 +9,7 @@ use encoder_studio::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput,
 use encoder_studio::devices::hiperdrive::protocol::{AddressSwitch, ErrorCode, State, Topology, Value, Variant};
 use encoder_studio::link::{Clock, TraceEntry, write_entry, write_header};
 use encoder_studio::store::Store;
-use encoder_studio::worker::{Event, JobId};
+use encoder_studio::worker::{Event, JobId, Watched};
 
 use super::support::{Stand, drive, number};
 
@@ -130,10 +130,33 @@ fn a_recorded_trace_answers_as_the_device_did() {
 #[test]
 fn positions_are_read_of_the_watched_drive() {
     let mut stand = Stand::new("hub=4&drives=1,1&position=65536");
-    let reading = stand.session.sample().unwrap();
+    let position = |stand: &mut Stand| match stand.session.sample().unwrap() {
+        Sample::Position(reading) => reading,
+        other => panic!("{other:?}"),
+    };
+    let reading = position(&mut stand);
     assert_eq!((reading.drive, reading.actual.position), (drive(1), 65536));
     stand.run(HiperdriveJob::Watch(drive(2))).unwrap();
-    assert_eq!(stand.session.sample().unwrap().drive, drive(2));
+    assert_eq!(position(&mut stand).drive, drive(2));
+}
+
+/// Parameters 11 and 119 (reference 4), each by one request; a drive that is not there has none.
+#[test]
+fn temperatures_are_watched_by_one_request_each() {
+    let mut stand = Stand::new("hub=4&drives=1,1");
+    stand.session.sample().unwrap();
+    let before = stand.requests().len();
+    for (what, celsius) in [(Temperature::Device, 31), (Temperature::Drive(drive(2)), 25)] {
+        let Watched::Sample(Sample::Temperature(reading)) = stand.session.watch_value(&what).unwrap() else { panic!() };
+        assert_eq!((reading.what, reading.celsius), (what, Some(celsius)));
+    }
+    assert_eq!(stand.requests().len() - before, 2);
+    let empty = stand.session.watch_value(&Temperature::Drive(drive(4))).unwrap();
+    assert!(
+        matches!(empty, Watched::Refused(Sample::Temperature(reading)) if reading.celsius.is_none()),
+        "an empty port is not asked again: {empty:?}"
+    );
+    assert!(stand.requests().iter().all(|request| request.service == Service::GET));
 }
 
 #[test]

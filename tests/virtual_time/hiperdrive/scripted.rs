@@ -393,7 +393,7 @@ fn another_master_is_told_and_nothing_is_tried_twice() {
     let mut desk = Desk::with([Act::Reply("D4 00 01 01 11 01")]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();
     let remedy = error.refusal().unwrap().remedy();
-    assert_eq!(remedy, Some("ask for a longer interval"));
+    assert_eq!(remedy, Some("request a longer interval"));
     // A lost reply may belong to a connection that is open: it is not opened twice.
     let mut desk = Desk::with([]);
     let error = desk.ask(|master| master.forward_open(Topology::Adapter, 1)).unwrap_err();

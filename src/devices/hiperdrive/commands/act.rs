@@ -74,14 +74,21 @@ pub(super) fn act(common: &Common, output: &Output, act: &Do) -> Result {
     match action {
         HiperdriveAction::PresenceTest => present(&before, &found)?,
         HiperdriveAction::Acknowledge if !operations.is_empty() => {
-            let again = prepare(&mut runner, output, Change::Do(Service::Acknowledge(drive(&of))))?;
-            if !again.plan.is_empty() {
-                return Err(failed(&TEXTS.text("hd_cli.still_faulty").with("drive", drive(&of).get())));
-            }
+            check_acknowledged(&mut runner, output, drive(&of))?;
         }
         _ => {}
     }
     Ok(done)
+}
+
+/// Checks that a drive has no fault any more after it was acknowledged.
+pub(super) fn check_acknowledged(runner: &mut Runner, output: &Output, drive: DriveNumber) -> Result<()> {
+    let again = prepare(runner, output, Change::Do(Service::Acknowledge(drive)))?;
+    if again.plan.is_empty() {
+        Ok(())
+    } else {
+        Err(failed(&TEXTS.text("hd_cli.still_faulty").with("drive", drive.get())))
+    }
 }
 
 /// Returns the drives that are plugged in.

@@ -2,10 +2,12 @@
 
 use serde_json::{Value as Json, json};
 
+use super::args::OfDrive;
 use super::item;
 use super::run::{Runner, value};
-use crate::cli::args::{Common, Read};
+use crate::cli::args::{Common, Read, Status as StatusArguments};
 use crate::cli::output::{Lines, Output};
+use crate::cli::runner::failed;
 use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::{DriveIdentity, DriveStatus, Identity, Status};
@@ -13,6 +15,7 @@ use crate::devices::hiperdrive::profile::Item;
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
 };
+use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
 use crate::result_of;
 
@@ -67,9 +70,17 @@ fn identity_text(identity: &Identity) -> String {
     lines.text()
 }
 
-pub(super) fn status(common: &Common, output: &Output) -> Result {
+/// Errors and states of all drives, or with `--drive` of one.
+pub(super) fn status(common: &Common, output: &Output, status: &StatusArguments) -> Result {
+    let only = status.own.read::<OfDrive>()?.drive.and_then(DriveNumber::new);
     let mut runner = Runner::open(common)?;
-    let status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
+    let mut status = result_of!(runner.run(HiperdriveJob::Status)?, HiperdriveOutput::Status(status) => *status);
+    if let Some(drive) = only {
+        status.drives.retain(|own| own.number == drive);
+        if status.drives.is_empty() {
+            return Err(failed(&TEXTS.text("hd_said.no_drive").with("drive", drive.get())));
+        }
+    }
     let facts: Vec<DriveFact> = status.drives.iter().flat_map(facts_of).collect();
     let list = |weight: FactSeverity| {
         facts.iter().filter(|own| own.severity == weight).map(DriveFact::json).collect::<Vec<Json>>()
@@ -243,7 +254,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
 /// Returns a text of a parameter as shown, with the number in it if there is one.
 fn nominal_text(text: &str, unit: &str) -> String {
     match nominal(text).filter(|_| !unit.is_empty()) {
-        Some(number) => format!("{text} = {number} {unit}"),
+        Some((number, decimals)) => format!("{text} = {number:.decimals$} {unit}"),
         None => text.to_owned(),
     }
 }

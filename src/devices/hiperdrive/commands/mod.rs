@@ -51,7 +51,8 @@ impl DeviceCommands for HiperdriveCommands {
             }
             CommandId::Write => {
                 "items: writable parameters, numbered as for read; the value is saved if the drive can store it. 101 to 104 move \
-                 a drive and are never written; for 47, 198 and 199 use \"do hiperdrive …\"."
+                 a drive and are never written. 47, 197 (with 0) and 198 do the same as save, acknowledge and set-position of \
+                 \"do hiperdrive\"; 199 resets a drive and is not written."
             }
             CommandId::Restore => {
                 "another type means another category (adapter, 4-port hub, 8-port hub), or another drive variant at a port"
@@ -68,7 +69,7 @@ impl DeviceCommands for HiperdriveCommands {
 
     fn options(&self, command: CommandId) -> Vec<Arg> {
         match command {
-            CommandId::Position | CommandId::Read | CommandId::Write => options_of::<OfDrive>(),
+            CommandId::Status | CommandId::Position | CommandId::Read | CommandId::Write => options_of::<OfDrive>(),
             CommandId::Do => options_of::<DoOptions>(),
             CommandId::Decode => options_of::<WordOptions>(),
             _ => Vec::new(),
@@ -95,7 +96,7 @@ impl DeviceCommands for HiperdriveCommands {
         Some(match command {
             Command::Find(_) => find::find(common, output),
             Command::Identify(_) => inspect::identify(common, output),
-            Command::Status(_) => inspect::status(common, output),
+            Command::Status(status) => inspect::status(common, output, status),
             Command::Position(position) => position::position(common, output, position),
             Command::Read(read) => inspect::read(common, output, read),
             Command::Save(save) => profiles::save(common, output, save),

@@ -1,5 +1,6 @@
 //! `write`: one parameter.
 
+use super::act::check_acknowledged;
 use super::item;
 use super::plan::{change_lines, commit, operations, prepare};
 use super::run::Runner;
@@ -12,7 +13,7 @@ use crate::cli::runner::failed;
 use crate::cli::{Failure, Result};
 use crate::devices::hiperdrive::jobs::Change;
 use crate::devices::hiperdrive::profile::{Image, Item, PlanError, Service};
-use crate::devices::hiperdrive::protocol::drive_parameter::REFERENCE;
+use crate::devices::hiperdrive::protocol::drive_parameter::{ACKNOWLEDGE, REFERENCE, RESET};
 use crate::devices::hiperdrive::protocol::{Access, Travel};
 use crate::devices::hiperdrive::state::TEXTS;
 use crate::devices::hiperdrive::state::explain as words;
@@ -26,10 +27,21 @@ pub(super) fn write(common: &Common, output: &Output, write: &Write) -> Result {
         output.remark(&words::change(&change).terminal());
     }
     let mut runner = Runner::open(common)?;
+    let drive = match change {
+        Change::Do(Service::Acknowledge(drive)) => Some(drive),
+        _ => None,
+    };
     let prepared = prepare(&mut runner, output, change)?;
     let (operations, changes) = (operations(&prepared.plan), change_lines(&prepared.plan));
     let spent = commit(&mut runner, output, prepared, &write.consent)?;
-    show_done(output, &item.to_string(), &operations, &spent, &[], &changes)
+    if let Some(drive) = drive.filter(|_| operations.is_empty()) {
+        output.remark(&TEXTS.text("hd_cli.no_fault").with("drive", drive.get()).terminal());
+    }
+    let done = show_done(output, &item.to_string(), &operations, &spent, &[], &changes)?;
+    if let Some(drive) = drive.filter(|_| !operations.is_empty()) {
+        check_acknowledged(&mut runner, output, drive)?;
+    }
+    Ok(done)
 }
 
 /// Parses the change of a value. Values that no device accepts are refused before anything is opened.
@@ -39,7 +51,7 @@ fn change(item: Item, text: &str) -> Result<Change> {
     let row = number.row().ok_or_else(|| refused(PlanError::NotRead { item }))?;
     match (row.number, row.access) {
         (101..=104, ..) => return Err(refused(PlanError::Moves { item })),
-        (199, ..) => return Err(refused(PlanError::Acts { item })),
+        (RESET, ..) => return Err(failed(&TEXTS.text("hd_cli.resets").with("number", number))),
         (_, Access::Read) => return Err(refused(PlanError::ReadOnly { item })),
         _ => {}
     }
@@ -52,6 +64,8 @@ fn change(item: Item, text: &str) -> Result<Change> {
         row.check(number, value, Travel::UNKNOWN).map_err(|error| refused(error.into()))?;
     }
     match (row.number, number.drive()) {
+        // 0 clears the errors, which is what an acknowledgement is (manual 6.2).
+        (ACKNOWLEDGE, Some(drive)) => Ok(Change::Do(Service::Acknowledge(drive))),
         (47, _) => Service::of_code(value).map(Change::Do).ok_or_else(|| refused(PlanError::Acts { item })),
         (REFERENCE, Some(drive)) => {
             // Of 32 bits.

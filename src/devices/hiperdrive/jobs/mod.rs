@@ -11,7 +11,6 @@ mod prepare;
 mod rules_refresh;
 mod session_watch;
 
-use std::convert::Infallible;
 use std::fmt;
 use std::sync::Arc;
 use std::time::Duration;
@@ -28,7 +27,8 @@ use session_watch::WatchedWire;
 
 use crate::devices::hiperdrive::procedures::check::check as check_device;
 use crate::devices::hiperdrive::procedures::{
-    DriveReading, Master, Station, identify, network, position, read_status, save, survey,
+    DriveReading, Master, Sample, Station, Temperature, identify, network, position, read_status, save, survey,
+    temperature,
 };
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::sim::Target;
@@ -113,8 +113,8 @@ impl Device for Hiperdrive {
     type Output = HiperdriveOutput;
     type Error = JobError;
     type DeviceMessage = DeviceMessage;
-    type Sample = DriveReading;
-    type Watch = Infallible;
+    type Sample = Sample;
+    type Watch = Temperature;
     type JobStep = JobStep;
 
     fn run(
@@ -163,17 +163,20 @@ impl Device for Hiperdrive {
         })
     }
 
-    fn sample(&mut self, context: &mut SessionContext) -> Result<DriveReading, JobError> {
+    fn sample(&mut self, context: &mut SessionContext) -> Result<Sample, JobError> {
         self.let_go_of_lost(context);
         let drive = self.watched;
         if let Some(actual) = self.control.actual(drive) {
-            return Ok(DriveReading { at: context.clock.now(), drive, actual });
+            return Ok(Sample::Position(DriveReading { at: context.clock.now(), drive, actual }));
         }
-        Ok(position(&mut self.master(context), drive)?)
+        Ok(Sample::Position(position(&mut self.master(context), drive)?))
     }
 
-    fn watch(&mut self, _desk: &mut SessionContext, what: &Infallible) -> Result<Watched<DriveReading>, JobError> {
-        match *what {}
+    fn watch(&mut self, desk: &mut SessionContext, what: &Temperature) -> Result<Watched<Sample>, JobError> {
+        self.let_go_of_lost(desk);
+        let reading = temperature(&mut self.master(desk), *what)?;
+        let sample = Sample::Temperature(reading);
+        Ok(if reading.celsius.is_some() { Watched::Sample(sample) } else { Watched::Refused(sample) })
     }
 
     fn take_remark(&mut self) -> Option<DeviceMessage> {

@@ -18,6 +18,7 @@ mod network;
 mod rules;
 mod save;
 mod station;
+mod temperature;
 pub mod write;
 
 pub use discover::{DiscoveredDevice, discover};
@@ -31,3 +32,4 @@ pub use network::{Network, network, settings};
 pub use rules::{GROUPS, Rules, read_rule, read_rules};
 pub use save::{read_state, save};
 pub use station::{LinkParameters, Station};
+pub use temperature::{Sample, Temperature, TemperatureReading, temperature};

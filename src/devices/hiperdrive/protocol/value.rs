@@ -121,10 +121,11 @@ impl Kind {
     }
 }
 
-/// Parses a nominal value (parameters 126 to 129): a number, in tenths if preceded by an `A` (manual 6.2).
-pub fn nominal(text: &str) -> Option<f64> {
-    let (digits, by) = text.strip_prefix('A').map_or((text, 1.0), |tenths| (tenths, 10.0));
-    digits.parse::<u32>().ok().map(|number| f64::from(number) / by)
+/// Parses a nominal value (parameters 126 to 129): a number and its decimals, one if it is preceded by an `A`, since it is
+/// in tenths then (manual 6.2).
+pub fn nominal(text: &str) -> Option<(f64, usize)> {
+    let (digits, by, decimals) = text.strip_prefix('A').map_or((text, 1.0, 0), |tenths| (tenths, 10.0, 1));
+    digits.parse::<u32>().ok().map(|number| (f64::from(number) / by, decimals))
 }
 
 fn text(data: &[u8]) -> String {

@@ -1,6 +1,8 @@
 //! The user's actions on a device and its drives: edits and motion take effect at once, everything else is a job of the
 //! session or a task.
 
+use std::time::Duration;
+
 use super::action::{HiperdriveAction, Motor};
 use super::staged::Edit;
 use super::unit::Unit;
@@ -9,9 +11,13 @@ use crate::app::services::Services;
 use crate::app::session::{Saved, WithMemory};
 use crate::app::{PendingEdits, Severity, Text};
 use crate::devices::hiperdrive::jobs::HiperdriveJob;
+use crate::devices::hiperdrive::procedures::Temperature;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, MotionRequest};
 use crate::devices::hiperdrive::profile::HiperdriveProfile;
 use crate::profile::Body;
+
+/// Interval of reading a watched temperature: it changes slowly.
+const WATCHED_EVERY: Duration = Duration::from_secs(2);
 
 impl Unit {
     /// Carries out an action.
@@ -29,6 +35,7 @@ impl Unit {
                     self.watch(services);
                 }
             }
+            HiperdriveAction::Watch(what, on) => self.watch_temperature(what, on),
             HiperdriveAction::SetMeasure(measure) => self.measure = measure,
             HiperdriveAction::SetPitch(drive, pitch) => {
                 match pitch.filter(|own| own.nanometres > 0) {
@@ -50,6 +57,30 @@ impl Unit {
             HiperdriveAction::Drive(motor) => self.drive_by(motor, services),
             HiperdriveAction::Axis(action) => self.act_axis(action, services),
             HiperdriveAction::Save(path) => self.save(path, services),
+        }
+    }
+
+    /// Records a temperature beside the position, or stops recording it.
+    fn watch_temperature(&mut self, what: Temperature, on: bool) {
+        match what {
+            Temperature::Device => self.watches_device = on,
+            Temperature::Drive(_) => self.watches_drive = on,
+        }
+        self.wish_temperatures();
+    }
+
+    /// Returns the temperatures that are recorded with the position of the drive that is shown.
+    pub fn watched_temperatures(&self) -> Vec<Temperature> {
+        let device = self.watches_device.then_some(Temperature::Device);
+        device.into_iter().chain(self.watches_drive.then_some(Temperature::Drive(self.drive()))).collect()
+    }
+
+    /// Passes the watched temperatures to the recording and to the session.
+    pub(super) fn wish_temperatures(&mut self) {
+        let wished = self.watched_temperatures();
+        self.record.watch_temperatures(&wished);
+        if let Some(line) = &self.session.line {
+            line.watch(wished.into_iter().map(|what| (what, WATCHED_EVERY)).collect());
         }
     }
 

@@ -7,6 +7,7 @@ use super::ruler::Measure;
 use super::staged::Edit;
 use crate::app::DeviceAction;
 use crate::devices::hiperdrive::jobs::Change;
+use crate::devices::hiperdrive::procedures::Temperature;
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Goal};
 use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Length, RunEnd};
 
@@ -18,6 +19,8 @@ pub enum HiperdriveAction {
     Check,
     /// Show another drive.
     SelectDrive(DriveNumber),
+    /// Record a temperature beside the position, or stop recording it.
+    Watch(Temperature, bool),
     /// Show positions in this.
     SetMeasure(Measure),
     /// The drive turns a spindle of this pitch, or none.

@@ -14,8 +14,8 @@ use crate::app::{Severity, Text};
 use crate::devices::hiperdrive::jobs::{
     DeviceMessage, Hiperdrive, HiperdriveJob, HiperdriveOutput, JobError, JobStep, Motion,
 };
-use crate::devices::hiperdrive::procedures::DriveReading;
 use crate::devices::hiperdrive::procedures::dead_man::Ended;
+use crate::devices::hiperdrive::procedures::{DriveReading, Sample};
 use crate::devices::hiperdrive::protocol::{DriveNumber, KIND, State};
 use crate::devices::hiperdrive::sim::Target;
 use crate::devices::hiperdrive::state::TEXTS;
@@ -162,12 +162,15 @@ impl Unit {
 }
 
 impl SessionEvents for Unit {
-    fn sampled(&mut self, samples: Vec<DriveReading>, dropped: u64) {
+    fn sampled(&mut self, samples: Vec<Sample>, dropped: u64) {
         if dropped > 0 {
             self.record.lose(dropped);
         }
-        for reading in samples {
-            self.see(reading);
+        for sample in samples {
+            match sample {
+                Sample::Position(reading) => self.see(reading),
+                Sample::Temperature(reading) => self.record.add_temperature(reading),
+            }
         }
     }
 

@@ -30,6 +30,7 @@ impl DeviceModel for Unit {
         (self.watched, self.has_polled, self.is_stale) = (DriveNumber::FIRST, false, self.survey.is_some());
         let motion = opened.aside.motion.clone();
         self.session.take_line(opened, services);
+        self.wish_temperatures();
         if let Some(line) = self.session.line() {
             services.brakes.add(Box::new(motion), line.stopper());
         }

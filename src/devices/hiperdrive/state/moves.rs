@@ -81,12 +81,15 @@ impl Default for Moves {
 }
 
 impl Moves {
-    /// Begins a session. Unconfirmed limits stay unconfirmed, and the endless run is not allowed yet.
+    /// Begins a session. Unconfirmed limits stay unconfirmed, the endless run is not allowed yet, and jogs are slow
+    /// ([`Effort::JOG`]).
     pub(super) fn begin(&mut self, motion: Motion) {
         for drive in self.unconfirmed() {
             motion.unconfirm_limits(drive);
         }
         (self.experts, self.act) = (BTreeSet::new(), None);
+        // Every session begins slowly, whatever was set in the one before.
+        self.jogs.clear();
         self.limits_changed.clear();
         self.taken = false;
         let DrivesSnapshot { at, view, limits } = motion.glance();
@@ -311,6 +314,15 @@ impl Moves {
     /// Returns the setpoint sent last.
     pub fn sent(&self, drive: DriveNumber) -> Option<Setpoint> {
         self.drive(drive).map(|own| own.sent)
+    }
+
+    /// Returns the target of a drive's job; `None` if it has none.
+    pub fn target(&self, drive: DriveNumber) -> Option<i32> {
+        match self.phase(drive)? {
+            Phase::Starting(MotionKind::Job { target }) | Phase::Moving(MotionKind::Job { target }) => Some(target),
+            Phase::Paused { target } => Some(target),
+            _ => None,
+        }
     }
 
     /// Returns the phase of a drive's motion.

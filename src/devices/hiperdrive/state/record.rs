@@ -8,7 +8,7 @@ use super::ruler::{Measure, Ruler};
 use crate::analysis::history::Value;
 use crate::app::recorder::{GroupId, Scale, Series};
 use crate::app::track::{Meaning, PositionSample, Track, Watchable, Watching};
-use crate::devices::hiperdrive::procedures::DriveReading;
+use crate::devices::hiperdrive::procedures::{DriveReading, Temperature, TemperatureReading};
 use crate::devices::hiperdrive::protocol::SpeedScale;
 
 /// A value recorded with the position.
@@ -18,6 +18,8 @@ pub(super) enum RecordedValue {
     Speed,
     /// The target, in steps of this ruler.
     Target(Ruler),
+    /// A temperature, in degrees Celsius.
+    Temperature(Temperature),
 }
 
 /// Recorder of a drive, and the latest values.
@@ -25,6 +27,8 @@ pub(super) enum RecordedValue {
 pub struct Record {
     pub(super) track: Track<RecordedValue>,
     last: Option<DriveReading>,
+    /// The temperatures that are recorded.
+    temperatures: Vec<Temperature>,
 }
 
 impl Record {
@@ -55,6 +59,7 @@ impl Record {
             target.is_some() || self.track.watched().iter().any(|own| matches!(own, RecordedValue::Target(_)));
         let mut beside = vec![RecordedValue::Speed];
         beside.extend(has_target.then_some(RecordedValue::Target(ruler)));
+        beside.extend(self.temperatures.iter().copied().map(RecordedValue::Temperature));
         self.track.watch(&beside);
         let watching = |value| Watching { at, value: Some(value), is_warned: false, never: None };
         self.track.add_watched(&RecordedValue::Speed, &watching(Value::Real(speed.rpm(actual.speed))));
@@ -62,6 +67,22 @@ impl Record {
             self.track.add_watched(&RecordedValue::Target(ruler), &watching(Value::Whole(i64::from(target))));
         }
         self.last = Some(reading);
+    }
+
+    /// Records these temperatures from now on. What was recorded of others stays.
+    pub(super) fn watch_temperatures(&mut self, wished: &[Temperature]) {
+        self.temperatures = wished.to_vec();
+        let others = self.track.watched().into_iter().filter(|own| !matches!(own, RecordedValue::Temperature(_)));
+        let wished = wished.iter().copied().map(RecordedValue::Temperature);
+        self.track.watch(&others.chain(wished).collect::<Vec<_>>());
+    }
+
+    /// Takes a temperature; one that is not recorded here is of another drive.
+    pub(super) fn add_temperature(&mut self, reading: TemperatureReading) {
+        let never = reading.celsius.is_none().then(|| TEXTS.text("hd_watch.never"));
+        let value = reading.celsius.map(Value::Whole);
+        let watching = Watching { at: reading.at, value, is_warned: false, never };
+        self.track.add_watched(&RecordedValue::Temperature(reading.what), &watching);
     }
 
     pub fn last(&self) -> Option<&DriveReading> {
@@ -96,7 +117,7 @@ fn meaning(ruler: Ruler) -> Meaning {
 
 impl Watchable for RecordedValue {
     fn is_whole(&self) -> bool {
-        matches!(self, RecordedValue::Target(_))
+        matches!(self, RecordedValue::Target(_) | RecordedValue::Temperature(_))
     }
 
     /// Returns whether the recording continues under another meaning: the pitch only changes how steps are shown; with
@@ -117,6 +138,14 @@ impl Watchable for RecordedValue {
             RecordedValue::Target(ruler) => {
                 let [scales, ..] = meaning(*ruler).scales;
                 Series::of(group, 0, TEXTS.text("hd_live.target"), "target".to_owned(), scales)
+            }
+            RecordedValue::Temperature(what) => {
+                let (name, heading) = match what {
+                    Temperature::Device => ("hd_parameter.11", "device temperature"),
+                    Temperature::Drive(_) => ("hd_parameter.119", "drive temperature"),
+                };
+                let scales = vec![Scale::new("unit.celsius", 1.0, 0)];
+                Series::of(group, 0, TEXTS.text(name), heading.to_owned(), scales)
             }
         }
     }

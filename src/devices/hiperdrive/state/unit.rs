@@ -52,6 +52,9 @@ pub struct Unit {
     pub refusal: Option<Text>,
     /// The virtual device of the session.
     pub target: Option<Target>,
+    /// The temperatures of the device and of the shown drive are recorded beside its position.
+    pub(super) watches_device: bool,
+    pub(super) watches_drive: bool,
     /// The drive that is shown.
     pub(super) drive: DriveNumber,
     pub(super) pitches: BTreeMap<DriveNumber, Length>,
@@ -94,6 +97,8 @@ impl Unit {
             measure: Measure::default(),
             refusal: None,
             target: None,
+            watches_device: false,
+            watches_drive: false,
             drive: DriveNumber::FIRST,
             pitches: BTreeMap::new(),
             axes: BTreeMap::new(),
@@ -165,6 +170,7 @@ impl Unit {
             self.records.insert(before, std::mem::replace(&mut self.record, next));
             self.record.gap();
             self.record.track.poll(self.session.line.as_ref().and_then(LiveSession::polling), false);
+            self.wish_temperatures();
         }
     }
 

@@ -3,7 +3,6 @@
 use super::staged::{EditError, Mark};
 use crate::app::Text;
 use crate::app::explain::plain;
-use crate::app::number::decimals_of;
 use crate::devices::hiperdrive::protocol::{
     self, AddressSwitch, ErrorCode, Kind, ParameterNumber, ParameterRow, StatusWord, Value, Variant,
 };
@@ -36,8 +35,8 @@ pub fn unit(row: &ParameterRow) -> Option<Text> {
 /// Returns a text as a number with its unit; `None` for other texts.
 pub fn nominal(number: ParameterNumber, text: &str) -> Option<Text> {
     let unit = number.row().map(|row| row.unit).filter(|unit| !unit.is_empty())?;
-    let value = protocol::nominal(text)?;
-    Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals_of(value, 1)).with_text("unit", plain(unit)))
+    let (value, decimals) = protocol::nominal(text)?;
+    Some(TEXTS.text("hd_entry.place").with_number("value", value, decimals).with_text("unit", plain(unit)))
 }
 
 /// Returns the meaning of a number; `None` if the number shows it.

@@ -1,12 +1,12 @@
 //! Jogging: hold to run, and steps that run to their end.
 
-use egui::{FontId, Ui, Vec2, vec2};
+use egui::{FontId, RichText, Ui, Vec2, vec2};
 
-use super::motion::{MotionUiState, effort_ui, length_ui, why_not};
-use super::outside;
-use crate::app::{Action, HoldEvent, SessionId};
+use super::motion::{MotionUiState, effort_ui, length_ui};
+use super::travel::travel_ui;
+use crate::app::{Action, HoldEvent, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::Outside;
-use crate::devices::hiperdrive::protocol::{Direction, DriveNumber};
+use crate::devices::hiperdrive::protocol::{Direction, DriveNumber, Percent};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::Theme;
@@ -14,25 +14,41 @@ use crate::ui::controls::{allowed_button, card, paragraph, problem};
 use crate::ui::widgets::{HoldButton, hold_button};
 
 /// Height of the buttons that are held.
-const PAD: f32 = 72.0;
+const PAD: f32 = 64.0;
 
+/// Speeds that a button sets, in percent.
+const PRESETS: [u8; 4] = [1, 10, 50, 100];
+
+/// Draws the travel of the drive, and what moves it by hand.
 pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
     card(ui, theme, TEXTS.text("hd_jog.title"), |ui| {
+        travel_ui(ui, theme, unit, &view.target);
+        ui.add_space(theme.space.inside);
         let drafts = &mut view.jog_effort;
         let drive = unit.drive();
         let own = (unit.moves.jog_effort(drive), unit.moves.jogs_with(drive), drafts);
-        let effort = effort_ui(ui, theme, unit, own, Motor::JogEffort, actions);
+        let presets: Vec<Percent> = PRESETS.into_iter().filter_map(Percent::new).collect();
+        let effort = effort_ui(ui, theme, unit, own, &presets, Motor::JogEffort, actions);
         let allowed = effort.and(unit.may_move(drive));
         pads_ui(ui, theme, unit, allowed.is_ok(), actions);
-        pads_note(ui, theme, unit);
-        why_not(ui, theme, &allowed);
-        ui.add_space(theme.space.between);
-        ui.separator();
-        ui.label(theme.heading(say(theme, "hd_step.title")));
+        pads_note(ui, theme, unit, allowed.as_ref().err());
+    });
+}
+
+/// Draws the steps of an entered length, which run to their end.
+pub(super) fn step_card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    unit: &Unit,
+    allowed: &Result<(), Text>,
+    view: &mut MotionUiState,
+    actions: &mut Vec<Action>,
+) {
+    card(ui, theme, TEXTS.text("hd_step.title"), |ui| {
         length_ui(ui, theme, unit, "hd_step.by", &mut view.step, actions);
         ui.horizontal_wrapped(|ui| {
             for (sign, id) in [(-1, "hd_step.back"), (1, "hd_step.forth")] {
-                if allowed_button(ui, theme, &allowed, "", &say(theme, id)).clicked() {
+                if allowed_button(ui, theme, allowed, "", &say(theme, id)).clicked() {
                     match forms::step(unit, &view.step, unit.measure, sign) {
                         Ok(by) => {
                             view.step_problem = None;
@@ -46,13 +62,11 @@ pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         });
         problem(ui, theme, view.step_problem.as_ref());
         paragraph(ui, theme.caption(say(theme, "hd_step.words")));
-        // At the end: no clickable widget moves when it appears.
-        outside::block_ui(ui, theme, unit, &mut view.outside, actions);
     });
 }
 
-/// Draws what the buttons do, or why they are blocked, in the same space: nothing below moves when that changes.
-fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
+/// Draws what the buttons do, or why they move nothing, in the same space: nothing below moves when that changes.
+fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit, why_not: Option<&Text>) {
     let drive = unit.drive();
     let outside = unit.outside(drive).filter(|own| {
         let ways = [Direction::Counterclockwise, Direction::Clockwise];
@@ -64,12 +78,17 @@ fn pads_note(ui: &mut Ui, theme: &Theme, unit: &Unit) {
         Some(Outside::Unclear) => ("hd_jog.unclear", theme.palette.bad),
     };
     let width = ui.available_width();
-    let font = FontId::proportional(theme.sizes.caption);
-    let height = |id| ui.painter().layout(say(theme, id), font.clone(), colour.into(), width).size().y;
-    let room = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear"].into_iter().map(height).fold(0.0, f32::max);
+    let font = FontId::proportional(theme.sizes.body);
+    let height = |words| ui.painter().layout(words, font.clone(), colour.into(), width).size().y;
+    let fixed = ["hd_jog.words", "hd_jog.outside", "hd_jog.unclear", "hd_refused.not_taken"];
+    let room = fixed.into_iter().map(|id| height(say(theme, id))).fold(0.0, f32::max);
+    let words = match why_not {
+        Some(why) => RichText::new(theme.words(why)).color(theme.palette.warn),
+        None => RichText::new(say(theme, id)).color(colour),
+    };
     ui.allocate_ui(vec2(width, room), |ui| {
         ui.set_min_height(room);
-        paragraph(ui, theme.caption(say(theme, id)).color(colour));
+        paragraph(ui, words);
     });
 }
 

@@ -3,13 +3,14 @@
 use egui::{RichText, TextStyle, TextWrapMode, Ui, WidgetText};
 
 use super::outside::badge;
-use crate::app::Rgb;
+use crate::app::{Action, Rgb};
+use crate::devices::hiperdrive::procedures::Temperature;
 use crate::devices::hiperdrive::protocol::{State, turns};
-use crate::devices::hiperdrive::state::{Measure, TEXTS, Unit, explain};
+use crate::devices::hiperdrive::state::{HiperdriveAction, Measure, TEXTS, Unit, explain};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::Theme;
-use crate::ui::controls::row;
+use crate::ui::controls::{icon_menu, paragraph, row};
 use crate::ui::panels::live::LOW;
+use crate::ui::{Theme, icons};
 
 pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
     let drive = unit.drive();
@@ -75,6 +76,24 @@ pub(crate) fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         actual.position.to_string()
     };
     row(ui, theme, &theme.say("live.raw"), theme.mono(whole));
+}
+
+/// Draws the menu of the temperatures that are recorded beside the position.
+pub(super) fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>) {
+    let word = theme.say("live.watch");
+    let watched = unit.watched_temperatures();
+    icon_menu(ui, icons::EYE, &word, |ui| {
+        ui.set_max_width(240.0);
+        ui.label(theme.heading(&word));
+        paragraph(ui, theme.caption(say(theme, "hd_watch.words")));
+        let usual = [(Temperature::Device, "hd_parameter.11"), (Temperature::Drive(unit.drive()), "hd_parameter.119")];
+        for (what, name) in usual {
+            let mut on = watched.contains(&what);
+            if ui.checkbox(&mut on, say(theme, name)).changed() {
+                actions.push(Action::device(unit.session.id, HiperdriveAction::Watch(what, on)));
+            }
+        }
+    });
 }
 
 /// Returns whether a text fits into the rest of the line.

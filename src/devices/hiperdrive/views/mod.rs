@@ -15,6 +15,7 @@ pub(crate) mod outside;
 mod parameters;
 mod scale;
 mod state_machine;
+mod travel;
 
 use std::collections::BTreeMap;
 
@@ -184,6 +185,10 @@ impl TypedDeviceView for HiperdriveView {
 
     fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {
         live::value_ui(ui, theme, unit, ink);
+    }
+
+    fn watch_menu(ui: &mut Ui, theme: &Theme, unit: &Unit, _view: &mut HiperdriveUiState, actions: &mut Vec<Action>) {
+        live::watch_menu(ui, theme, unit, actions);
     }
 
     fn motion(unit: &Unit) -> Option<Text> {

@@ -1,24 +1,25 @@
 //! The states of the drive and its motion: by jogging, to a position, at a speed.
 
-use egui::{Id, RichText, Ui, UiBuilder, vec2};
+use egui::text::LayoutJob;
+use egui::{Color32, FontId, Id, Response, RichText, Ui, UiBuilder, vec2};
 
 use super::state_machine::{StateMachine, state_machine};
 use super::{figures, jog, outside};
 use crate::app::{Action, SessionId, Text};
 use crate::devices::hiperdrive::procedures::dead_man::{Effort, Lock, MotionKind, Phase};
-use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, RunEnd, State};
+use crate::devices::hiperdrive::protocol::{Direction, ErrorCode, Percent, RunEnd, State};
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, explain, forms};
 use crate::devices::hiperdrive::views::say;
 use crate::ui::controls::{
-    allowed_button, card, card_with, choice, empty, enabled_button, entry, paragraph, problem, row, text_entry,
-    two_columns,
+    allowed_button, card, card_with, choice, empty, enabled_button, entry, options, paragraph, problem, row,
+    text_entry, two_columns,
 };
 use crate::ui::stop_debounce::{goes_down, means_motion, pressed_at};
 
 use crate::ui::{Theme, icons};
 
-/// Percentage as entered.
-type Draft = Option<String>;
+/// Percentage as it is typed, and the one that counted when it was drawn last.
+pub(super) type Draft = Option<(String, Percent)>;
 
 /// The entered text.
 #[derive(Default)]
@@ -28,7 +29,8 @@ pub(super) struct MotionUiState {
     pub(super) step_problem: Option<Text>,
     pub(super) outside: outside::Draft,
     move_effort: [Draft; 2],
-    target: String,
+    /// The position entered for the next move.
+    pub(super) target: String,
     target_problem: Option<Text>,
 }
 
@@ -39,7 +41,7 @@ const MEASURE: f32 = 64.0;
 /// Height of the message about the drive, and the width from which it is beside a heading.
 const SAID: f32 = 32.0;
 const BESIDE: f32 = 560.0;
-/// Height of a window below which the states are after the motion widgets.
+/// Height of a window below which the states stand behind the pads.
 const LOW: f32 = 760.0;
 
 pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
@@ -47,7 +49,7 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
         empty(ui, theme, &say(theme, "hd_motion.offline"), None);
         return;
     }
-    // In a low window the motion widgets are before the state diagram, except if that shows a failure. The height of the
+    // In a low window the pads come before the state diagram, except if that shows a failure. The height of the
     // window counts, not the remaining height: nothing moves when a notice appears.
     let has_failed = matches!(unit.state(unit.drive()), Some(State::Fault | State::Locked));
     let low = ui.ctx().content_rect().height() < LOW && !has_failed;
@@ -59,19 +61,30 @@ pub(super) fn page_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut Motion
     // A unique id: widgets that appear above do not take the keyboard focus from an entry.
     let id = Id::unique("motion").with((unit.session.id, unit.drive()));
     ui.scope_builder(UiBuilder::new().scope_id(id), |ui| {
+        jog::card_ui(ui, theme, unit, view, actions);
+        ui.add_space(theme.space.groups);
+        if low {
+            states(ui, theme, unit, actions);
+            ui.add_space(theme.space.groups);
+        }
         two_columns(
             ui,
             theme,
-            (view, &mut *actions),
-            |ui, (view, actions)| jog::card_ui(ui, theme, unit, view, actions),
-            |ui, (view, actions)| moves(ui, theme, unit, view, actions),
+            (Ok(()), &mut *view, &mut *actions),
+            |ui, (allowed, view, actions)| {
+                *allowed =
+                    card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position(ui, theme, unit, view, actions));
+            },
+            |ui, (allowed, view, actions)| {
+                jog::step_card_ui(ui, theme, unit, allowed, view, actions);
+                ui.add_space(theme.space.groups);
+                card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, allowed, actions));
+            },
         );
+        // Below: nothing that can be clicked moves away when it comes.
+        outside::card_ui(ui, theme, unit, &mut view.outside, actions);
     });
     ui.add_space(theme.space.groups);
-    if low {
-        states(ui, theme, unit, actions);
-        ui.add_space(theme.space.groups);
-    }
     figures::words_card_ui(ui, theme, unit, unit.drive());
 }
 
@@ -150,26 +163,32 @@ fn status_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, actions: &mut Vec<Action>)
         if let Some(code) = newest.filter(|code| *code != ErrorCode::NONE) {
             let words = explain::error(code);
             let text = format!("{:04X}  {}", code.code(), theme.words(&words.name));
-            let label = egui::Label::new(RichText::new(text).color(theme.palette.bad)).truncate();
-            ui.add(label).on_hover_text(theme.words(&words.remedy));
+            two_lines(ui, theme, text, theme.palette.bad.into()).on_hover_text(theme.words(&words.remedy));
             return;
         }
     }
     if let Some(status) = unit.running_or_last(drive) {
         let ink = if status.is_well { theme.palette.good } else { theme.palette.warn };
-        ui.add(egui::Label::new(RichText::new(theme.words(&status.words)).color(ink)).truncate());
+        two_lines(ui, theme, theme.words(&status.words), ink.into());
     }
+}
+
+/// Draws a message on one line, or smaller on two, which are as high as a button: nothing below it moves.
+fn two_lines(ui: &mut Ui, theme: &Theme, words: String, ink: Color32) -> Response {
+    let width = ui.available_width();
+    let whole = ui.painter().layout_no_wrap(words.clone(), FontId::proportional(theme.sizes.body), ink);
+    let galley = if whole.size().x <= width {
+        whole
+    } else {
+        let mut job = LayoutJob::simple(words, FontId::proportional(theme.sizes.caption), ink, width);
+        job.wrap.max_rows = 2;
+        ui.painter().layout_job(job)
+    };
+    ui.label(galley)
 }
 
 fn motor(actions: &mut Vec<Action>, id: SessionId, motor: Motor) {
     actions.push(Action::device(id, Hiperdrive::Drive(motor)));
-}
-
-/// Draws the moves to a position and at a speed, with the same effort.
-fn moves(ui: &mut Ui, theme: &Theme, unit: &Unit, view: &mut MotionUiState, actions: &mut Vec<Action>) {
-    let allowed = card(ui, theme, TEXTS.text("hd_move.title"), |ui| to_position(ui, theme, unit, view, actions));
-    ui.add_space(theme.space.groups);
-    card(ui, theme, TEXTS.text("hd_run.title"), |ui| at_speed(ui, theme, unit, &allowed, actions));
 }
 
 /// Draws the move to a position; returns whether the drive may be moved with the entered effort.
@@ -181,13 +200,6 @@ fn to_position(
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
     let (drive, id) = (unit.drive(), unit.session.id);
-    // Both rows stay while the data are missing for a moment: nothing below them moves, and no entry loses the keyboard
-    // focus.
-    let unknown = || "–".to_owned();
-    let now = unit.actual(drive).map(|actual| theme.words(&unit.place(drive, actual.position)));
-    row(ui, theme, &say(theme, "hd_move.now"), theme.mono(now.unwrap_or_else(unknown)));
-    let range = unit.limits(drive).map(|limits| theme.words(&unit.places(drive, limits)));
-    row(ui, theme, &say(theme, "hd_move.range"), theme.mono(range.unwrap_or_else(unknown)));
     length_ui(ui, theme, unit, "hd_move.target", &mut view.target, actions);
     let drafts = &mut view.move_effort;
     let effort = effort_ui(
@@ -195,9 +207,11 @@ fn to_position(
         theme,
         unit,
         (unit.moves.move_effort(drive), unit.moves.moves_with(drive), drafts),
+        &[],
         Motor::MoveEffort,
         actions,
     );
+    let entered = effort.clone();
     let allowed = effort.and(unit.may_move(drive));
     ui.horizontal_wrapped(|ui| {
         if allowed_button(ui, theme, &allowed, icons::PLAY, &say(theme, "hd_move.go")).clicked() {
@@ -224,15 +238,9 @@ fn to_position(
         }
     });
     problem(ui, theme, view.target_problem.as_ref());
-    why_not(ui, theme, &allowed);
+    // What keeps the drive from moving at all stands once, below the pads.
+    problem(ui, theme, entered.as_ref().err());
     allowed
-}
-
-/// Draws why nothing can be moved.
-pub(super) fn why_not(ui: &mut Ui, theme: &Theme, allowed: &Result<(), Text>) {
-    if let Err(why) = allowed {
-        paragraph(ui, RichText::new(theme.words(why)).color(theme.palette.warn));
-    }
 }
 
 /// Draws the run at a speed, to the end of the range or, for experts, without an end.
@@ -262,8 +270,8 @@ fn at_speed(ui: &mut Ui, theme: &Theme, unit: &Unit, allowed: &Result<(), Text>,
     }
 }
 
-/// Draws speed and torque, in percent. An entry takes effect at once, so that nothing starts with the old values; a running
-/// motion keeps its own, which is shown.
+/// Draws speed and torque, in percent, with buttons for the `presets` of the speed. An entry takes effect at once, so that nothing
+/// starts with the old values; a running motion keeps its own, which is shown. A preset begins nothing.
 ///
 /// # Errors
 /// The entry is not a percentage: nothing may start with it.
@@ -272,6 +280,7 @@ pub(super) fn effort_ui(
     theme: &Theme,
     unit: &Unit,
     (effort, under_way, drafts): (Effort, Option<Effort>, &mut [Draft; 2]),
+    presets: &[Percent],
     set: impl Fn(Effort) -> Motor,
     actions: &mut Vec<Action>,
 ) -> Result<(), Text> {
@@ -284,21 +293,31 @@ pub(super) fn effort_ui(
     ] {
         let word = say(theme, word);
         entry(ui, theme, &word, |ui| {
-            let mut text = draft.take().unwrap_or_else(|| own.get().to_string());
+            // What was typed gives way where another value counts since: of a preset, or of a new session.
+            let typed = draft.take().filter(|(text, counted)| *counted == own || forms::percent(text) == Ok(own));
+            let mut text = typed.map_or_else(|| own.get().to_string(), |(text, _)| text);
             let response = text_entry(ui, &mut text, PERCENT, &word, "");
             let typed = forms::percent(&text);
+            let with = |percent| {
+                if is_speed { Effort { speed: percent, ..effort } } else { Effort { torque: percent, ..effort } }
+            };
             if let Ok(percent) = &typed
                 && *percent != own
             {
-                let percent = *percent;
-                let effort =
-                    if is_speed { Effort { speed: percent, ..effort } } else { Effort { torque: percent, ..effort } };
-                motor(actions, unit.session.id, set(effort));
+                motor(actions, unit.session.id, set(with(*percent)));
             }
-            if response.has_focus() || typed.is_err() {
-                *draft = Some(text);
-            }
+            let keeps = response.has_focus() || typed.is_err();
+            *draft = keeps.then_some((text, own));
             ui.label(theme.label("%"));
+            if is_speed && !presets.is_empty() {
+                // None is chosen while what is typed counts for nothing: each of them replaces it.
+                let mut chosen = if typed.is_ok() { own } else { Percent::NONE };
+                let shown = presets.iter().map(|own| (*own, format!("{} %", own.get())));
+                if options(ui, &say(theme, "hd_jog.speed"), &mut chosen, shown) {
+                    *draft = None;
+                    motor(actions, unit.session.id, set(with(chosen)));
+                }
+            }
             let beside = if is_speed { unit.speed_of(own) } else { unit.torque_of(own) };
             let waits = sent.filter(|sent| *sent != own && typed.is_ok());
             if let Some(sent) = waits {

@@ -8,7 +8,7 @@ use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
 use crate::devices::hiperdrive::protocol::Direction;
 use crate::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor, TEXTS, Unit, forms};
 use crate::devices::hiperdrive::views::say;
-use crate::ui::controls::{allowed_button, paragraph, problem};
+use crate::ui::controls::{allowed_button, card, paragraph, problem};
 use crate::ui::{Theme, icons};
 
 /// The entered text.
@@ -26,50 +26,52 @@ pub(crate) fn badge(theme: &Theme, unit: &Unit) -> Option<RichText> {
     Some(RichText::new(words).font(theme.strong(theme.sizes.body)).color(theme.palette.bad))
 }
 
-/// Draws what is outside, what is blocked, and what can be done. Nothing if the drive is inside, or at the end of its
-/// range.
-pub(super) fn block_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
+/// Draws what is outside, what is blocked, and what can be done, as a card. Nothing if the drive is inside, or at the end of
+/// its range.
+pub(super) fn card_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, draft: &mut Draft, actions: &mut Vec<Action>) {
     let (drive, id) = (unit.drive(), unit.session.id);
     let (Some(words), Some(outside)) = (unit.outside_words(drive), unit.outside(drive)) else {
         *draft = Draft::default();
         return;
     };
-    ui.add_space(theme.space.between);
-    ui.separator();
-    let strong = RichText::new(theme.words(&words)).font(theme.strong(theme.sizes.body)).color(theme.palette.bad);
-    ui.horizontal_top(|ui| {
-        ui.label(RichText::new(icons::WARNING).color(theme.palette.bad));
-        paragraph(ui, strong);
-    });
-    let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
-    let ways: Vec<Direction> = ways.filter(|way| outside.outside.is_outward(*way)).collect();
-    let freed = ways.iter().copied().find(|way| unit.moves.is_freed(drive, *way));
-    let words = match (freed, outside.outside) {
-        (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
-        (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",
-        (None, Outside::Unclear) => "hd_outside.blocked_both",
-        (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
-        (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
-    };
-    paragraph(ui, theme.caption(say(theme, words)));
-    // The buttons stay after one was pressed: the widgets below them do not move under the pointer.
-    let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
-    ui.horizontal_wrapped(|ui| {
-        for way in ways {
-            let free = match way {
-                Direction::Clockwise => "hd_outside.free_up",
-                Direction::Counterclockwise => "hd_outside.free_down",
-            };
-            if allowed_button(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &say(theme, free)).clicked() {
-                actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+    ui.add_space(theme.space.groups);
+    card(ui, theme, TEXTS.text("hd_outside.short"), |ui| {
+        let strong = RichText::new(theme.words(&words)).font(theme.strong(theme.sizes.body)).color(theme.palette.bad);
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(icons::WARNING).color(theme.palette.bad));
+            paragraph(ui, strong);
+        });
+        let ways = [Direction::Counterclockwise, Direction::Clockwise].into_iter();
+        let ways: Vec<Direction> = ways.filter(|way| outside.outside.is_outward(*way)).collect();
+        let freed = ways.iter().copied().find(|way| unit.moves.is_freed(drive, *way));
+        let words = match (freed, outside.outside) {
+            (Some(Direction::Clockwise), _) => "hd_outside.freed_up",
+            (Some(Direction::Counterclockwise), _) => "hd_outside.freed_down",
+            (None, Outside::Unclear) => "hd_outside.blocked_both",
+            (None, Outside::At(Side::Above)) => "hd_outside.blocked_up",
+            (None, Outside::At(Side::Below)) => "hd_outside.blocked_down",
+        };
+        paragraph(ui, theme.caption(say(theme, words)));
+        // The buttons stay after one was pressed: the widgets below them do not move under the pointer.
+        let allowed = if freed.is_some() { Err(TEXTS.text(words)) } else { unit.may_move(drive) };
+        ui.horizontal_wrapped(|ui| {
+            for way in ways {
+                let free = match way {
+                    Direction::Clockwise => "hd_outside.free_up",
+                    Direction::Counterclockwise => "hd_outside.free_down",
+                };
+                if allowed_button(ui, theme, &allowed, icons::LOCK_SIMPLE_OPEN, &say(theme, free)).clicked() {
+                    actions.push(Action::device(id, Hiperdrive::Drive(Motor::FreeOutward(way))));
+                }
             }
+        });
+        length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
+        if allowed_button(ui, theme, &unit.may_plan(), "", &say(theme, "hd_outside.set")).clicked() {
+            let change = forms::steps(unit, &draft.place, unit.measure)
+                .and_then(|position| unit.reference_here(drive, position));
+            draft.problem =
+                change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();
         }
+        problem(ui, theme, draft.problem.as_ref());
     });
-    length_ui(ui, theme, unit, "hd_outside.place", &mut draft.place, actions);
-    if allowed_button(ui, theme, &unit.may_plan(), "", &say(theme, "hd_outside.set")).clicked() {
-        let change =
-            forms::steps(unit, &draft.place, unit.measure).and_then(|position| unit.reference_here(drive, position));
-        draft.problem = change.map(|change| actions.push(Action::device(id, Hiperdrive::Plan(Box::new(change))))).err();
-    }
-    problem(ui, theme, draft.problem.as_ref());
 }

@@ -26,6 +26,8 @@ pub(super) struct DriveParametersUiState {
     table: RegisterView,
     /// The lines of the table when it was drawn the last time.
     lines: Vec<Vec<ParameterNumber>>,
+    /// Columns of the table were hidden then: what they say of the selected row stands below it.
+    hides_columns: bool,
     scales: BTreeMap<DriveNumber, scale::ScaleUiState>,
 }
 
@@ -64,19 +66,24 @@ pub(super) fn page_ui(
         });
         return;
     }
-    let id = egui::Id::unique(unit.session.id).with("hiperdrive_parameters_foot");
-    egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
-        ui.spacing_mut().item_spacing.y = theme.space.inside;
-        ui.add_space(theme.space.inside);
-        paragraph(ui, theme.caption(say(theme, "hd_params.controller")));
-        paragraph(ui, theme.caption(say(theme, "hd_params.not_kept")));
-    });
     let rows = once(Some(unit.drive())).chain(once(None)).map(|of| {
         let rows = unit.rows(of).into_iter().filter(|row| view.shows(theme, row));
         rows.collect::<Vec<Row>>()
     });
     let rows: Vec<Vec<Row>> = rows.collect();
     view.follow(&rows);
+    let id = egui::Id::unique(unit.session.id).with("hiperdrive_parameters_foot");
+    egui::Panel::bottom(id).frame(egui::Frame::NONE).show_separator_line(false).show(ui, |ui| {
+        ui.spacing_mut().item_spacing.y = theme.space.inside;
+        ui.add_space(theme.space.inside);
+        if view.hides_columns {
+            let row = view.table.selected().and_then(|place| rows.get(place.group)?.get(place.row));
+            let words = row.map_or_else(|| say(theme, "hd_params.select"), |row| hidden_columns(theme, row));
+            ui.add(egui::Label::new(theme.caption(words).color(theme.palette.text)).truncate());
+        }
+        paragraph(ui, theme.caption(say(theme, "hd_params.controller")));
+        paragraph(ui, theme.caption(say(theme, "hd_params.not_kept")));
+    });
     if rows.iter().all(Vec::is_empty) {
         empty(ui, theme, &say(theme, "hd_params.none"), None);
     } else {
@@ -177,6 +184,7 @@ fn table(
         }
         Ok(())
     });
+    view.hides_columns = output.hides_columns;
     if let Some(RegisterEvent::Revert(place)) = output.event {
         edits.extend(at(place).map(|row| Edit::Revert(row.number)));
     }
@@ -184,7 +192,16 @@ fn table(
     actions.extend(edits.into_iter().map(act));
 }
 
-/// Returns a value as an entry.
+/// Returns what the columns that fall away in a narrow window say of a row.
+fn hidden_columns(theme: &Theme, row: &Row) -> String {
+    let named = |id: &'static str, words: String| (!words.is_empty()).then(|| format!("{} {words}", theme.say(id)));
+    let range = row.range.as_ref().map(|range| theme.words(range)).unwrap_or_default();
+    let columns = [named("widget.register_range", range), named("widget.register_factory", row.factory.clone())];
+    let columns = columns.into_iter().flatten().map(|column| format!(" · {column}")).collect::<String>();
+    format!("{} {}{columns}", row.number, theme.words(&row.name))
+}
+
+/// A value as an entry.
 fn own_text(row: &Row) -> String {
     row.staged.map_or_else(|| row.shown.clone(), |staged| staged.to_string())
 }

@@ -28,9 +28,9 @@ pub(crate) struct StateMachine<'a> {
 }
 
 /// Sizes in points.
-const BOX: f32 = 36.0;
+const BOX: f32 = 28.0;
 const GAP: f32 = 28.0;
-const BETWEEN: f32 = 32.0;
+const BETWEEN: f32 = 20.0;
 const MOST: f32 = 128.0;
 /// Places of the arrows' heads, and half of how wide one is.
 const HEAD: f32 = 6.0;
@@ -155,7 +155,7 @@ fn arrows(painter: &Painter, theme: &Theme, plan: &Plan, present: Option<State>)
     let row = [State::NotReady, State::Ready, State::Operational, State::Enabled, State::Moving];
     for (left, right) in row.iter().zip(row.iter().skip(1)) {
         let (a, b) = (plan.rect(*left), plan.rect(*right));
-        let (up, down) = (a.center().y - 7.0, a.center().y + 7.0);
+        let (up, down) = (a.center().y - 6.0, a.center().y + 6.0);
         line(painter, &[pos2(a.right() + 2.0, up), pos2(b.left() - 2.0, up)], ink(&[*left]));
         line(painter, &[pos2(b.left() - 2.0, down), pos2(a.right() + 2.0, down)], ink(&[*right]));
     }

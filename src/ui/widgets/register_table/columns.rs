@@ -31,11 +31,11 @@ const BYTES: [(Column, f32); 8] = [
 /// Those of numbers.
 const NUMBERS: [(Column, f32); 7] = [
     (Column::Marks, 42.0),
-    (Column::Address, 40.0),
-    (Column::Name, 150.0),
+    (Column::Address, 36.0),
+    (Column::Name, 180.0),
     (Column::Value, 60.0),
     (Column::Meaning, 110.0),
-    (Column::Range, 150.0),
+    (Column::Range, 130.0),
     (Column::Default, 96.0),
 ];
 /// The columns that are hidden, in this order. Their values move to the tooltip.
@@ -50,10 +50,7 @@ pub(super) struct Columns(Vec<(Column, Rangef)>);
 impl Columns {
     /// Lays out the columns in this width, with this width for the value.
     pub(super) fn new(kind: RegisterKind, width: f32, value: f32) -> Self {
-        let mut shown = match kind {
-            RegisterKind::Bytes { .. } => BYTES.to_vec(),
-            RegisterKind::Numbers => NUMBERS.to_vec(),
-        };
+        let mut shown = all(kind).to_vec();
         for (column, own) in &mut shown {
             if *column == Column::Value {
                 *own = own.max(value);
@@ -79,6 +76,11 @@ impl Columns {
         Columns(shown.into_iter().map(place).collect())
     }
 
+    /// Returns whether columns are hidden.
+    pub(super) fn hides(&self, kind: RegisterKind) -> bool {
+        self.0.len() < all(kind).len()
+    }
+
     /// Returns the range of a column, from the left of the table; `None` if it is hidden.
     pub(super) fn range(&self, column: Column) -> Option<Rangef> {
         self.0.iter().find(|(own, _)| *own == column).map(|(_, range)| *range)
@@ -90,6 +92,13 @@ impl Columns {
 
     pub(super) fn width(&self) -> f32 {
         self.0.last().map_or(0.0, |(_, range)| range.max)
+    }
+}
+
+const fn all(kind: RegisterKind) -> &'static [(Column, f32)] {
+    match kind {
+        RegisterKind::Bytes { .. } => &BYTES,
+        RegisterKind::Numbers => &NUMBERS,
     }
 }
 
@@ -116,10 +125,12 @@ mod tests {
         assert_eq!(shown(BYTES, 597.0), [Marks, Address, Name, Value, Meaning, Access]);
         assert_eq!(shown(BYTES, 513.0), [Marks, Address, Name, Value, Meaning]);
         assert_eq!(shown(BYTES, -1.0), [Marks, Address, Name, Value, Meaning]);
-        // 42 + 40 + 150 + 100 + 110 + 150 + 96 = 688.
-        assert_eq!(shown(RegisterKind::Numbers, 688.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
-        assert_eq!(shown(RegisterKind::Numbers, 687.0), [Marks, Address, Name, Value, Meaning, Range]);
-        assert_eq!(shown(RegisterKind::Numbers, 591.0), [Marks, Address, Name, Value, Meaning]);
+        // 42 + 36 + 180 + 100 + 110 + 130 + 96 = 694.
+        assert_eq!(shown(RegisterKind::Numbers, 694.0), [Marks, Address, Name, Value, Meaning, Range, Default]);
+        assert_eq!(shown(RegisterKind::Numbers, 693.0), [Marks, Address, Name, Value, Meaning, Range]);
+        assert_eq!(shown(RegisterKind::Numbers, 597.0), [Marks, Address, Name, Value, Meaning]);
+        let hides = |width| Columns::new(RegisterKind::Numbers, width, 100.0).hides(RegisterKind::Numbers);
+        assert!(!hides(694.0) && hides(693.0));
     }
 
     #[test]

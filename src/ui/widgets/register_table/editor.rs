@@ -3,7 +3,7 @@
 
 use egui::{FontId, Id, Key, Margin, Rect, TextEdit, Ui, Vec2, WidgetInfo};
 
-use super::{RegisterLocation, RegisterTable, RegisterView};
+use super::{RegisterLocation, RegisterTable, RegisterView, keys};
 use crate::app::Text;
 use crate::ui::Theme;
 
@@ -18,13 +18,16 @@ pub(super) fn editor_ui(
     take: &mut dyn FnMut(RegisterLocation, &str) -> Result<(), Text>,
 ) {
     let Some(mut edit) = view.edit.take() else { return };
+    if !edit.begins && ui.memory(|memory| memory.has_focus(keys::entry_id(table_id))) {
+        keys::hold_back(ui, view);
+    }
     let before = edit.text.clone();
     ui.spacing_mut().interact_size.y = cell.height();
     // The entry is drawn where the value was.
     let inset = theme.space.inside;
     let cell = Rect::from_min_max(cell.min - Vec2::new(inset, 0.0), cell.max - Vec2::new(inset, 0.0));
     let entry = TextEdit::singleline(&mut edit.text)
-        .id(table_id.with("entry"))
+        .id(keys::entry_id(table_id))
         .font(FontId::monospace(theme.sizes.body))
         .margin(Margin::symmetric(inset as i8, 0))
         .desired_width(cell.width());
@@ -52,6 +55,8 @@ pub(super) fn editor_ui(
     if !given_up && let Err(why) = take(edit.place, edit.text.trim()) {
         edit.problem = Some(why);
         edit.begins = entered;
+        // It stays where it is.
+        view.late.retain(|event| !keys::is_vertical(event));
         edit.typed = true;
         view.edit = Some(edit);
         return;

@@ -1,6 +1,6 @@
 //! The keyboard of a register table. Handled keys are consumed, so that nothing else acts on them.
 
-use egui::{Event, EventFilter, Id, Key, Modifiers, Ui};
+use egui::{Event, EventFilter, FocusDirection, Id, Key, Modifiers, Ui};
 
 use super::lines::Lines;
 use super::view::{Edit, Selected};
@@ -10,6 +10,70 @@ use super::{RegisterEvent, RegisterLocation, RegisterTable, RegisterView};
 pub(super) fn hold(ui: &Ui, id: Id) {
     let filter = EventFilter { vertical_arrows: true, horizontal_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
+}
+
+/// Puts the events that were held back in the last frame before those of this one, while the keyboard is here.
+pub(super) fn catch_up(ui: &Ui, view: &mut RegisterView, id: Id) {
+    let late = std::mem::take(&mut view.late);
+    let focused = ui.memory(|memory| memory.focused());
+    if !late.is_empty() && (focused == Some(id) || focused == Some(entry_id(id))) {
+        ui.input_mut(|input| drop(input.events.splice(0..0, late)));
+    }
+}
+
+/// Returns the id of the editor of a table.
+pub(super) fn entry_id(table: Id) -> Id {
+    table.with("entry")
+}
+
+/// Holds back what is typed in this frame behind what ends an edit: Enter, or an arrow up or down, which is Enter and then
+/// goes to another line.
+pub(super) fn hold_back(ui: &Ui, view: &mut RegisterView) {
+    ui.input_mut(|input| {
+        let mut ended = false;
+        let mut kept = Vec::with_capacity(input.events.len());
+        for event in input.events.drain(..) {
+            let is_arrow = is_vertical(&event);
+            if is_typed(&event) && (ended || is_arrow) {
+                if !ended {
+                    kept.push(ENTER);
+                }
+                view.late.push(event);
+            } else {
+                ended |= matches!(event, Event::Key { key: Key::Enter, pressed: true, .. });
+                kept.push(event);
+            }
+            ended |= is_arrow;
+        }
+        input.events = kept;
+    });
+    if !view.late.is_empty() {
+        // An arrow would take the keyboard to a neighbour.
+        ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+        ui.ctx().request_repaint();
+    }
+}
+
+const ENTER: Event =
+    Event::Key { key: Key::Enter, physical_key: None, pressed: true, repeat: false, modifiers: Modifiers::NONE };
+
+/// A press of an arrow that goes to another line.
+pub(super) fn is_vertical(event: &Event) -> bool {
+    let is_plain = |modifiers: &Modifiers| !modifiers.any();
+    matches!(event, Event::Key { key: Key::ArrowUp | Key::ArrowDown, pressed: true, modifiers, .. } if is_plain(modifiers))
+}
+
+/// Typing, as the table and its editor hear it. What stops a drive or belongs to the window is never held back.
+fn is_typed(event: &Event) -> bool {
+    use Key::{ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home};
+    match event {
+        Event::Text(_) => true,
+        Event::Key { key, modifiers, .. } => {
+            let keys = [ArrowDown, ArrowLeft, ArrowRight, ArrowUp, Backspace, Delete, End, Enter, Home];
+            keys.contains(key) && !modifiers.any()
+        }
+        _ => false,
+    }
 }
 
 /// Handles the keys of this frame.
@@ -23,6 +87,11 @@ pub(super) fn listen(
     let mut copied = None;
     ui.input_mut(|input| {
         input.events.retain(|own| match own {
+            // The editor has the keyboard from the next frame on.
+            _ if is_typed(own) && view.edit.as_ref().is_some_and(|edit| edit.begins) => {
+                view.late.push(own.clone());
+                false
+            }
             Event::Key { key, pressed: true, modifiers, .. } => {
                 view.refused = None;
                 let act = walk(*key, *modifiers, lines, view) || fold(*key, *modifiers, table, view);
@@ -38,6 +107,9 @@ pub(super) fn listen(
     });
     if let Some(text) = copied {
         ui.copy_text(text);
+    }
+    if !view.late.is_empty() {
+        ui.ctx().request_repaint();
     }
     event
 }

@@ -122,6 +122,11 @@ pub(super) fn row(
             Column::Default if row.differs => (theme.mono(format!("≠ {}", row.default)), palette.text),
             Column::Default => (theme.mono(&row.default), palette.muted),
         };
+        // A name that is too long is smaller, not cut.
+        let words = match column {
+            Column::Name if is_too_long(ui, theme, range, &words) => words.size(theme.sizes.caption),
+            _ => words,
+        };
         let right = column == Column::Decimal;
         let range = match (column, columns.range(Column::Meaning)) {
             // A text may be longer than a number.
@@ -184,6 +189,13 @@ pub(super) fn bits(ui: &Ui, theme: &Theme, rect: Rect, columns: &Columns, bits: 
     }
     let x = rect.left() + MARK / 2.0;
     ui.painter().vline(x, rect.y_range(), Stroke::new(1.0, palette.line));
+}
+
+/// Returns whether words do not fit into a column.
+fn is_too_long(ui: &Ui, theme: &Theme, range: Rangef, words: &egui::RichText) -> bool {
+    let words = egui::WidgetText::from(words.clone());
+    let galley = words.into_galley(ui, Some(TextWrapMode::Extend), f32::INFINITY, TextStyle::Body);
+    galley.size().x > range.span() - theme.space.between
 }
 
 /// Draws text within a column, truncated if it is too long; returns its width.

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use egui::Event;
+
 use super::RegisterLocation;
 use crate::app::Text;
 use crate::ui::Theme;
@@ -23,6 +25,9 @@ pub struct RegisterView {
     pub(super) reveal: bool,
     /// Lines of a page.
     pub(super) page: usize,
+    /// What was typed in the last frame behind a key with which the keyboard goes to the editor or back from it: only the
+    /// next frame has whom it is for.
+    pub(super) late: Vec<Event>,
 }
 
 /// A line that can be selected.

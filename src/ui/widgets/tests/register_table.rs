@@ -275,3 +275,43 @@ fn what_is_typed_stays_with_its_register_when_the_lines_are_other_ones() {
     harness.run();
     assert_eq!((typed(&harness), harness.state().view.selected()), (None, None));
 }
+
+/// Issue 26.4: a window that draws slowly gets several keys at once, at 10 ms a key. None is lost, whether the keyboard is
+/// still with the table or goes back to it, and each is heard once.
+#[test]
+fn what_is_typed_in_one_frame_is_typed_whole() {
+    let mut harness = table();
+    click(&mut harness, "00:05 register 5", 200.0, 1);
+    let key = |key| {
+        let event = move |pressed| Event::Key { key, physical_key: None, pressed, repeat: false, modifiers: NONE };
+        vec![event(true), event(false)]
+    };
+    let typed = |text: &str, own: Key| vec![key(own)[0].clone(), Event::Text(text.to_owned()), key(own)[1].clone()];
+    let all = [
+        typed("2", Key::Num2),
+        typed("A", Key::A),
+        key(Key::Enter),
+        key(Key::ArrowDown),
+        typed("7", Key::Num7),
+        typed("1", Key::Num1),
+        key(Key::Backspace),
+        typed("B", Key::B),
+        key(Key::Enter),
+    ]
+    .concat();
+    // In one frame, and in two that are cut at any place.
+    for cut in 0..=all.len() {
+        harness.state_mut().edits.clear();
+        harness.state_mut().view.select(place(0, 5));
+        let (first, rest) = all.split_at(cut);
+        for events in [first, rest] {
+            harness.input_mut().events.extend(events.iter().cloned());
+            harness.step();
+        }
+        harness.run_steps(6);
+        let edits = &harness.state().edits;
+        let expected = BTreeMap::from([(place(0, 5), 0x2A), (place(0, 6), 0x7B)]);
+        assert_eq!(*edits, expected, "cut at {cut}");
+        assert!(harness.get_by_label(TABLE).is_focused());
+    }
+}

@@ -195,12 +195,18 @@ fn values_have_the_length_of_their_kind() {
     assert_eq!(Kind::Text.parse(&[]), Ok(Value::Text(String::new())));
 }
 
-/// Manual 6.2, 126 to 129: a string, divided by 10 if preceded by an "A".
+/// Manual 6.2, 126 to 129: a string, divided by 10 if preceded by an "A"; one decimal then, even where it is 0.
 #[test]
 fn nominal_data_may_be_tenths() {
-    for (text, number) in
-        [("24", Some(24.0)), ("A25", Some(2.5)), ("A", None), ("", None), ("B25", None), ("A-5", None)]
-    {
+    for (text, number) in [
+        ("24", Some((24.0, 0))),
+        ("A25", Some((2.5, 1))),
+        ("A20", Some((2.0, 1))),
+        ("A", None),
+        ("", None),
+        ("B25", None),
+        ("A-5", None),
+    ] {
         assert_eq!(nominal(text), number, "{text}");
     }
 }

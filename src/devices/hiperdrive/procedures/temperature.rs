@@ -1,0 +1,58 @@
+//! Temperatures that are watched beside the position: of the device (parameter 11), and of a drive (119).
+
+use super::identify::{of, own};
+use super::{DriveReading, Error, Master};
+use crate::devices::hiperdrive::protocol::{DriveNumber, ParameterNumber};
+use crate::units::Moment;
+
+/// A temperature that can be watched.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Temperature {
+    /// Parameter 11.
+    Device,
+    /// Parameter 119.
+    Drive(DriveNumber),
+}
+
+/// A temperature at a moment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TemperatureReading {
+    /// When.
+    pub at: Moment,
+    pub what: Temperature,
+    /// Degrees Celsius; `None` if the device does not provide it.
+    pub celsius: Option<i64>,
+}
+
+/// A sample of a polled device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sample {
+    Position(DriveReading),
+    Temperature(TemperatureReading),
+}
+
+impl Temperature {
+    /// Returns its parameter.
+    ///
+    /// # Errors
+    /// [`Error::NoNumber`].
+    pub fn parameter(self) -> Result<ParameterNumber, Error> {
+        match self {
+            Temperature::Device => own(11),
+            Temperature::Drive(drive) => of(119, drive),
+        }
+    }
+}
+
+/// Reads a temperature by one explicit message, which the cyclic connection does not wait for.
+///
+/// # Errors
+/// The way. A device that refuses it does not provide it.
+pub fn temperature(master: &mut Master<'_>, what: Temperature) -> Result<TemperatureReading, Error> {
+    let celsius = match master.read_number(what.parameter()?) {
+        Ok(celsius) => Some(celsius),
+        Err(error) if error.is_unsaid() => None,
+        Err(error) => return Err(error),
+    };
+    Ok(TemperatureReading { at: master.now(), what, celsius })
+}

@@ -1,0 +1,277 @@
+//! The travel of a drive as a bar: its limits, its position and its target.
+//!
+//! * **Size**: as wide as there is room, always as high: nothing below it moves when the drive leaves its limits.
+//! * **Keyboard, pointer**: none. It moves nothing.
+//! * **Accessible**: an image; its value names position, limits and target.
+//! * **Painting**: the range in the accent colour, the position as a bar across it, the target as an outlined diamond.
+//!   Outside the limits the position is red, an arrow leads back to the limit, and a line above names the way back.
+
+use egui::accesskit::Role;
+use egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
+
+use crate::app::Text;
+use crate::devices::hiperdrive::procedures::dead_man::{Outside, Side};
+use crate::devices::hiperdrive::protocol::State;
+use crate::devices::hiperdrive::state::{TEXTS, Unit, forms};
+use crate::devices::hiperdrive::views::say;
+use crate::ui::widgets::series;
+use crate::ui::{Theme, icons};
+
+/// Heights in points: the line above, the bar, the limits below it.
+const LINE: f32 = 20.0;
+const BAR: f32 = 14.0;
+const LIMITS: f32 = 16.0;
+const GAP: f32 = 6.0;
+/// Room at both ends of the bar for a marker that stands there.
+const END: f32 = 8.0;
+/// Half the size of the target's diamond.
+const DIAMOND: f32 = 6.0;
+/// Share of the bar beyond a position that is outside the limits.
+const BEYOND: f64 = 0.04;
+
+/// The steps that the bar shows, on its pixels.
+struct Scale {
+    from: f64,
+    to: f64,
+    left: f32,
+    right: f32,
+}
+
+impl Scale {
+    /// Shows both limits, and a position outside them with some room beyond it.
+    fn new((low, high): (i32, i32), position: Option<i32>, bar: Rect) -> Self {
+        let (low, high) = (f64::from(low), f64::from(high));
+        let position = position.map_or(low, f64::from);
+        let (mut from, mut to) = (low.min(position), high.max(position));
+        let room = (to - from) * BEYOND;
+        if from < low {
+            from -= room;
+        }
+        if to > high {
+            to += room;
+        }
+        Scale { from, to: to.max(from + 1.0), left: bar.left() + END, right: bar.right() - END }
+    }
+
+    fn x(&self, steps: i32) -> f32 {
+        let share = ((f64::from(steps) - self.from) / (self.to - self.from)).clamp(0.0, 1.0);
+        self.left + (self.right - self.left) * share as f32
+    }
+}
+
+/// The values that are shown.
+struct Shown {
+    limits: Option<(i32, i32)>,
+    position: Option<i32>,
+    target: Option<i32>,
+    /// How the drive is outside its limits; `None` inside, and at the end of its range.
+    outside: Option<Outside>,
+    is_moving: bool,
+}
+
+/// Draws the travel of the shown drive; `typed` is the target entered for the next move.
+pub(super) fn travel_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, typed: &str) {
+    let drive = unit.drive();
+    let typed = || forms::target(unit, typed, unit.measure).ok();
+    let shown = Shown {
+        limits: unit.limits(drive),
+        position: unit.actual(drive).map(|actual| actual.position),
+        target: unit.moves.target(drive).or_else(typed),
+        outside: unit.outside(drive).filter(|own| own.is_far).map(|own| own.outside),
+        is_moving: unit.state(drive) == Some(State::Moving),
+    };
+    let size = vec2(ui.available_width().max(120.0), LINE + GAP + BAR + LIMITS);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let place =
+        |steps: Option<i32>| steps.map_or_else(|| "–".to_owned(), |steps| theme.words(&unit.place(drive, steps)));
+    let named = |id: &'static str, steps| theme.words(&TEXTS.text(id).with("place", place(steps)));
+    let position = named("hd_travel.position", shown.position);
+    let target = named("hd_travel.target", shown.target);
+    let warning = shown.outside.map(|own| theme.words(&way_back(own)));
+    let limits = shown.limits.map(|(low, high)| [place(Some(low)), place(Some(high))]);
+    response.widget_info(|| {
+        let mut info = WidgetInfo::labeled(Role::Image, true, say(theme, "hd_travel.title"));
+        let limits = limits.as_ref().map(|own| own.join(" … "));
+        let told = [warning.clone(), Some(position.clone()), limits, Some(target.clone())];
+        info.current_text_value = Some(told.into_iter().flatten().collect::<Vec<_>>().join(", "));
+        info
+    });
+    if !ui.is_rect_visible(rect) {
+        return;
+    }
+    let painter = ui.painter();
+    let line = Rect::from_min_size(rect.min, vec2(rect.width(), LINE));
+    line_ui(painter, theme, line, &shown, (&position, &target, warning.as_deref()));
+    let bar = Rect::from_min_size(pos2(rect.left(), line.bottom() + GAP), vec2(rect.width(), BAR));
+    let below = Rect::from_min_size(bar.left_bottom(), vec2(rect.width(), LIMITS));
+    bar_ui(painter, theme, bar, &shown);
+    match shown.limits.zip(limits) {
+        Some(((low, high), names)) => {
+            let scale = Scale::new((low, high), shown.position, bar);
+            limits_ui(painter, theme, below, [scale.x(low), scale.x(high)], names);
+        }
+        None => {
+            let (words, font) = (say(theme, "hd_travel.unknown"), FontId::proportional(theme.sizes.caption));
+            painter.text(below.left_bottom(), Align2::LEFT_BOTTOM, words, font, theme.palette.muted.into());
+        }
+    }
+}
+
+/// Returns where a drive outside its limits is led back.
+fn way_back(outside: Outside) -> Text {
+    TEXTS.text(match outside {
+        Outside::At(Side::Above) => "hd_travel.back_down",
+        Outside::At(Side::Below) => "hd_travel.back_up",
+        Outside::Unclear => "hd_travel.unclear",
+    })
+}
+
+/// Draws position and target above the bar, or how the drive comes back inside its limits.
+fn line_ui(
+    painter: &Painter,
+    theme: &Theme,
+    line: Rect,
+    shown: &Shown,
+    (position, target, warning): (&str, &str, Option<&str>),
+) {
+    let palette = theme.palette;
+    let font = FontId::monospace(theme.sizes.body);
+    let ink = position_ink(theme, shown);
+    let Some(warning) = warning else {
+        let at = marker(painter, line.left_center() + vec2(3.0, 0.0), ink);
+        painter.text(at, Align2::LEFT_CENTER, position, font.clone(), palette.text.into());
+        let ink = if shown.target.is_some() { palette.text } else { palette.muted };
+        let words = painter.text(line.right_center(), Align2::RIGHT_CENTER, target, font, ink.into());
+        diamond(painter, pos2(words.left() - DIAMOND - 6.0, line.center().y), target_ink(theme));
+        return;
+    };
+    let words = format!("{}  {warning}", icons::WARNING);
+    let strong = theme.strong(theme.sizes.section);
+    let whole = painter.layout_no_wrap(words.clone(), strong, ink);
+    let room = line.width() - painter.layout_no_wrap(position.to_owned(), font.clone(), ink).size().x - 16.0;
+    // In a narrow window and a long language it is smaller, not cut.
+    let galley = if whole.size().x <= room {
+        whole
+    } else {
+        painter.layout_no_wrap(words, theme.strong(theme.sizes.caption), ink)
+    };
+    painter.galley(Align2::LEFT_CENTER.anchor_size(line.left_center(), galley.size()).min, galley, ink);
+    painter.text(line.right_center(), Align2::RIGHT_CENTER, position, font, ink);
+}
+
+fn bar_ui(painter: &Painter, theme: &Theme, bar: Rect, shown: &Shown) {
+    let palette = theme.palette;
+    let edge = if shown.outside.is_some() { palette.bad } else { palette.line };
+    painter.rect_filled(bar, theme.radius, palette.sunken);
+    if let Some((low, high)) = shown.limits {
+        let scale = Scale::new((low, high), shown.position, bar);
+        let range = Rect::from_x_y_ranges(scale.x(low)..=scale.x(high), bar.y_range());
+        let inside = Color32::from(palette.accent).gamma_multiply(0.25);
+        painter.rect_filled(range, 2.0, inside);
+        for limit in [range.left(), range.right()] {
+            painter.vline(limit, bar.y_range(), Stroke::new(2.0, palette.accent));
+        }
+        if let (Some(position), Some(Outside::At(side))) = (shown.position, shown.outside) {
+            let limit = if side == Side::Above { range.right() } else { range.left() };
+            arrow(painter, pos2(scale.x(position), bar.center().y), limit, palette.bad.into());
+        }
+        if let Some(target) = shown.target {
+            diamond(painter, pos2(scale.x(target), bar.center().y), target_ink(theme));
+        }
+        if let Some(position) = shown.position {
+            let at = Rect::from_center_size(pos2(scale.x(position), bar.center().y), vec2(4.0, BAR + 8.0));
+            painter.rect_filled(at, 2.0, position_ink(theme, shown));
+        }
+    }
+    painter.rect_stroke(bar, theme.radius, Stroke::new(1.0, edge), StrokeKind::Inside);
+}
+
+/// Draws the limits below the bar, each as near to its place as both have room.
+fn limits_ui(painter: &Painter, theme: &Theme, below: Rect, [low, high]: [f32; 2], names: [String; 2]) {
+    let ink = Color32::from(theme.palette.muted);
+    let galley = |name| painter.layout_no_wrap(name, FontId::monospace(theme.sizes.caption), ink);
+    let [first, last] = names.map(galley);
+    let between = 12.0;
+    let end = below.right() - last.size().x;
+    let left = (low - first.size().x / 2.0).clamp(below.left(), (end - between - first.size().x).max(below.left()));
+    let right = (high - last.size().x / 2.0).clamp((left + first.size().x + between).min(end), end);
+    for (x, own) in [(left, first), (right, last)] {
+        painter.galley(pos2(x, below.bottom() - own.size().y), own, ink);
+    }
+}
+
+fn position_ink(theme: &Theme, shown: &Shown) -> Color32 {
+    match shown {
+        Shown { outside: Some(_), .. } => theme.palette.bad.into(),
+        Shown { is_moving: true, .. } => theme.palette.good.into(),
+        _ => theme.palette.text.into(),
+    }
+}
+
+fn target_ink(theme: &Theme) -> Color32 {
+    series(theme, 0)
+}
+
+/// Draws the position's marker as a sign; returns where words follow it.
+fn marker(painter: &Painter, at: Pos2, ink: Color32) -> Pos2 {
+    painter.rect_filled(Rect::from_center_size(at, vec2(4.0, BAR)), 2.0, ink);
+    at + vec2(9.0, 0.0)
+}
+
+fn diamond(painter: &Painter, at: Pos2, ink: Color32) {
+    let corners = [vec2(0.0, -DIAMOND), vec2(DIAMOND, 0.0), vec2(0.0, DIAMOND), vec2(-DIAMOND, 0.0)];
+    painter.add(Shape::closed_line(corners.map(|corner| at + corner).to_vec(), Stroke::new(2.0, ink)));
+}
+
+/// Draws the way from a position back to a limit, where there is room for it.
+fn arrow(painter: &Painter, from: Pos2, limit: f32, ink: Color32) {
+    const HEAD: f32 = 6.0;
+    let way = limit - from.x;
+    if way.abs() < 3.0 * HEAD {
+        return;
+    }
+    let (tip, back) = (pos2(limit, from.y), vec2(-HEAD * way.signum(), 0.0));
+    painter.line_segment([from, tip], Stroke::new(2.0, ink));
+    let across = vec2(0.0, HEAD * 0.7);
+    painter.add(Shape::convex_polygon(vec![tip, tip + back + across, tip + back - across], ink, Stroke::NONE));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar() -> Rect {
+        Rect::from_min_size(Pos2::ZERO, vec2(116.0, BAR))
+    }
+
+    #[test]
+    fn the_bar_reaches_from_limit_to_limit() {
+        let scale = Scale::new((-50, 50), Some(0), bar());
+        assert_eq!([-50, 0, 50].map(|steps| scale.x(steps)), [8.0, 58.0, 108.0]);
+        let unknown = Scale::new((-50, 50), None, bar());
+        assert_eq!(unknown.x(50), 108.0);
+    }
+
+    #[test]
+    fn a_position_outside_is_on_the_bar_with_room_beyond_it() {
+        for (position, is_above) in [(150, true), (-150, false)] {
+            let scale = Scale::new((-50, 50), Some(position), bar());
+            let [low, high, at] = [-50, 50, position].map(|steps| scale.x(steps));
+            assert!(low < high && (8.0..=108.0).contains(&at));
+            if is_above {
+                assert!(at > high && at < 108.0 && low == 8.0, "{low} {high} {at}");
+            } else {
+                assert!(at < low && at > 8.0 && high == 108.0, "{low} {high} {at}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_widest_range_fits() {
+        let scale = Scale::new((i32::MIN, i32::MAX), Some(0), bar());
+        assert!((scale.x(0) - 58.0).abs() < 0.01);
+        assert_eq!((scale.x(i32::MIN), scale.x(i32::MAX)), (8.0, 108.0));
+    }
+}

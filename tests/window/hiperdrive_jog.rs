@@ -1,0 +1,130 @@
+//! The jog panel: what is seen without scrolling, what its speed buttons set, and what the travel bar says.
+
+use egui::Rect;
+use egui::accesskit::Role;
+use egui_kittest::Node;
+use egui_kittest::kittest::{AccessKitNode, NodeT, Queryable};
+use encoder_studio::app::{Action, DeviceCommand};
+use encoder_studio::devices::hiperdrive::procedures::dead_man::Effort;
+use encoder_studio::devices::hiperdrive::protocol::Percent;
+use encoder_studio::devices::hiperdrive::state::{HiperdriveAction as Hiperdrive, Motor};
+
+use crate::hiperdrive::{ONE, command, drive, unit};
+use crate::hiperdrive_motion::in_control;
+use crate::screen::Screen;
+use crate::tabs::Tabs as _;
+
+/// Height of the opened lower panel, and of what stands above the page.
+const BELOW: f32 = 170.0;
+const ABOVE: f32 = 155.0;
+
+/// In control of the drives of a virtual device, in a window of this size.
+fn in_control_on_screen(link: &str, size: [f32; 2]) -> Screen {
+    let mut screen = Screen::opened_in(crate::tabs::HIPERDRIVE, link, size);
+    screen.until("it is read", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.survey.is_some() && own.session.is_ready())
+    });
+    let id = screen.studio().hiperdrive().unwrap().session.id;
+    screen.act(Action::device(id, Hiperdrive::Take));
+    screen.until("it may move", |studio| studio.hiperdrive().unwrap().may_move(ONE).is_ok());
+    screen.steps();
+    screen
+}
+
+fn travel(screen: &Screen) -> Node<'_> {
+    let label = screen.say("hd_travel.title");
+    let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::Image && node.label().as_ref() == Some(&label);
+    screen.harness.query_all_by(is_it).next().unwrap()
+}
+
+fn travel_says(screen: &Screen) -> String {
+    travel(screen).accesskit_node().value().unwrap_or_default()
+}
+
+fn preset<'s>(screen: &'s Screen, percent: &str) -> Node<'s> {
+    let label = format!("{}: {percent} %", screen.say("hd_jog.speed"));
+    screen.harness.query_all_by(move |node| node.label().as_ref() == Some(&label)).next().unwrap()
+}
+
+/// The number typed as the speed of a jog: the first of its page.
+fn typed_speed(screen: &Screen) -> Node<'_> {
+    let label = screen.say("hd_effort.speed");
+    let is_it = move |node: &AccessKitNode<'_>| node.role() == Role::TextInput && node.label().as_ref() == Some(&label);
+    let mut entries: Vec<Node<'_>> = screen.harness.query_all_by(is_it).collect();
+    entries.sort_by(|one, other| one.rect().top().total_cmp(&other.rect().top()));
+    entries.remove(0)
+}
+
+/// Pads, state and travel, as far as they reach.
+fn what_is_needed(screen: &Screen) -> Rect {
+    let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.button(id).rect());
+    let states = ["Moving", "Fault"].map(|name| screen.harness.get_by_role_and_label(Role::Button, name).rect());
+    [pads, states].into_iter().flatten().fold(travel(screen).rect(), Rect::union)
+}
+
+/// Issue 26.2: pads, state and travel are seen at 1280 × 800 beside an open trace, and at 1024 × 640 behind one scroll at most.
+#[test]
+fn pads_state_and_travel_are_seen_together() {
+    let needed = what_is_needed(&in_control_on_screen("sim:", [1280.0, 800.0]));
+    assert!(needed.top() > 48.0 && needed.bottom() <= 800.0 - BELOW, "{needed:?}");
+    let needed = what_is_needed(&in_control_on_screen("sim:", [1024.0, 640.0]));
+    let page = 640.0 - BELOW - ABOVE;
+    assert!(needed.bottom() <= ABOVE + 2.0 * page, "{needed:?}");
+}
+
+/// Issue 26.2: a preset sets the speed and begins nothing; it also replaces what was typed, even where that is no percentage.
+#[test]
+fn a_preset_sets_the_speed_and_begins_nothing() {
+    let mut screen = in_control_on_screen("sim:", [1280.0, 900.0]);
+    let speed = |screen: &Screen| screen.studio().hiperdrive().unwrap().moves.jog_effort(ONE).speed.get();
+    assert_eq!(speed(&screen), 10);
+    for percent in ["1", "50", "100", "10"] {
+        preset(&screen, percent).click();
+        screen.steps();
+        assert_eq!(speed(&screen).to_string(), percent);
+        assert_eq!(typed_speed(&screen).accesskit_node().value().unwrap_or_default(), percent);
+        assert!(!screen.studio().is_under_way() && !screen.studio().moves(), "{percent}");
+    }
+    let torque = screen.studio().hiperdrive().unwrap().moves.jog_effort(ONE).torque.get();
+    assert_eq!(torque, 25);
+    typed_speed(&screen).focus();
+    screen.steps();
+    typed_speed(&screen).type_text("x");
+    screen.steps();
+    assert!(!screen.is_enabled("hd_jog.up"), "{}", typed_speed(&screen).accesskit_node().value().unwrap_or_default());
+    preset(&screen, "10").click();
+    screen.steps();
+    assert_eq!(typed_speed(&screen).accesskit_node().value().unwrap_or_default(), "10");
+    assert!(screen.is_enabled("hd_jog.up") && speed(&screen) == 10);
+}
+
+/// Issue 26.2: 10 % after every connect, not only at the start.
+#[test]
+fn every_connection_begins_slowly() {
+    let mut desk = in_control("sim:");
+    let fast = Effort { speed: Percent::FULL, torque: Percent::FULL };
+    drive(&mut desk, Motor::JogEffort(fast));
+    assert_eq!(unit(&desk).moves.jog_effort(ONE), fast);
+    command(&mut desk, DeviceCommand::Reconnect);
+    desk.until("it is connected again", |studio| {
+        studio.hiperdrive().is_some_and(|own| own.session.is_ready() && !own.moves.is_open())
+    });
+    assert_eq!(unit(&desk).moves.jog_effort(ONE), Effort::JOG);
+}
+
+/// Issue 26.2: limits, position and target in the user's unit; outside the limits the way back in.
+#[test]
+fn the_travel_bar_names_the_way_back_in() {
+    let inside = in_control_on_screen("sim:?position=65536", [1280.0, 800.0]);
+    let said = travel_says(&inside);
+    assert!(said.contains("65536 steps") && said.contains("-33488896 steps … 33488896 steps"), "{said}");
+    assert!(!said.contains(&inside.say("hd_outside.short")), "{said}");
+    for (link, way) in
+        [("sim:?position=40000000", "hd_travel.back_down"), ("sim:?position=-40000000", "hd_travel.back_up")]
+    {
+        let screen = in_control_on_screen(link, [1280.0, 800.0]);
+        assert!(travel_says(&screen).starts_with(&screen.say(way)), "{}", travel_says(&screen));
+        let pads = ["hd_jog.down", "hd_jog.up"].map(|id| screen.is_enabled(id));
+        assert_eq!(pads, if way == "hd_travel.back_down" { [true, false] } else { [false, true] });
+    }
+}
