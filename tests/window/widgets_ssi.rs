@@ -57,3 +57,35 @@ fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
         assert!(screen.studio().ssi().unwrap().is_following(), "{id_of_entry}");
     }
 }
+
+/// A picture is drawn and its source is not shown; a text is shown as text.
+#[test]
+fn exports_are_shown_as_what_they_are() {
+    let mut screen = layout();
+    screen.click("page.export");
+    assert!(screen.shows("Frame length"), "the settings sheet");
+    for (word, told) in [("ssi_export.frame", "MT11 … MT0"), ("ssi_export.timing", "27 clocks, 67.50 µs")] {
+        screen.click(word);
+        let picture = screen.harness.get_by_role_and_label(Role::Image, "ahm36");
+        let value = picture.accesskit_node().value().unwrap_or_default();
+        assert!(value.contains(told), "{value}");
+        assert!(!screen.shows("<svg") && !screen.shows("<rect"));
+    }
+    screen.click("ssi_export.scl");
+    assert!(screen.shows("FUNCTION_BLOCK \"SSI_DECODE\""));
+}
+
+/// What the Frame page is for is seen without scrolling at 1280 × 800: the strip, the position and the bits.
+#[test]
+fn the_frame_page_fits_the_window() {
+    let screen = layout();
+    for (role, id) in [
+        (Role::Slider, "ssi_layout.title"),
+        (Role::TextInput, "ssi_trial.position"),
+        (Role::TextInput, "ssi_trial.bits_label"),
+    ] {
+        let label = screen.say(id);
+        let rect = screen.harness.get_by_role_and_label(role, &label).rect();
+        assert!(rect.bottom() < 630.0, "{label}: {rect:?}");
+    }
+}

@@ -148,4 +148,8 @@ pub(crate) enum SsiFormat {
     Svg,
     /// A timing diagram of a burst; violated limits are named on stderr.
     Timing,
+    /// Structured text for controllers of 32 bits: DWORD in place of LWORD, two of them for a frame of more than 32 clocks.
+    StDword,
+    /// A function block as a source file of TIA Portal, for S7-1200 and S7-1500.
+    Scl,
 }

@@ -67,14 +67,14 @@ impl Encoder {
             SsiAction::ForgetSearch => self.hunt = Hunt::Nothing,
             SsiAction::Take(class, member) => self.take_found(class, member),
             SsiAction::ForgetErrors => self.record.forget_tally(),
-            SsiAction::AskExport(format) => {
+            SsiAction::AskExport(format, language) => {
                 let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
                 let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
-                let export = move |path, _| SsiAction::Export(format, path);
+                let export = move |path, _| SsiAction::Export(format, language, path);
                 let file = DeviceFile::to_write(self.session.id, words, format.endings(), suggested, export);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            SsiAction::Export(format, path) => match self.designer.export(format) {
+            SsiAction::Export(format, language, path) => match self.designer.export(format, language) {
                 Ok(text) => self.write_text(path, text, services),
                 Err(why) => self.session.refuse(why, services),
             },

@@ -7,6 +7,7 @@ mod find;
 mod form;
 mod frame;
 mod live;
+mod picture;
 mod timing;
 mod trial;
 mod widgets;

@@ -4,8 +4,8 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
-    AsAWhole, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, SettingName, SettingsError,
-    Several, Taker,
+    AsAWhole, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, SettingName,
+    SettingsError, Several, Taker, WideNumbers,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
@@ -74,6 +74,14 @@ pub fn format(error: &FormatError) -> Text {
         FormatError::Layout(error) => layout_reason(error),
     };
     refused(why)
+}
+
+/// A layout for which a controller of 32 bits has no decoder.
+pub fn wide(error: WideNumbers) -> Text {
+    match error {
+        WideNumbers::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
+        WideNumbers::RoundAxis => TEXTS.text("ssi.wide_round"),
+    }
 }
 
 /// Returns why a text is not a frame.
