@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::Action;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::devices::ssi::state::{SsiAction as Ssi, Try};
+use encoder_studio::devices::ssi::state::{Field, Hunt, Input, SsiAction as Ssi, Try};
 
 use crate::screen::Screen;
 use crate::support::Outside;
@@ -73,6 +73,25 @@ fn exports_are_shown_as_what_they_are() {
     }
     screen.click("ssi_export.scl");
     assert!(screen.shows("FUNCTION_BLOCK \"SSI_DECODE\""));
+}
+
+/// Frames of a file: found, decoded with the layout, and tried by a click. Reference section 8: AHM36 in Gray.
+#[test]
+fn frames_of_a_file_are_listed_and_tried() {
+    let mut screen = layout();
+    let id = screen.studio().ssi().unwrap().session.id;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.txt");
+    std::fs::write(&path, "000110110010011111011101100\n".repeat(20)).unwrap();
+    screen.act(Action::device(id, Ssi::Enter(Field::Code, Input::Choice(1))));
+    screen.act(Action::device(id, Ssi::FindIn(path)));
+    screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    screen.click("page.find");
+    let row = "    2  0x0D93EEC    4778587         291     10843";
+    assert!(screen.shows(row));
+    screen.harness.get_by_label(row).click();
+    screen.steps();
+    assert_eq!(screen.studio().ssi().unwrap().trial.frame(), 0x0D9_3EEC);
 }
 
 /// What the Frame page is for is seen without scrolling at 1280 × 800: the strip, the position and the bits.

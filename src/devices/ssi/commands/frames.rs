@@ -4,31 +4,22 @@ use serde_json::{Map, Value as Json, json};
 
 use super::args::{SsiDecode, SsiEncode};
 use super::layout::choose;
+use super::source::named;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Failure, Result};
-use crate::devices::ssi::protocol::{
-    Flags, FrameFinding, FrameReading, FrameTextError, Layout, Location, Meaning, Role, frame_bits, parse_frame,
-};
+use crate::devices::ssi::protocol::{Flags, FrameFinding, FrameReading, Layout, Location, Meaning, Role, frame_bits};
 use crate::devices::ssi::state::explain as words;
 
 pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
     let layout = choose(output, spec)?.layout;
     // All are looked at before any is told.
-    let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
-    for frame in frames {
+    let frames: Vec<Vec<u64>> = frames.iter().map(|text| named(output, &layout, text)).collect::<Result<_>>()?;
+    for frame in frames.into_iter().flatten() {
         let told = DecodedFrame::new(&layout, frame);
         output.show(&told.json(), &told.text())?;
     }
     Ok(Done::Well)
-}
-
-/// The bits of a frame, right-justified.
-fn frame(layout: &Layout, text: &str) -> Result<u64> {
-    parse_frame(text, layout.clocks()).map_err(|error| match error {
-        FrameTextError::Form(_) => Failure::Usage(error.to_string()),
-        FrameTextError::Bits { .. } => Failure::Failed(vec![format!("{error}.")]),
-    })
 }
 
 /// A frame with what it says.

@@ -7,6 +7,7 @@
 
 mod code;
 mod descriptor;
+mod edges;
 mod explain;
 mod export;
 mod family;
@@ -24,6 +25,7 @@ pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
+pub use edges::{Bursts, Levels, NoBursts, bursts};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
     ExportText, FormatError, ModuleObstacle, NoFormat, PathStep, Picture, PictureLabel, PictureLength, PictureShape,

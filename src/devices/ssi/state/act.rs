@@ -141,7 +141,9 @@ impl Encoder {
             self.hunt = Hunt::Failed(TEXTS.text("ssi_find.nothing_read"));
             return;
         }
-        self.find(services, move || Ok(Frames { origin: Origin::Live, clocks, frames }));
+        self.find(services, move || {
+            Ok(Frames { origin: Origin::Live, clocks, frames, left_out: 0, are_numbers: false })
+        });
     }
 
     fn find_in(&mut self, path: PathBuf, services: &mut Services) {
@@ -156,10 +158,10 @@ impl Encoder {
         self.hunt = Hunt::Running(number);
         let (session, families) = (self.session.id, families(services));
         services.tasks.run("find", move || {
-            let result = frames().map(|Frames { origin, clocks, mut frames }| {
+            let result = frames().map(|Frames { origin, clocks, mut frames, left_out, .. }| {
                 frames.drain(..frames.len().saturating_sub(MOST));
                 let search = Box::new(find(&frames, clocks, &families));
-                Hunt::Found { origin, clocks, search }
+                Hunt::Found { origin, clocks, left_out, frames, search }
             });
             let hunt = Box::new(result.unwrap_or_else(Hunt::Failed));
             StudioAction::Done(StudioDone::device(session, Done::Found { number, hunt }))

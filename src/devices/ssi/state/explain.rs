@@ -19,7 +19,7 @@ use crate::devices::ssi::state::TEXTS;
 pub use check::check;
 pub use export::export;
 pub use family::{note, store};
-pub use refused::{entry, format, frame_text, layout, settings, wide};
+pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
 
 /// A job that ended early: one sentence or more, each of which may stand on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {

@@ -34,7 +34,7 @@ pub use encoder::Encoder;
 pub use export::Format;
 pub use form::{Entry, Field, Group, Input, Row, whole};
 pub use record::{Record, Seen, Streamed};
-pub use search::{Frames, Hunt, Origin, read_clocks, read_frames};
+pub use search::{Frames, Hunt, Origin, frames_of, read_clocks, read_frames};
 pub use trial::{Decoded, Trial};
 
 use std::path::PathBuf;

@@ -6,6 +6,7 @@ mod export;
 mod find;
 mod form;
 mod frame;
+mod frames;
 mod live;
 mod picture;
 mod timing;

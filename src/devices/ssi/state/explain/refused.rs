@@ -4,7 +4,7 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
-    AsAWhole, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, SettingName,
+    AsAWhole, CodeError, FormatError, FrameTextError, LayoutError, NoBursts, NoFormat, RangeError, SettingName,
     SettingsError, Several, Taker, WideNumbers,
 };
 use crate::devices::ssi::state::TEXTS;
@@ -91,6 +91,16 @@ pub fn frame_text(error: &FrameTextError) -> Text {
         FrameTextError::Bits { text, bits, clocks, .. } => {
             TEXTS.text("ssi_trial.bits").with("text", text).with("bits", bits).with("clocks", clocks)
         }
+    }
+}
+
+/// Returns why a recording of clock and data has no frames.
+pub fn bursts(error: NoBursts) -> Text {
+    match error {
+        NoBursts::NoClock => TEXTS.text("ssi_capture.no_clock"),
+        NoBursts::NoPause => TEXTS.text("ssi_capture.no_pause"),
+        NoBursts::Incomplete => TEXTS.text("ssi_capture.incomplete"),
+        NoBursts::Long { clocks } => TEXTS.text("ssi_capture.long").with("clocks", clocks),
     }
 }
 
