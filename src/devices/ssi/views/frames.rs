@@ -27,19 +27,24 @@ pub(super) fn card_ui(
             paragraph(ui, theme.caption(theme.words(&text)));
             return;
         }
+        paragraph(ui, theme.caption(say(theme, "ssi_frames.try")));
         let digits = usize::from(clocks).div_ceil(4);
         let names = ["ssi_frames.number", "ssi_frames.frame", "ssi_trial.position", "live.turns", "live.step"];
         let [number, frame, position, turns, steps] = names.map(|id| say(theme, id));
         let heading = row(&[&number, &frame, &position, &turns, &steps], digits);
         ui.label(theme.mono(heading).color(theme.palette.muted));
         let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
-        let area = ScrollArea::vertical().id_salt("frames").max_height(ROWS * height).auto_shrink([false, true]);
-        area.show_rows(ui, height, frames.len(), |ui, rows| {
+        // Rows of a table: no room around their buttons.
+        let spacing = ui.spacing_mut();
+        (spacing.item_spacing.y, spacing.interact_size.y, spacing.button_padding.y) = (0.0, height, 0.0);
+        let seen = ROWS * height;
+        let area = ScrollArea::vertical().id_salt("frames").max_height(seen).min_scrolled_height(seen);
+        area.auto_shrink([false, true]).show_rows(ui, height, frames.len(), |ui, rows| {
             for (index, frame) in frames.iter().enumerate().skip(rows.start).take(rows.len()) {
                 let decoded = Decoded::of(layout, *frame);
                 let (words, colour) = told(theme, index + 1, &decoded, digits);
                 let text = RichText::new(words).monospace().color(colour);
-                if ui.add(egui::Button::new(text).frame(false)).on_hover_text(say(theme, "ssi_frames.try")).clicked() {
+                if ui.add(egui::Button::new(text).frame(false)).clicked() {
                     let bits = format!("0x{frame:X}");
                     actions.push(Action::device(encoder.session.id, Ssi::Try(Try::Bits(bits))));
                 }
