@@ -82,6 +82,11 @@ fn layouts_go_to_other_programs() {
     assert_eq!(timing(&[]).err, "");
     assert!(timing(&["--cable", "150"]).err.contains("at most 200 kHz"));
     assert!(timing(&["--pause", "20"]).err.contains("longer than 25 µs"));
+    // Without a family the general times of SSI apply, which is said: 13 clocks of 500 kHz take 26 µs.
+    let any = ["ssi", "export", "--layout", "frame,st=13", "--format", "timing", "--clock", "500000", "--pause", "20"];
+    let any = bench.run(&any);
+    assert!(any.out.contains("13 clocks, 26.00 µs") && any.out.contains("tm up to 25 µs"), "{}", any.out);
+    assert!(any.err.contains("General times of SSI") && any.err.contains("longer than 25 µs"), "{}", any.err);
     let file = bench.file("decoder.c");
     bench.run(&["ssi", "export", "--layout", "atm60", "--format", "c", "-o", &file]);
     assert!(bench.read("decoder.c").starts_with("/* SSI decoder: atm60\n"));

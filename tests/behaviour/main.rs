@@ -46,5 +46,6 @@ mod source;
 mod ssi_export;
 mod ssi_live;
 mod ssi_profiles;
+mod ssi_recordings;
 mod ssi_simulate;
 mod support;

@@ -4,9 +4,11 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use encoder_studio::devices::ssi::protocol::{
-    Code, Coded, Descriptor, ErrorBit, Families, FrameReading, Layout, Meaning, Parity, Range, Repeat, Settings, c99,
-    structured_text,
+    Code, Coded, Descriptor, ErrorBit, Families, FrameReading, Layout, Meaning, Parity, Range, Repeat, Settings,
+    WideNumbers, c99, scl, structured_text, structured_text_32,
 };
+
+use crate::support::python;
 
 const MAIN: &str = r#"
 #include <inttypes.h>
@@ -139,4 +141,106 @@ fn the_exported_structured_text_is_the_reviewed_one() {
         std::fs::write(path, &text).unwrap();
     }
     assert_eq!(text, std::fs::read_to_string(path).unwrap());
+}
+
+/// Reference section 8: frames, and what they stand for as position, turns, steps and whether it may be used. The positions
+/// are the turns and steps of the table in one number.
+const REFERENCE: [(&str, u64, &str); 12] = [
+    ("ahs36", 0x54B6, "10843 0 10843 1"),
+    ("ahs36,code=gray", 0x7EEC, "10843 0 10843 1"),
+    ("ahs36,st=12,err=following", 0x55E4, "2748 0 2748 0"),
+    ("ahm36,code=gray", 0x0D9_3EEC, "4778587 291 10843 1"),
+    ("afs60,st=13", 0x91A2, "4660 0 4660 0"),
+    // More than 32 clocks: 5A5h turns, 2ABCDh steps, twice; then a fault.
+    ("afm60", 0xB_4B55_E68, "378973133 1445 175053 1"),
+    ("afm60s", 0xB_4B55_E68, "378973133 1445 175053 1"),
+    ("afm60s", 0x1_FFFF_FFFF, "1073741823 4095 262143 0"),
+    ("atm60,mt=8,st=8,code=gray", 0x1EF440, "42300 165 60 1"),
+    // The shift loses the lowest bit, which is 0 here.
+    ("atm60,shift=1", 0x05A_591A, "11842100 1445 4660 1"),
+    ("atm60,steps=3600,code=gray-excess", 0xE5E, "1234 0 1234 1"),
+    ("kh53", 0xFF_FFFE, "16777214 0 16777214 0"),
+];
+
+fn decoders_of_32_bits(layout: &Layout) -> [(&'static str, Result<String, WideNumbers>); 2] {
+    [("st", structured_text_32(layout, "title")), ("scl", scl(layout, "title"))]
+}
+
+/// What an exported decoder of 32 bits says of frames, run in Python; `None` without Python.
+fn run_32(text: &str, frames: &[u64]) -> Option<Vec<String>> {
+    let folder = tempfile::tempdir().unwrap();
+    let source = folder.path().join("decoder.txt");
+    std::fs::write(&source, text).unwrap();
+    let mut player = python("structured_text.py")?;
+    let mut child = player.arg(&source).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let lines: String = frames.iter().map(|frame| format!("{frame:x}\n")).collect();
+    // It answers while it reads: a pipe holds less than all of it.
+    let writer = std::thread::spawn(move || input.write_all(lines.as_bytes()));
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap().unwrap();
+    assert!(output.status.success(), "{text}");
+    Some(String::from_utf8(output.stdout).unwrap().lines().map(str::to_owned).collect())
+}
+
+#[test]
+fn decoders_of_32_bits_read_the_frames_of_the_reference() {
+    for (spec, frame, meant) in REFERENCE {
+        for (name, text) in decoders_of_32_bits(&family(spec)) {
+            let Some(lines) = run_32(&text.unwrap(), &[frame]) else { return };
+            assert_eq!(lines, [meant], "{spec} as {name}, frame {frame:X}");
+        }
+    }
+}
+
+#[test]
+fn decoders_of_32_bits_decode_as_the_program_does() {
+    for (title, layout) in layouts() {
+        for (name, text) in decoders_of_32_bits(&layout) {
+            let text = text.unwrap_or_else(|error| panic!("{title}: {error}"));
+            let mut frames = frames(&layout);
+            let all = u64::MAX >> (64 - layout.clocks());
+            frames.iter_mut().for_each(|frame| *frame &= all);
+            let Some(lines) = run_32(&text, &frames) else { return };
+            assert_eq!(lines.len(), frames.len(), "{title}");
+            for (frame, line) in frames.iter().zip(lines) {
+                assert_eq!(line, told(&layout, layout.decode(*frame)), "{title} as {name}, frame {frame:X}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_32_bits_cannot_hold_is_refused() {
+    let wide = Layout::new(Descriptor::plain(12, 22)).unwrap();
+    let axis = family("atm60,steps=8000000,revolutions=4095/4");
+    for (layout, error) in [(wide, WideNumbers::Position { bits: 34 }), (axis, WideNumbers::RoundAxis)] {
+        for (_, text) in decoders_of_32_bits(&layout) {
+            assert_eq!(text, Err(error));
+        }
+    }
+}
+
+/// What TIA Portal asks of an external source: the name in quotes, a version, local variables with `#`, parameters by name.
+#[test]
+fn scl_has_the_form_of_an_external_source() {
+    let text = scl(&family("afm60,code=gray"), "Zuführung\n(* 2 *)").unwrap();
+    assert!(
+        text.starts_with(
+            "FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\nVAR_INPUT\n"
+        )
+    );
+    assert!(text.ends_with("END_FUNCTION_BLOCK\n") && text.is_ascii());
+    let (declared, body) = text.split_once("BEGIN\n").unwrap();
+    assert_eq!(declared.matches("END_VAR").count(), 3);
+    assert!(body.contains("    // SSI decoder: Zuf_hrung (* 2 *)\n"), "{body}");
+    assert!(body.contains("SHL(IN := #word_high, N := 29)"), "{body}");
+    let statements = body.lines().filter(|line| !line.trim_start().starts_with("//"));
+    for line in statements {
+        let bare = |name: &str| line.match_indices(name).any(|(at, _)| !line[..at].ends_with(['#', '_']));
+        assert!(!["position", "turns", "steps", "flags", "word_", "frame_"].into_iter().any(bare), "{line}");
+    }
+    for type_ in ["LWORD", "ULINT", "LWord", "ULInt"] {
+        assert!(!text.contains(type_), "an S7-1200 has no {type_}");
+    }
 }

@@ -4,7 +4,7 @@ use crate::tabs::Tabs as _;
 use std::time::Duration;
 
 use encoder_studio::app::session::{Phase, Source};
-use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Severity};
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Language, Severity};
 use encoder_studio::devices::ssi::procedures::check::Verdict;
 use encoder_studio::devices::ssi::protocol::{Code, Location, Range, Uncertainty};
 use encoder_studio::devices::ssi::state::strip::Handle;
@@ -175,22 +175,55 @@ fn a_layout_is_saved_opened_and_kept_over_a_crash() {
     assert_eq!((own.range, own.code), (Range::Bits { multiturn: 12, singleturn: 12 }, Code::Gray));
 }
 
+/// The sheet and the table are in the language of the window; C and structured text are programs. Terms of TM PosInput as in
+/// its German manual.
+#[test]
+fn exports_are_in_the_language_of_the_window() {
+    let mut desk = layout();
+    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(1)));
+    let german = |format| encoder(&desk).designer.export(format, Language::German).unwrap();
+    let sheet = german(Format::Sheet);
+    for line in [
+        "SSI-Einstellungen: ahm36,code=gray",
+        "Telegrammlänge                  27 Bits",
+        "Monoflopzeit (tm)               15 bis 25 µs; die Pause muss länger sein",
+        "  Codeart                         Gray",
+        "  Bitnummer LSB der Position      1",
+        "  :06 SSI coding                  1 (Gray)",
+    ] {
+        assert!(sheet.lines().any(|own| own == line), "{line}\n{sheet}");
+    }
+    for english in ["length:", "Frame", "the ", "lowest"] {
+        assert!(!sheet.contains(english), "{english}\n{sheet}");
+    }
+    assert!(german(Format::Table).starts_with("Takt,Telegrammbit,Bedeutung\n1,26,MT11\n"));
+    assert!(german(Format::Timing).contains("27 Takte, 67,50 µs") && german(Format::Timing).contains(">Daten<"));
+    assert_eq!(german(Format::C), encoder(&desk).designer.export(Format::C, Language::English).unwrap());
+}
+
 #[test]
 fn every_export_is_written() {
     let mut desk = layout();
     for format in Format::ALL {
-        act(&mut desk, Ssi::AskExport(format));
+        act(&mut desk, Ssi::AskExport(format, Language::German));
         let question = desk.studio.take_file_question().unwrap();
         assert!(matches!(question, FileQuestion::OfDevice(_)));
         let path = desk.outside.path(&format!("export.{}", question.endings()[0]));
         let _ = std::fs::remove_file(&path);
         desk.act(Action::Chosen(question, path.clone()));
         desk.until("it is written", |_| path.exists());
-        assert_eq!(std::fs::read_to_string(path).unwrap(), encoder(&desk).designer.export(format).unwrap());
+        assert_eq!(
+            std::fs::read_to_string(path).unwrap(),
+            encoder(&desk).designer.export(format, Language::German).unwrap()
+        );
     }
-    // Parts that a format cannot represent are reported.
+    // The timing of a frame needs no family: 27 clocks at 400 kHz take 67.5 µs.
     edit(&mut desk, Edit::Free);
-    assert_eq!(encoder(&desk).designer.export(Format::Timing).unwrap_err().id(), "ssi_timing.no_family");
+    let picture = encoder(&desk).designer.export(Format::Timing, Language::English).unwrap();
+    assert!(picture.contains("67.50 µs"), "{picture}");
+    // Parts that a format cannot represent are reported.
+    act(&mut desk, Ssi::Enter(Field::Code, Input::Choice(2)));
+    assert_eq!(encoder(&desk).designer.export(Format::LinuxCnc, Language::English).unwrap_err().id(), "ssi.lc_cannot");
 }
 
 #[test]

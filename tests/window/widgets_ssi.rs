@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::Action;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::devices::ssi::state::{SsiAction as Ssi, Try};
+use encoder_studio::devices::ssi::state::{Field, Hunt, Input, SsiAction as Ssi, Try};
 
 use crate::screen::Screen;
 use crate::support::Outside;
@@ -55,5 +55,56 @@ fn words_that_come_while_one_types_are_not_taken_for_what_was_typed() {
         assert!(node.accesskit_node().is_focused());
         screen.key(Key::Tab);
         assert!(screen.studio().ssi().unwrap().is_following(), "{id_of_entry}");
+    }
+}
+
+/// A picture is drawn and its source is not shown; a text is shown as text.
+#[test]
+fn exports_are_shown_as_what_they_are() {
+    let mut screen = layout();
+    screen.click("page.export");
+    assert!(screen.shows("Frame length"), "the settings sheet");
+    for (word, told) in [("ssi_export.frame", "MT11 … MT0"), ("ssi_export.timing", "27 clocks, 67.50 µs")] {
+        screen.click(word);
+        let picture = screen.harness.get_by_role_and_label(Role::Image, "ahm36");
+        let value = picture.accesskit_node().value().unwrap_or_default();
+        assert!(value.contains(told), "{value}");
+        assert!(!screen.shows("<svg") && !screen.shows("<rect"));
+    }
+    screen.click("ssi_export.scl");
+    assert!(screen.shows("FUNCTION_BLOCK \"SSI_DECODE\""));
+}
+
+/// Frames of a file: found, decoded with the layout, and tried by a click. Reference section 8: AHM36 in Gray.
+#[test]
+fn frames_of_a_file_are_listed_and_tried() {
+    let mut screen = layout();
+    let id = screen.studio().ssi().unwrap().session.id;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.txt");
+    std::fs::write(&path, "000110110010011111011101100\n".repeat(20)).unwrap();
+    screen.act(Action::device(id, Ssi::Enter(Field::Code, Input::Choice(1))));
+    screen.act(Action::device(id, Ssi::FindIn(path)));
+    screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    screen.click("page.find");
+    let row = "    2  0x0D93EEC    4778587         291     10843";
+    assert!(screen.shows(row));
+    screen.harness.get_by_label(row).click();
+    screen.steps();
+    assert_eq!(screen.studio().ssi().unwrap().trial.frame(), 0x0D9_3EEC);
+}
+
+/// What the Frame page is for is seen without scrolling at 1280 × 800: the strip, the position and the bits.
+#[test]
+fn the_frame_page_fits_the_window() {
+    let screen = layout();
+    for (role, id) in [
+        (Role::Slider, "ssi_layout.title"),
+        (Role::TextInput, "ssi_trial.position"),
+        (Role::TextInput, "ssi_trial.bits_label"),
+    ] {
+        let label = screen.say(id);
+        let rect = screen.harness.get_by_role_and_label(role, &label).rect();
+        assert!(rect.bottom() < 630.0, "{label}: {rect:?}");
     }
 }

@@ -48,7 +48,8 @@ Beside the frame: name, family (whose times count), direction: \"ccw\", preset: 
 pub(crate) struct SsiDecode {
     #[command(flatten)]
     pub(crate) layout: SsiLayout,
-    /// Frame as bits in clock order (0b1010… or 1010…), or as 0x…, right-justified; repeatable.
+    /// Frame as bits in clock order (0b1010… or 1010…), or as 0x…, right-justified; repeatable. @FILE: the frames of a file,
+    /// as `ssi find` reads it. -: the same from standard input.
     #[arg(required = true, value_name = "FRAME")]
     pub(crate) frames: Vec<String>,
 }
@@ -56,7 +57,8 @@ pub(crate) struct SsiDecode {
 #[derive(Args)]
 pub(crate) struct SsiFind {
     /// File with one frame per line, in the order of reading: bits in clock order, or 0x…, right-justified. Further columns
-    /// are ignored.
+    /// are ignored. Or a table of `position ssi --csv`, or clock and data of a logic analyser: the CSV of Saleae Logic or
+    /// sigrok. -: standard input.
     #[arg(value_name = "FRAMES.txt")]
     pub(crate) file: PathBuf,
     /// Number of bits of a frame given in hex.
@@ -148,4 +150,8 @@ pub(crate) enum SsiFormat {
     Svg,
     /// A timing diagram of a burst; violated limits are named on stderr.
     Timing,
+    /// Structured text for controllers of 32 bits: DWORD in place of LWORD, two of them for a frame of more than 32 clocks.
+    StDword,
+    /// A function block as a source file of TIA Portal, for S7-1200 and S7-1500.
+    Scl,
 }

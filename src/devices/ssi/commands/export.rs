@@ -10,8 +10,10 @@ use super::profiles::{document, write};
 use crate::cli::output::Output;
 use crate::cli::{Done, Failure, Result};
 use crate::devices::ssi::protocol::{
-    Reads, bit_table, c99, frame_svg, settings_sheet, structured_text, timing_svg, to_linuxcnc,
+    Reads, Times, WideNumbers, bit_table, c99, english, frame_picture, scl, settings_sheet, structured_text,
+    structured_text_32, timing_picture, to_linuxcnc,
 };
+use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
 pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
@@ -25,14 +27,14 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
     let text = match format {
         SsiFormat::C => c99(layout, title),
         SsiFormat::St => structured_text(layout, title),
+        SsiFormat::StDword => structured_text_32(layout, title).map_err(wide)?,
+        SsiFormat::Scl => scl(layout, title).map_err(wide)?,
         SsiFormat::Linuxcnc => to_linuxcnc(layout).map_err(|error| Failure::Failed(vec![format!("{error}.")]))? + "\n",
-        SsiFormat::Csv => bit_table(layout),
-        SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title),
-        SsiFormat::Svg => frame_svg(layout, None, title),
+        SsiFormat::Csv => bit_table(layout, &english),
+        SsiFormat::Sheet => settings_sheet(layout, times.as_ref(), title, &english),
+        SsiFormat::Svg => frame_picture(layout, None, title, &english).svg(),
         SsiFormat::Profile => document(chosen.profile).emit(),
         SsiFormat::Timing => {
-            let unknown = || Failure::Usage("the times of this layout are not known; specify a family".to_owned());
-            let times = times.as_ref().ok_or_else(unknown)?;
             // Defaults come from the profile.
             let own = chosen.profile.reads();
             let reads = Reads {
@@ -42,10 +44,17 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
                 synchronous: *synchronous || own.synchronous,
                 ..own
             };
-            for warning in times.reckon(&reads).warnings {
+            let timing = match times {
+                Some(times) => times.reckon(&reads),
+                None => {
+                    output.remark(&TEXTS.text("ssi_timing.general").terminal());
+                    Times::of_any_encoder(&reads)
+                }
+            };
+            for warning in timing.warnings {
                 output.remark(&words::timing(&warning).terminal());
             }
-            timing_svg(layout, times, &reads, title)
+            timing_picture(layout, times.as_ref().unwrap_or(&Times::GENERAL), &reads, title, &english).svg()
         }
     };
     match file {
@@ -56,4 +65,8 @@ pub(super) fn export(output: &Output, arguments: &SsiExport) -> Result {
         }
     }
     Ok(Done::Well)
+}
+
+fn wide(error: WideNumbers) -> Failure {
+    Failure::Failed(vec![words::wide(error).terminal()])
 }

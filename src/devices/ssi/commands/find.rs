@@ -4,27 +4,27 @@ use serde_json::{Value as Json, json};
 
 use super::args::SsiFind;
 use super::layout::families;
+use super::source;
 use crate::cli::output::{Lines, Output, count};
 use crate::cli::runner::failed;
 use crate::cli::{Done, Result};
 use crate::devices::ssi::protocol::{self, Class, Families, Search};
+use crate::devices::ssi::state::Frames;
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::{Frames, read_frames};
 
 /// Bits of a hexadecimal frame if their number is not given: the maximum.
 const MOST_CLOCKS: u8 = 64;
 
 pub(super) fn find(output: &Output, SsiFind { file, clocks }: &SsiFind) -> Result {
     let families = families(output)?;
-    let Frames { clocks: read, frames, .. } =
-        read_frames(file, clocks.unwrap_or(MOST_CLOCKS)).map_err(|why| failed(&why))?;
+    let Frames { clocks: read, frames, are_numbers, .. } = source::read(output, file, clocks.unwrap_or(MOST_CLOCKS))?;
     let clocks = match clocks {
         // Hex digits do not tell how many bits come before the highest 1.
-        None if read == MOST_CLOCKS => {
+        None if are_numbers => {
             let any = frames.iter().fold(1, |any, frame| any | frame);
             let clocks = (u64::BITS - any.leading_zeros()) as u8;
             output.remark(&format!(
-                "The number of clocks cannot be determined from hexadecimal frames; {clocks} was assumed. Use \
+                "Frames in hex and decimal do number of clocks cannot be determined from hexadecimal frames; {clocks} was assumed. Use \
                  --clocks N to set it."
             ));
             clocks

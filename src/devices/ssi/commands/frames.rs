@@ -4,31 +4,22 @@ use serde_json::{Map, Value as Json, json};
 
 use super::args::{SsiDecode, SsiEncode};
 use super::layout::choose;
+use super::source::named;
 use crate::cli::number::{out_of_range, parse_number};
 use crate::cli::output::{Lines, Output};
 use crate::cli::{Done, Failure, Result};
-use crate::devices::ssi::protocol::{
-    Flags, FrameFinding, FrameReading, FrameTextError, Layout, Location, Meaning, Role, frame_bits, parse_frame,
-};
+use crate::devices::ssi::protocol::{Flags, FrameFinding, FrameReading, Layout, Location, Meaning, Role, frame_bits};
 use crate::devices::ssi::state::explain as words;
 
 pub(super) fn decode(output: &Output, SsiDecode { layout: spec, frames }: &SsiDecode) -> Result {
     let layout = choose(output, spec)?.layout;
     // All are checked before any is printed.
-    let frames: Vec<u64> = frames.iter().map(|text| frame(&layout, text)).collect::<Result<_>>()?;
-    for frame in frames {
-        let frame_decoded = DecodedFrame::new(&layout, frame);
-        output.show(&frame_decoded.json(), &frame_decoded.text())?;
+    let frames: Vec<Vec<u64>> = frames.iter().map(|text| named(output, &layout, text)).collect::<Result<_>>()?;
+    for frame in frames.into_iter().flatten() {
+        let told = DecodedFrame::new(&layout, frame);
+        output.show(&told.json(), &told.text())?;
     }
     Ok(Done::Well)
-}
-
-/// Returns the bits of a frame, right-justified.
-fn frame(layout: &Layout, text: &str) -> Result<u64> {
-    parse_frame(text, layout.clocks()).map_err(|error| match error {
-        FrameTextError::Form(_) => Failure::Usage(error.to_string()),
-        FrameTextError::Bits { .. } => Failure::Failed(vec![format!("{error}.")]),
-    })
 }
 
 /// Frame with its meaning.
@@ -98,8 +89,8 @@ impl<'a> DecodedFrame<'a> {
             }
         }
         let findings = self.layout.findings(self.reading);
-        let finding_lines = findings.iter().map(|finding| format!("{}\n", words::finding(finding).terminal()));
-        lines.text() + &finding_lines.collect::<String>()
+        let told = findings.iter().map(|finding| format!("{}\n", words::finding(finding).terminal()));
+        lines.text() + &told.collect::<String>()
     }
 }
 
@@ -146,7 +137,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
     for name in &arguments.errors {
         let Some(index) = errors.iter().position(|bit| bit.name.eq_ignore_ascii_case(name)) else {
             let known: Vec<&str> = errors.iter().map(|bit| bit.name.as_str()).collect();
-            let known = if known.is_empty() { "this layout has no error bits".to_owned() } else { known.join(", ") };
+            let known = if known.is_empty() { "this layout has none".to_owned() } else { known.join(", ") };
             return Err(Failure::Usage(format!("there is no error bit {name:?}: {known}")));
         };
         flags = flags.with(Flags::error(index));
@@ -154,7 +145,7 @@ pub(super) fn encode(output: &Output, arguments: &SsiEncode) -> Result {
     let last = layout.coding().last();
     let frame = layout.encode(position, flags).ok_or_else(|| beyond("position", &position.to_string(), last))?;
     if layout.loses_lowest_bit() && position % 2 == 1 {
-        output.remark("Shifting to the right drops the lowest bit: the frame is that of the preceding position.");
+        output.remark("Shifting to the right pushes the lowest bit out: the frame is that of the position before.");
     }
     let clocks = usize::from(layout.clocks());
     let bits = format!("{frame:0clocks$b}");
@@ -174,15 +165,14 @@ fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
     let of_shaft = turns.is_some() || steps.is_some();
     match (named, range.place(named.unwrap_or(last))) {
         (_, Location::Length { .. }) if of_shaft => {
-            Err(Failure::Usage("a length has no turns and steps; use --position".to_owned()))
+            Err(Failure::Usage("a length has no turns and steps; give --position".to_owned()))
         }
         (Some(position), Location::Shaft { turns: own_turns, steps: own_steps, .. }) => {
             for (what, text, own) in [("turns", turns, own_turns), ("steps", steps, own_steps)] {
                 let Some(text) = text else { continue };
                 if number(what, text, u64::MAX)? != own {
                     return Err(Failure::Usage(format!(
-                        "--position {position} is turn {own_turns}, step {own_steps}, which contradicts --{what} \
-                         {text}: use only one of them"
+                        "--position {position} is turn {own_turns}, step {own_steps}, and not --{what} {text}: give one of them"
                     )));
                 }
             }
@@ -196,7 +186,7 @@ fn position(layout: &Layout, arguments: &SsiEncode) -> Result<u64> {
             let begins = range.position(turns, 0).unwrap_or(0);
             let next = range.position(turns + 1, 0).map_or(last, |next| next - 1);
             let steps = steps.as_deref();
-            let text = steps.ok_or_else(|| Failure::Usage("use --position or --steps".to_owned()))?;
+            let text = steps.ok_or_else(|| Failure::Usage("give --position, or --steps".to_owned()))?;
             Ok(begins + number("steps", text, next - begins)?)
         }
     }

@@ -85,8 +85,10 @@ fn in_file(output: &Output, spec: &str, families: &Families) -> Result<Chosen> {
         (None, None) => {}
     }
     let times = family.map(|family| family.times);
-    let name = if profile.name.is_empty() { spec } else { &profile.name };
-    Ok(Chosen { title: name.to_owned(), profile, layout, times })
+    // An export goes to other people: not the folders of this computer.
+    let file = path.file_name().map_or_else(|| spec.to_owned(), |name| name.to_string_lossy().into_owned());
+    let title = if profile.name.is_empty() { file } else { profile.name.clone() };
+    Ok(Chosen { title, profile, layout, times })
 }
 
 /// Returns how a frame written by hand differs from its family.

@@ -8,6 +8,7 @@ mod layout;
 mod live;
 mod profiles;
 mod run;
+mod source;
 
 use clap::{Arg, ArgMatches, Subcommand};
 

@@ -2,7 +2,9 @@
 //! module, the format string of LinuxCNC.
 
 mod c;
+mod halves;
 mod linuxcnc;
+mod picture;
 mod procedure;
 mod sheet;
 mod structured_text;
@@ -10,13 +12,17 @@ mod svg;
 mod table;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use c::c99;
+pub use halves::{WideNumbers, scl, structured_text_32};
 pub use linuxcnc::{FormatError, NoFormat, from_linuxcnc, to_linuxcnc};
+pub use picture::{PathStep, Picture, PictureLabel, PictureLength, PictureShape};
 pub use sheet::settings_sheet;
 pub use structured_text::structured_text;
-pub use svg::{frame_svg, timing_svg};
+pub use svg::{frame_picture, timing_picture};
 pub use table::bit_table;
+pub use text::{ExportText, ModuleObstacle, Say, SettingMeaning, english};
 
 /// Returns a name for programs: letters, digits and underscores, no digit first.
 fn identifier(name: &str) -> String {

@@ -7,6 +7,7 @@
 
 mod code;
 mod descriptor;
+mod edges;
 mod explain;
 mod export;
 mod family;
@@ -24,10 +25,12 @@ pub const KIND: &str = "ssi";
 
 pub use code::{Code, CodeError, Coding, gray, ungray};
 pub use descriptor::{Coded, Descriptor, ErrorBit, Meaning, Parity, Pattern, Repeat, Word};
+pub use edges::{Bursts, Levels, NoBursts, bursts};
 pub use explain::{Cell, FrameFinding, Role};
 pub use export::{
-    FormatError, NoFormat, bit_table, c99, frame_svg, from_linuxcnc, settings_sheet, structured_text, timing_svg,
-    to_linuxcnc,
+    ExportText, FormatError, ModuleObstacle, NoFormat, PathStep, Picture, PictureLabel, PictureLength, PictureShape,
+    Say, SettingMeaning, WideNumbers, bit_table, c99, english, frame_picture, from_linuxcnc, scl, settings_sheet,
+    structured_text, structured_text_32, timing_picture, to_linuxcnc,
 };
 pub use family::{
     Advice, Align, ErrorPlace, Families, Family, FamilyError, FamilyProblem, Frame, Resolved, SettingName, Settings,

@@ -162,12 +162,28 @@ pub enum Warning {
     },
     /// The family has no synchronous mode.
     NoSynchronous,
+    /// Whether the encoder has a synchronous mode is not known: it belongs to no family.
+    SynchronousUnknown,
 }
 
 /// The manual's table of cables (2.7): length below this number of metres, highest clock in hertz.
 const CABLES: [(f64, u32); 4] = [(50.0, 400_000), (100.0, 300_000), (200.0, 200_000), (400.0, 100_000)];
 
 impl Times {
+    /// What the manual says of SSI as such (SICK SSI description 2.2; reference section 1), for an encoder of no family. How
+    /// often it makes positions is not known.
+    pub const GENERAL: Self =
+        Times { monoflop: (15.0, 25.0), most_hz: 2_000_000, asynchronous: None, synchronous: None, any_steps: None };
+
+    /// Calculates the times of reading an encoder of no family.
+    pub fn of_any_encoder(reads: &Reads) -> Timing {
+        let mut timing = Self::GENERAL.reckon(reads);
+        for warning in timing.warnings.iter_mut().filter(|own| **own == Warning::NoSynchronous) {
+            *warning = Warning::SynchronousUnknown;
+        }
+        timing
+    }
+
     /// Calculates the times of reading like this.
     pub fn reckon(&self, reads: &Reads) -> Timing {
         let mut warnings = Vec::new();

@@ -67,14 +67,14 @@ impl Encoder {
             SsiAction::ForgetSearch => self.hunt = SearchState::Nothing,
             SsiAction::Take(class, member) => self.take_found(class, member),
             SsiAction::ForgetErrors => self.record.forget_tally(),
-            SsiAction::AskExport(format) => {
+            SsiAction::AskExport(format, language) => {
                 let suggested = self.suggested(format.endings().first().copied().unwrap_or("txt"));
                 let words = (TEXTS.text("file.export_title"), TEXTS.text(format.word()));
-                let export = move |path, _| SsiAction::Export(format, path);
+                let export = move |path, _| SsiAction::Export(format, language, path);
                 let file = DeviceFile::to_write(self.session.id, words, format.endings(), suggested, export);
                 services.file_question = Some(FileQuestion::OfDevice(file));
             }
-            SsiAction::Export(format, path) => match self.designer.export(format) {
+            SsiAction::Export(format, language, path) => match self.designer.export(format, language) {
                 Ok(text) => self.write_text(path, text, services),
                 Err(why) => self.session.refuse(why, services),
             },
@@ -141,7 +141,9 @@ impl Encoder {
             self.hunt = SearchState::Failed(TEXTS.text("ssi_find.nothing_read"));
             return;
         }
-        self.find(services, move || Ok(Frames { origin: Origin::Live, clocks, frames }));
+        self.find(services, move || {
+            Ok(Frames { origin: Origin::Live, clocks, frames, left_out: 0, are_numbers: false })
+        });
     }
 
     fn find_in(&mut self, path: PathBuf, services: &mut Services) {
@@ -156,10 +158,10 @@ impl Encoder {
         self.hunt = SearchState::Running(number);
         let (session, families) = (self.session.id, families(services));
         services.tasks.run("find", move || {
-            let result = frames().map(|Frames { origin, clocks, mut frames }| {
+            let result = frames().map(|Frames { origin, clocks, mut frames, left_out, .. }| {
                 frames.drain(..frames.len().saturating_sub(MOST));
                 let search = Box::new(find(&frames, clocks, &families));
-                SearchState::Found { origin, clocks, search }
+                SearchState::Found { origin, clocks, left_out, frames, search }
             });
             let hunt = Box::new(result.unwrap_or_else(SearchState::Failed));
             StudioAction::Done(StudioDone::device(session, Done::Found { number, hunt }))

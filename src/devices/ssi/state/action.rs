@@ -6,7 +6,7 @@ use super::design::Edit;
 use super::export::Format;
 use super::form::{Field, Input};
 use super::strip::Handle;
-use crate::app::DeviceAction;
+use crate::app::{DeviceAction, Language};
 
 /// Something in the SSI tab.
 pub enum SsiAction {
@@ -38,10 +38,10 @@ pub enum SsiAction {
     Take(usize, usize),
     /// Forget the error bits reported so far.
     ForgetErrors,
-    /// Ask where to write the layout for other programs.
-    AskExport(Format),
-    /// Write the layout for other programs.
-    Export(Format, PathBuf),
+    /// Ask where to write the layout for other programs, in this language.
+    AskExport(Format, Language),
+    /// Write the layout for other programs, in this language.
+    Export(Format, Language, PathBuf),
     /// Ask where to write the stored words.
     AskSaveFrames,
     /// Write the words that are kept.

@@ -13,7 +13,7 @@ use crate::app::{PendingEdits, Text};
 use crate::devices::ssi::jobs::Ssi;
 use crate::devices::ssi::procedures::{Asking, Identity};
 use crate::devices::ssi::profile::SsiProfile;
-use crate::devices::ssi::protocol::{Families, Layout, Reads};
+use crate::devices::ssi::protocol::{Families, Layout, Reads, Times, Timing};
 use crate::link::LinkUrl;
 use crate::sim::Motor;
 
@@ -174,6 +174,17 @@ impl Encoder {
 }
 
 impl Designer {
+    /// Returns the times that apply: those of the family, else what the manual says of SSI as such.
+    pub fn applicable_times(&self) -> Times {
+        self.times().copied().unwrap_or(Times::GENERAL)
+    }
+
+    /// Returns the times of reading the layout as it is set.
+    pub fn timing(&self) -> Timing {
+        let reads = self.reads();
+        self.times().map_or_else(|| Times::of_any_encoder(&reads), |times| times.reckon(&reads))
+    }
+
     /// Returns how frames are read, for checking the times.
     pub fn reads(&self) -> Reads {
         self.design().profile.reads()

@@ -1,6 +1,7 @@
 //! Texts of SSI: findings about a frame, settings that the manual does not mention, and why no words arrive.
 
 mod check;
+mod export;
 mod family;
 #[cfg(test)]
 mod phrases;
@@ -16,8 +17,9 @@ use crate::devices::ssi::protocol::{
 use crate::devices::ssi::state::TEXTS;
 
 pub use check::check;
+pub use export::export;
 pub use family::{note, store};
-pub use refused::{entry, format, frame_text, layout, settings};
+pub use refused::{bursts, entry, format, frame_text, layout, settings, wide};
 
 /// Returns the texts for a job that ended early: one sentence or more, each of which may be on a line of its own.
 pub fn job(error: &JobError) -> Vec<Text> {
@@ -87,6 +89,7 @@ pub fn timing(warning: &Warning) -> Text {
         Warning::PauseLong { most } => TEXTS.text("ssi.pause_long").with_number("millis", micros(most) / 1000.0, 0),
         Warning::Repeats { update } => TEXTS.text("ssi.repeats").with_number("micros", micros(update), 0),
         Warning::NoSynchronous => TEXTS.text("ssi.no_synchronous"),
+        Warning::SynchronousUnknown => TEXTS.text("ssi.synchronous_unknown"),
     }
 }
 

@@ -1,11 +1,11 @@
 //! A layout for other programs, as text.
 
 use super::design::Designer;
-use crate::app::Text;
+use crate::app::{Language, Text};
 use crate::devices::ssi::protocol::{
-    bit_table, c99, frame_svg, settings_sheet, structured_text, timing_svg, to_linuxcnc,
+    ExportText, Picture, bit_table, c99, frame_picture, scl, settings_sheet, structured_text, structured_text_32,
+    timing_picture, to_linuxcnc,
 };
-use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
 
 /// A format of an exported layout, besides a profile.
@@ -15,6 +15,10 @@ pub enum Format {
     C,
     /// A function block in IEC 61131-3 structured text.
     StructuredText,
+    /// The same for controllers of 32 bits.
+    StructuredText32,
+    /// A source file for TIA Portal.
+    Scl,
     /// The format string of LinuxCNC.
     LinuxCnc,
     /// Settings for common SSI modules of controls.
@@ -29,9 +33,11 @@ pub enum Format {
 
 impl Format {
     /// All formats.
-    pub const ALL: [Format; 7] = [
+    pub const ALL: [Format; 9] = [
         Format::C,
         Format::StructuredText,
+        Format::StructuredText32,
+        Format::Scl,
         Format::LinuxCnc,
         Format::Sheet,
         Format::Table,
@@ -44,6 +50,8 @@ impl Format {
         match self {
             Format::C => "ssi_export.c",
             Format::StructuredText => "ssi_export.st",
+            Format::StructuredText32 => "ssi_export.st_32",
+            Format::Scl => "ssi_export.scl",
             Format::LinuxCnc => "ssi_export.linuxcnc",
             Format::Sheet => "ssi_export.sheet",
             Format::Table => "ssi_export.table",
@@ -57,6 +65,8 @@ impl Format {
         match self {
             Format::C => "ssi_export.c_hint",
             Format::StructuredText => "ssi_export.st_hint",
+            Format::StructuredText32 => "ssi_export.st_32_hint",
+            Format::Scl => "ssi_export.scl_hint",
             Format::LinuxCnc => "ssi_export.linuxcnc_hint",
             Format::Sheet => "ssi_export.sheet_hint",
             Format::Table => "ssi_export.table_hint",
@@ -69,38 +79,46 @@ impl Format {
     pub const fn endings(self) -> &'static [&'static str] {
         match self {
             Format::C => &["c"],
-            Format::StructuredText => &["st"],
+            Format::StructuredText | Format::StructuredText32 => &["st"],
+            Format::Scl => &["scl"],
             Format::LinuxCnc | Format::Sheet => &["txt"],
             Format::Table => &["csv"],
             Format::Frame | Format::Timing => &["svg"],
         }
     }
-
-    /// Returns whether it is a picture rather than text.
-    pub const fn is_picture(self) -> bool {
-        matches!(self, Format::Frame | Format::Timing)
-    }
 }
 
 impl Designer {
-    /// Returns the layout as text.
+    /// Returns the layout as text, in this language where people read it. Programs are in English.
     ///
     /// # Errors
-    /// What the format cannot express; a timing diagram needs a family, whose times apply.
-    pub fn export(&self, format: Format) -> Result<String, Text> {
+    /// What the format cannot place for.
+    pub fn export(&self, format: Format, language: Language) -> Result<String, Text> {
+        if let Some(picture) = self.picture(format, language) {
+            return Ok(picture.svg());
+        }
         let layout = self.layout();
         let title = self.title();
+        let say = |text: &ExportText| words::export(text).words(language);
         Ok(match format {
             Format::C => c99(layout, &title),
             Format::StructuredText => structured_text(layout, &title),
+            Format::StructuredText32 => structured_text_32(layout, &title).map_err(words::wide)?,
+            Format::Scl => scl(layout, &title).map_err(words::wide)?,
             Format::LinuxCnc => to_linuxcnc(layout).map_err(|error| words::format(&error))? + "\n",
-            Format::Sheet => settings_sheet(layout, self.times(), &title),
-            Format::Table => bit_table(layout),
-            Format::Frame => frame_svg(layout, None, &title),
-            Format::Timing => {
-                let times = self.times().ok_or_else(|| TEXTS.text("ssi_timing.no_family"))?;
-                timing_svg(layout, times, &self.reads(), &title)
-            }
+            Format::Sheet => settings_sheet(layout, self.times(), &title, &say),
+            Format::Table | Format::Frame | Format::Timing => bit_table(layout, &say),
         })
+    }
+
+    /// The layout as a picture; `None`: the format is text.
+    pub fn picture(&self, format: Format, language: Language) -> Option<Picture> {
+        let (layout, title) = (self.layout(), self.title());
+        let say = |text: &ExportText| words::export(text).words(language);
+        match format {
+            Format::Frame => Some(frame_picture(layout, None, &title, &say)),
+            Format::Timing => Some(timing_picture(layout, &self.applicable_times(), &self.reads(), &title, &say)),
+            _ => None,
+        }
     }
 }

@@ -26,6 +26,8 @@ pub struct Row {
 pub enum Entry {
     /// A whole number.
     Number { value: u64, unit: Option<Text> },
+    /// A frequency in hertz, shown in the unit that suits it.
+    Frequency(u32),
     /// One of several.
     Choice {
         /// All options.
@@ -189,7 +191,12 @@ impl Designer {
     pub fn reading_form(&self) -> Vec<Row> {
         let reading = &self.design().profile.reading;
         let mut rows = vec![
-            Row::number(Field::ClockRate, "ssi_form.clock", reading.clock_hz, "Hz"),
+            Row {
+                field: Field::ClockRate,
+                name: TEXTS.text("ssi_form.clock"),
+                entry: Entry::Frequency(reading.clock_hz),
+                hint: None,
+            },
             Row::number(Field::Pause, "ssi_form.pause", reading.pause_us, "µs").hinted("ssi_form.pause_hint"),
             Row::number(Field::Cable, "ssi_form.cable", reading.cable_metres.unwrap_or(0), "m")
                 .hinted("ssi_form.cable_hint"),

@@ -34,7 +34,7 @@ pub use encoder::Encoder;
 pub use export::Format;
 pub use form::{Entry, Field, Group, Input, Row, whole};
 pub use record::{ReadWord, Record, Streamed};
-pub use search::{Frames, Origin, SearchState, read_clocks, read_frames};
+pub use search::{Frames, Origin, SearchState, frames_of, read_clocks, read_frames};
 pub use trial::{Decoded, Trial};
 
 use std::path::PathBuf;

@@ -1,13 +1,17 @@
 //! The search for the layout of frames: those read last, or those in a file.
 
+mod capture;
+#[cfg(test)]
+mod tests;
+
 use std::path::Path;
 
 use super::form::whole;
 use crate::app::{Text, explain};
-use crate::devices::ssi::protocol::{Search, parse_frame};
+use crate::devices::ssi::protocol::{Bursts, FrameTextError, Search, bursts, parse_frame};
 use crate::devices::ssi::state::TEXTS;
 use crate::devices::ssi::state::explain as words;
-use crate::store::read_file;
+use crate::store::{FileError, FileProblem, read_file};
 
 /// Maximum number of frames searched: the newest.
 pub(super) const MOST: usize = 8_000;
@@ -29,6 +33,10 @@ pub struct Frames {
     pub clocks: u8,
     /// The frames, right-justified.
     pub frames: Vec<u64>,
+    /// Bursts of a logic analyser that are not complete.
+    pub left_out: usize,
+    /// The frames are numbers, which do not tell how many bits come before the highest 1.
+    pub are_numbers: bool,
 }
 
 /// The state of the search.
@@ -44,6 +52,10 @@ pub enum SearchState {
         origin: Origin,
         /// Bits of each.
         clocks: u8,
+        /// Bursts of a logic analyser that are not complete.
+        left_out: usize,
+        /// Those that were searched, in the order of reading.
+        frames: Vec<u64>,
         search: Box<Search>,
     },
     /// There were no frames: why, and what to do.
@@ -62,19 +74,84 @@ pub fn read_clocks(text: &str) -> Result<u8, Text> {
 
 /// Reads frames from a file, one per line: bits in the order of the clocks or 0x and hex digits, in the first column that
 /// looks like a frame; others are ignored. Empty lines, a heading and lines that begin with # are skipped. Hexadecimal
-/// frames have `clocks` bits.
+/// frames have `clocks` bits. Or the file is a table of `position ssi --csv`, or the export of a logic analyser, whose edges
+/// are decoded.
 ///
 /// # Errors
 /// The file cannot be read, or a line is not a frame: which, and why.
 pub fn read_frames(path: &Path, clocks: u8) -> Result<Frames, Text> {
-    let text = read_file(path).map_err(|error| explain::file(&error))?;
+    let text = read_file(path).map_err(|error| file(&error))?;
     let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    parse_frames(&text, clocks).map(|(clocks, frames)| Frames { origin: Origin::File(name), clocks, frames })
+    frames_of(&text, name, clocks)
 }
 
-fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
+/// Reads frames from the text of a file, or of another origin of this name, as [`read_frames`] does.
+///
+/// # Errors
+/// A line is no frame: which, and why.
+pub fn frames_of(text: &str, name: String, clocks: u8) -> Result<Frames, Text> {
+    let read = match capture::levels(text) {
+        Some(levels) => of_bursts(bursts(&levels?).map_err(words::bursts)?),
+        None => table(text, clocks).unwrap_or_else(|| parse_frames(text, clocks))?,
+    };
+    Ok(Frames { origin: Origin::File(name), ..read })
+}
+
+fn file(error: &FileError) -> Text {
+    match &error.problem {
+        FileProblem::TooLarge { limit } => {
+            let path = error.path.display();
+            TEXTS.text("ssi_capture.too_large").with("path", path).with("megabytes", limit >> 20)
+        }
+        _ => explain::file(error),
+    }
+}
+
+fn of_bursts(bursts: Bursts) -> Frames {
+    let Bursts { clocks, frames, left_out } = bursts;
+    Frames { origin: Origin::Live, clocks, frames, left_out, are_numbers: false }
+}
+
+fn numbered(line: usize, why: Text) -> Text {
+    TEXTS.text("ssi_find.line").with("line", line).with_text("why", why)
+}
+
+/// The table of `position ssi --csv`: its frames are decimal numbers. `None`: it is another text.
+fn table(text: &str, clocks: u8) -> Option<Result<Frames, Text>> {
+    const HEADING: &str = "t_s,raw,";
+    let rows = (1..).zip(text.lines()).map(|(number, line)| (number, line.trim().trim_start_matches('\u{feff}')));
+    let mut rows = rows.filter(|(_, line)| !line.is_empty());
+    let (_, heading) = rows.next().filter(|(_, heading)| heading.starts_with(HEADING))?;
+    let expected = heading.split(',').count();
+    let frame = |(number, line): (usize, &str)| {
+        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
+        if cells.len() != expected {
+            let id = if cells.len() < expected { "ssi_capture.cut_off" } else { "ssi_capture.columns" };
+            let text = TEXTS.text(id).with("line", number);
+            return Err(text.with("columns", cells.len()).with("expected", expected));
+        }
+        let raw = cells.get(1).copied().unwrap_or_default();
+        let frame: u64 = raw.parse().map_err(|_| numbered(number, TEXTS.text("ssi_capture.raw").with("text", raw)))?;
+        let bits = u64::BITS - frame.leading_zeros();
+        if bits > u32::from(clocks) {
+            let error = FrameTextError::Bits { text: raw.to_owned(), bits, clocks, is_number: true };
+            return Err(numbered(number, words::frame_text(&error)));
+        }
+        Ok(frame)
+    };
+    let frames: Result<Vec<u64>, Text> = rows.map(frame).collect();
+    Some(frames.and_then(|frames| {
+        if frames.is_empty() {
+            return Err(TEXTS.text("ssi_find.no_frames"));
+        }
+        Ok(Frames { origin: Origin::Live, clocks, frames, left_out: 0, are_numbers: true })
+    }))
+}
+
+fn parse_frames(text: &str, clocks: u8) -> Result<Frames, Text> {
     // The column of the frames and their bits, once a line has shown it.
     let mut own: Option<(usize, u8)> = None;
+    let mut are_numbers = false;
     let mut frames = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
         let line = line.trim().trim_start_matches('\u{feff}');
@@ -86,8 +163,9 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
         let (place, width) = match (own, place) {
             (Some(own), _) => own,
             (None, Some(place)) => {
-                let width = columns.get(place).and_then(|column| bits_of(column)).unwrap_or(clocks);
-                *own.insert((place, width))
+                let bits = columns.get(place).and_then(|column| bits_of(column));
+                are_numbers = bits.is_none();
+                *own.insert((place, bits.unwrap_or(clocks)))
             }
             // A heading.
             (None, None) if number == 1 || columns.len() > 1 => continue,
@@ -95,14 +173,13 @@ fn parse_frames(text: &str, clocks: u8) -> Result<(u8, Vec<u64>), Text> {
         };
         match parse_frame(columns.get(place).copied().unwrap_or_default(), width) {
             Ok(frame) => frames.push(frame),
-            Err(error) => {
-                let why = words::frame_text(&error);
-                return Err(TEXTS.text("ssi_find.line").with("line", number).with_text("why", why));
-            }
+            Err(error) => return Err(numbered(number, words::frame_text(&error))),
         }
     }
     match own.map(|(_, clocks)| clocks) {
-        Some(clocks) if !frames.is_empty() && (1..=64).contains(&clocks) => Ok((clocks, frames)),
+        Some(clocks) if !frames.is_empty() && (1..=64).contains(&clocks) => {
+            Ok(Frames { origin: Origin::Live, clocks, frames, left_out: 0, are_numbers })
+        }
         _ => Err(TEXTS.text("ssi_find.no_frames")),
     }
 }
@@ -133,45 +210,4 @@ fn bits_of(column: &str) -> Option<u8> {
     let mut bits = bits.chars().filter(|bit| *bit != '_' && !bit.is_whitespace()).peekable();
     bits.peek()?;
     bits.try_fold(0_u8, |count, bit| matches!(bit, '0' | '1').then(|| count.saturating_add(1)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_stand_in_a_file_one_a_line() {
-        assert_eq!(parse_frames("1010\n\n# comment\n0b1111\n", 25), Ok((4, vec![0b1010, 0b1111])));
-        assert_eq!(parse_frames("0B10_10\n1 1 1 1\n", 25), Ok((4, vec![0b1010, 0b1111])));
-        assert_eq!(parse_frames("time;frame\n0.1;0x1F\n0.2;0x2\n", 25), Ok((25, vec![0x1F, 2])));
-        assert_eq!(parse_frames("\u{feff}t,\"frame\"\n1,\"0x0B\"\n", 8), Ok((8, vec![0x0B])));
-        // Further columns are ignored.
-        assert_eq!(parse_frames("frame,position\n10101,5\n10111,1010\n", 8), Ok((5, vec![0b10101, 0b10111])));
-        assert_eq!(parse_frames("10101 17\n11111 -\n", 8), Ok((5, vec![0b10101, 0b11111])));
-        assert_eq!(parse_frames("1010101010 11\n", 8), Ok((10, vec![0b10_1010_1010])));
-        assert_eq!(parse_frames("1010 1010 11\n", 8), Ok((10, vec![0b10_1010_1011])));
-    }
-
-    #[test]
-    fn clocks_are_read_or_refused_in_words() {
-        assert_eq!(read_clocks(" 25 "), Ok(25));
-        assert_eq!(read_clocks("0x40"), Ok(64));
-        for (text, id) in [("0", "ssi_find.clocks_range"), ("65", "ssi_find.clocks_range"), ("many", "ssi_form.whole")]
-        {
-            assert_eq!(read_clocks(text).unwrap_err().id(), id, "{text}");
-        }
-    }
-
-    #[test]
-    fn a_line_that_is_no_frame_is_named() {
-        let said = |text: &str| parse_frames(text, 8).unwrap_err();
-        let line = said("1010\n10\n");
-        assert_eq!(line.id(), "ssi_find.line");
-        assert!(line.terminal().contains('2'), "{}", line.terminal());
-        assert_eq!(said("0x1\nx\n").id(), "ssi_find.line");
-        assert_eq!(said("0x1FF\n").id(), "ssi_find.line");
-        for text in ["", "# nothing\n", "heading\n"] {
-            assert_eq!(said(text).id(), "ssi_find.no_frames");
-        }
-    }
 }

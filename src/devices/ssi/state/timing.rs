@@ -271,7 +271,37 @@ pub fn time(seconds: f64) -> Text {
     TEXTS.text(id).with_number("value", value, decimals)
 }
 
-/// Returns the sections of the time axis: the whole burst, and after it everything near an event.
+/// A frequency in the unit that suits it, with three decimals at most: 2 MHz, 10.811 kHz.
+pub fn frequency(hertz: f64) -> Text {
+    const UNITS: [(&str, f64); 3] = [("ssi.hertz", 1.0), ("ssi.kilohertz", 1e3), ("ssi.megahertz", 1e6)];
+    // A value that rounds to a thousand of a unit is one of the next.
+    let fits = UNITS.into_iter().rfind(|(_, unit)| hertz.abs() >= unit * 0.999_999_5);
+    let (id, unit) = fits.unwrap_or(("ssi.hertz", 1.0));
+    let value = hertz / unit;
+    let figures = format!("{value:.3}");
+    let decimals = figures.split_once('.').map_or(0, |(_, behind)| behind.trim_end_matches('0').len());
+    TEXTS.text(id).with_number("value", value, decimals)
+}
+
+/// Reads a frequency as people write one: 400000, 400 kHz, 1.5 MHz; a comma is a decimal sign, too.
+///
+/// # Errors
+/// In words.
+pub fn read_frequency(text: &str) -> Result<u32, Text> {
+    let wrong = || TEXTS.text("ssi_form.frequency").with("text", text.trim());
+    let plain: String = text.chars().filter(|c| !c.is_whitespace()).collect::<String>().to_ascii_lowercase();
+    let (number, unit) = match plain.strip_suffix("hz").unwrap_or(&plain) {
+        own if own.ends_with('k') => (own.trim_end_matches('k'), 1e3),
+        own if own.ends_with('m') => (own.trim_end_matches('m'), 1e6),
+        own => (own, 1.0),
+    };
+    let is_digits = number.chars().all(|c| c.is_ascii_digit() || matches!(c, '.' | ','));
+    let value: f64 = number.replace(',', ".").parse().ok().filter(|_| is_digits).ok_or_else(wrong)?;
+    let hertz = (value * unit).round();
+    if (0.0..=f64::from(u32::MAX)).contains(&hertz) { Ok(hertz as u32) } else { Err(wrong()) }
+}
+
+/// The the sections of the time axis: the whole burst, and after it everything near an event.
 fn pieces(burst: f64, end: f64, spans: &[Span], marks: &[TimingMark]) -> Vec<Piece> {
     let ends = spans.iter().flat_map(|span| [span.from, span.least, span.to]);
     let mut moments: Vec<f64> = ends.chain(marks.iter().map(|mark| mark.at)).filter(|at| *at > burst).collect();

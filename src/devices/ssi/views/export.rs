@@ -1,7 +1,8 @@
-//! The layout for other programs: as text to read, copy and save.
+//! The layout for other programs: text as text, pictures as pictures, to be copied and save.
 
 use egui::{ScrollArea, Ui};
 
+use super::picture::picture_ui;
 use crate::app::{Action, DeviceCommand};
 use crate::devices::ssi::state::{Encoder, Format, SsiAction as Ssi, TEXTS};
 use crate::devices::ssi::views::say;
@@ -35,26 +36,29 @@ pub(super) fn page_ui(
     ui.add_space(theme.space.between);
     paragraph(ui, theme.label(say(theme, own.hint())));
     ui.add_space(theme.space.between);
-    let text = encoder.designer.export(own);
+    let picture = encoder.designer.picture(own, theme.language);
+    let text = encoder.designer.export(own, theme.language);
+    let copy = if picture.is_some() { "ssi_export.copy_svg" } else { "ssi_export.copy" };
     let aside = |ui: &mut Ui| {
         let is_there = text.is_ok();
         if enabled_button(ui, is_there, icons::FLOPPY_DISK, &say(theme, "ssi_export.save")).clicked() {
-            actions.push(Action::device(id, Ssi::AskExport(own)));
+            actions.push(Action::device(id, Ssi::AskExport(own, theme.language)));
         }
-        if enabled_button(ui, is_there, icons::COPY, &say(theme, "ssi_export.copy")).clicked()
+        if enabled_button(ui, is_there, icons::COPY, &say(theme, copy)).clicked()
             && let Ok(text) = &text
         {
             ui.copy_text(text.clone());
         }
     };
-    card_with(ui, theme, TEXTS.text(own.word()), aside, |ui| match &text {
-        Ok(text) => {
+    card_with(ui, theme, TEXTS.text(own.word()), aside, |ui| match (&picture, &text) {
+        (Some(picture), _) => picture_ui(ui, theme, picture),
+        (None, Ok(text)) => {
             let height = (ui.ctx().content_rect().height() - 330.0).max(160.0);
             ScrollArea::both().id_salt(own.word()).max_height(height).auto_shrink([false, true]).show(ui, |ui| {
                 ui.add(egui::Label::new(theme.mono(text)).selectable(true).extend());
             });
         }
-        Err(why) => problem(ui, theme, Some(why)),
+        (None, Err(why)) => problem(ui, theme, Some(why)),
     });
     ui.add_space(theme.space.groups);
     card(ui, theme, TEXTS.text("ssi_export.profile"), |ui| {

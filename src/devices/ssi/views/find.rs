@@ -3,6 +3,7 @@
 
 use egui::{RichText, Ui};
 
+use super::frames;
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::{Class, Descriptor, Proposal, Search, Uncertainty};
 use crate::devices::ssi::state::explain as words;
@@ -33,7 +34,7 @@ pub(super) fn page_ui(
     view: &mut FindUiState,
     actions: &mut Vec<Action>,
 ) {
-    frames(ui, theme, encoder, view, actions);
+    source(ui, theme, encoder, view, actions);
     ui.add_space(theme.space.groups);
     match &encoder.hunt {
         SearchState::Nothing => {}
@@ -49,14 +50,21 @@ pub(super) fn page_ui(
                 paragraph(ui, theme.words(why));
             });
         }
-        SearchState::Found { origin, clocks, search } => {
-            found(ui, theme, encoder, view, (origin, *clocks, search), actions)
+        SearchState::Found { origin, clocks, left_out, frames, search } => {
+            found(ui, theme, encoder, view, (origin, *clocks, search), actions);
+            if *left_out > 0 {
+                let text = TEXTS.text("ssi_capture.left_out").with("count", left_out);
+                ui.add_space(theme.space.between);
+                paragraph(ui, theme.caption(theme.words(&text)));
+            }
+            ui.add_space(theme.space.groups);
+            frames::card_ui(ui, theme, encoder, (*clocks, frames), actions);
         }
     }
 }
 
 /// Draws the choice of the frames to search.
-fn frames(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState, actions: &mut Vec<Action>) {
+fn source(ui: &mut Ui, theme: &Theme, encoder: &Encoder, view: &mut FindUiState, actions: &mut Vec<Action>) {
     let id = encoder.session.id;
     let mut ask = |action| actions.push(Action::device(id, action));
     card(ui, theme, TEXTS.text("ssi_find.title"), |ui| {

@@ -7,6 +7,7 @@ use crate::devices::ssi::views::say;
 use egui::{Key, Ui};
 
 use crate::app::{Action, Text};
+use crate::devices::ssi::state::timing::{frequency, read_frequency};
 use crate::devices::ssi::state::{Encoder, Entry, Field, Input, Row, SsiAction as Ssi, whole};
 use crate::ui::Theme;
 use crate::ui::controls::{LABELS, choice, entry, problem, settled_entry};
@@ -77,6 +78,16 @@ pub(super) fn rows_ui(
                         ui.label(theme.label(theme.words(unit)));
                     }
                     response
+                })
+            }
+            Entry::Frequency(hertz) => {
+                let draft = view.drafts.entry(row.field).or_default();
+                let shown = theme.words(&frequency((*hertz).into()));
+                entry(ui, theme, &word, |ui| {
+                    settled_entry(ui, draft, &shown, NUMBER, &word, |text| {
+                        put(Input::Number(read_frequency(text)?.into()));
+                        Ok(())
+                    })
                 })
             }
             Entry::Words(words) => {

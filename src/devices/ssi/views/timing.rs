@@ -6,7 +6,7 @@ use super::form::{LayoutFormUiState, rows_ui};
 use crate::app::{Action, Text};
 use crate::devices::ssi::protocol::Timing;
 use crate::devices::ssi::state::explain as words;
-use crate::devices::ssi::state::timing::Diagram;
+use crate::devices::ssi::state::timing::{Diagram, frequency};
 use crate::devices::ssi::state::{Encoder, TEXTS};
 use crate::devices::ssi::views::say;
 use crate::devices::ssi::views::widgets::{TimingDiagram, timing_diagram};
@@ -22,18 +22,9 @@ pub(super) fn page_ui(
 ) {
     let designer = &encoder.designer;
     let rows = designer.reading_form();
-    let Some(times) = designer.times() else {
-        card(ui, theme, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, theme, encoder, &rows, view, actions));
-        ui.add_space(theme.space.groups);
-        card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
-            paragraph(ui, theme.label(say(theme, "ssi_timing.no_family")))
-        });
-        return;
-    };
-    let reads = designer.reads();
-    let timing = times.reckon(&reads);
+    let timing = designer.timing();
     card(ui, theme, TEXTS.text("ssi_timing.title"), |ui| {
-        let diagram = Diagram::of(designer.layout(), times, &reads);
+        let diagram = Diagram::of(designer.layout(), &designer.applicable_times(), &designer.reads());
         let label = say(theme, "ssi_timing.title");
         let model = TimingDiagram { label: &label, diagram: &diagram, frame: Some(encoder.displayed_frame().frame) };
         timing_diagram(ui, theme, &model);
@@ -46,39 +37,42 @@ pub(super) fn page_ui(
         |ui, (view, actions)| {
             card(ui, theme, TEXTS.text("ssi_timing.reading"), |ui| rows_ui(ui, theme, encoder, &rows, view, actions));
         },
-        |ui, _| card(ui, theme, TEXTS.text("ssi_timing.result"), |ui| result(ui, theme, &timing)),
+        |ui, _| {
+            card(ui, theme, TEXTS.text("ssi_timing.result"), |ui| {
+                result(ui, theme, &timing);
+                if designer.family().is_none() {
+                    paragraph(ui, theme.caption(say(theme, "ssi_timing.general")));
+                }
+            });
+        },
     );
 }
 
 fn result(ui: &mut Ui, theme: &Theme, timing: &Timing) {
     let micros = |time: std::time::Duration| theme.number(time.as_secs_f64() * 1e6, 2);
+    let hertz = |hertz: f64| theme.words(&frequency(hertz));
     let mut value_row = |id: &'static str, words: String| row(ui, theme, &say(theme, id), theme.mono(words));
     value_row("ssi_timing.period", format!("{} µs", micros(timing.period)));
     value_row("ssi_timing.burst", format!("{} µs", micros(timing.burst)));
-    value_row(
-        "ssi_timing.cycle",
-        format!("{} µs · {} Hz", micros(timing.cycle), theme.number(1.0 / timing.cycle.as_secs_f64().max(1e-9), 1)),
-    );
+    let rate = hertz(1.0 / timing.cycle.as_secs_f64().max(1e-9));
+    value_row("ssi_timing.cycle", format!("{} µs · {rate}", micros(timing.cycle)));
     let (least, most) = timing.monoflop;
     let monoflop = if least == most { micros(most) } else { format!("{} … {}", micros(least), micros(most)) };
     value_row("ssi_timing.monoflop", format!("{monoflop} µs"));
     value_row("ssi_timing.least_pause", format!("> {} µs", micros(timing.least_pause)));
-    value_row("ssi_timing.most_reads", format!("{} Hz", theme.number(timing.most_reads_hz, 0)));
-    let age = timing.age.map_or_else(
-        || say(theme, "ssi_timing.age_unknown"),
-        |(least, most)| {
-            if least == most {
-                format!("{} µs", micros(most))
-            } else {
-                format!("{} … {} µs", micros(least), micros(most))
-            }
-        },
-    );
+    value_row("ssi_timing.most_reads", hertz(timing.most_reads_hz));
+    let age = match timing.age {
+        // The position is kept with the first edge, and is whole when the burst is over.
+        None => format!("≥ {} µs", micros(timing.burst)),
+        Some((least, most)) if least == most => format!("{} µs", micros(most)),
+        Some((least, most)) => format!("{} … {} µs", micros(least), micros(most)),
+    };
     value_row("ssi_timing.age", age);
-    let cable = timing
-        .cable_hz
-        .map_or_else(|| say(theme, "ssi_timing.cable_unknown"), |hz| format!("{} Hz", theme.number(f64::from(hz), 0)));
+    let cable = timing.cable_hz.map_or_else(|| say(theme, "ssi_timing.cable_unknown"), |hz| hertz(hz.into()));
     value_row("ssi_timing.most_clock", cable);
+    if timing.age.is_none() {
+        paragraph(ui, theme.caption(say(theme, "ssi_timing.age_unknown")));
+    }
     ui.add_space(theme.space.inside);
     if timing.warnings.is_empty() {
         warning_ui(ui, theme, (icons::CHECK_CIRCLE, theme.palette.good), &TEXTS.text("ssi_timing.fits"));

@@ -10,39 +10,45 @@ use crate::devices::ssi::protocol::layout::{Flags, Layout};
 struct C;
 
 impl Dialect for C {
+    type Word = String;
+
+    fn name(&self, name: &'static str) -> String {
+        name.to_owned()
+    }
+
     fn hex(&self, value: u64) -> String {
         format!("UINT64_C(0x{value:X})")
     }
 
-    fn and(&self, a: &str, b: &str) -> String {
+    fn and(&self, a: &String, b: &String) -> String {
         format!("({a} & {b})")
     }
 
-    fn or(&self, a: &str, b: &str) -> String {
+    fn or(&self, a: &String, b: &String) -> String {
         format!("({a} | {b})")
     }
 
-    fn xor(&self, a: &str, b: &str) -> String {
+    fn xor(&self, a: &String, b: &String) -> String {
         format!("({a} ^ {b})")
     }
 
-    fn right(&self, a: &str, bits: u8) -> String {
+    fn right(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("({a} >> {bits})") }
     }
 
-    fn left(&self, a: &str, bits: u8) -> String {
+    fn left(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("({a} << {bits})") }
     }
 
-    fn equal(&self, a: &str, b: &str) -> String {
+    fn equal(&self, a: &String, b: &String) -> String {
         format!("({a} == {b})")
     }
 
-    fn differs(&self, a: &str, b: &str) -> String {
+    fn differs(&self, a: &String, b: &String) -> String {
         format!("({a} != {b})")
     }
 
-    fn number(&self, word: &str) -> String {
+    fn number(&self, word: &String) -> String {
         word.to_owned()
     }
 
@@ -56,6 +62,10 @@ impl Dialect for C {
 
     fn assign(&self, name: &str, value: &str) -> String {
         format!("{name} = {value};")
+    }
+
+    fn assign_word(&self, name: &'static str, value: &String) -> Vec<String> {
+        vec![self.assign(name, value)]
     }
 
     fn when(&self, condition: &str, statement: &str) -> String {

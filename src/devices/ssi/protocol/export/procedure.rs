@@ -5,21 +5,27 @@ use crate::devices::ssi::protocol::descriptor::Coded;
 use crate::devices::ssi::protocol::layout::{Flags, Layout};
 use crate::devices::ssi::protocol::range::{Fraction, Range};
 
-/// The syntax of a language. Values are words of 64 bits unless named numbers.
+/// The syntax of a language. A word holds the bits of a frame or a part of them; a number is text in any language.
 pub(super) trait Dialect {
-    fn hex(&self, value: u64) -> String;
-    fn and(&self, a: &str, b: &str) -> String;
-    fn or(&self, a: &str, b: &str) -> String;
-    fn xor(&self, a: &str, b: &str) -> String;
-    fn right(&self, a: &str, bits: u8) -> String;
-    fn left(&self, a: &str, bits: u8) -> String;
-    fn equal(&self, a: &str, b: &str) -> String;
-    fn differs(&self, a: &str, b: &str) -> String;
+    /// An expression whose value is a word.
+    type Word;
+    /// The word of a variable.
+    fn name(&self, name: &'static str) -> Self::Word;
+    fn hex(&self, value: u64) -> Self::Word;
+    fn and(&self, a: &Self::Word, b: &Self::Word) -> Self::Word;
+    fn or(&self, a: &Self::Word, b: &Self::Word) -> Self::Word;
+    fn xor(&self, a: &Self::Word, b: &Self::Word) -> Self::Word;
+    fn right(&self, a: &Self::Word, bits: u8) -> Self::Word;
+    fn left(&self, a: &Self::Word, bits: u8) -> Self::Word;
+    fn equal(&self, a: &Self::Word, b: &Self::Word) -> String;
+    fn differs(&self, a: &Self::Word, b: &Self::Word) -> String;
     /// Returns a word as a number.
-    fn number(&self, word: &str) -> String;
+    fn number(&self, word: &Self::Word) -> String;
     fn divided(&self, number: &str, by: u64) -> String;
     fn rest(&self, number: &str, by: u64) -> String;
     fn assign(&self, name: &str, value: &str) -> String;
+    /// A word into a variable: a statement or more.
+    fn assign_word(&self, name: &'static str, value: &Self::Word) -> Vec<String>;
     fn when(&self, condition: &str, statement: &str) -> String;
     fn comment(&self, text: &str) -> String;
     fn negated(&self, condition: &str) -> String;
@@ -28,7 +34,7 @@ pub(super) trait Dialect {
 
 /// Writes statements that read `frame` and set the words `word`, `code`, `flags`, the numbers `position`, `turns`, `steps`,
 /// and `valid`. `fold` and `digit` are auxiliary words.
-pub(super) fn statements(layout: &Layout, dialect: &dyn Dialect) -> Vec<String> {
+pub(super) fn statements<D: Dialect>(layout: &Layout, dialect: &D) -> Vec<String> {
     let mut writer = Writer { dialect, lines: Vec::new() };
     writer.frame(layout);
     writer.word(layout);
@@ -37,56 +43,62 @@ pub(super) fn statements(layout: &Layout, dialect: &dyn Dialect) -> Vec<String> 
     writer.lines
 }
 
-struct Writer<'a> {
-    dialect: &'a dyn Dialect,
+struct Writer<'a, D> {
+    dialect: &'a D,
     lines: Vec<String>,
 }
 
-impl Writer<'_> {
+impl<D: Dialect> Writer<'_, D> {
     fn comment(&mut self, text: &str) {
         self.lines.push(self.dialect.comment(text));
     }
 
-    fn set(&mut self, name: &str, value: &str) {
-        self.lines.push(self.dialect.assign(name, value));
+    fn set(&mut self, name: &str, number: &str) {
+        self.lines.push(self.dialect.assign(name, number));
+    }
+
+    fn set_word(&mut self, name: &'static str, value: &D::Word) {
+        self.lines.extend(self.dialect.assign_word(name, value));
     }
 
     fn flag(&mut self, condition: &str, flags: Flags) {
-        let raised = self.dialect.assign("flags", &self.dialect.or("flags", &self.dialect.hex(flags.0.into())));
+        let raised = self.dialect.or(&self.dialect.name("flags"), &self.dialect.hex(flags.0.into()));
+        let raised = self.dialect.assign_word("flags", &raised).join(" ");
         self.lines.push(self.dialect.when(condition, &raised));
     }
 
-    fn any_of(&self, word: &str, bits: u64) -> String {
-        self.dialect.differs(&self.dialect.and(word, &self.dialect.hex(bits)), &self.dialect.hex(0))
+    fn any_of(&self, word: &'static str, bits: u64) -> String {
+        let d = self.dialect;
+        d.differs(&d.and(&d.name(word), &d.hex(bits)), &d.hex(0))
     }
 
-    fn is(&self, word: &str, value: u64) -> String {
-        self.dialect.equal(word, &self.dialect.hex(value))
+    fn is(&self, word: &'static str, value: u64) -> String {
+        self.dialect.equal(&self.dialect.name(word), &self.dialect.hex(value))
     }
 
     fn frame(&mut self, layout: &Layout) {
         let d = self.dialect;
         let all = ones(layout.clocks());
         self.comment("the frame as it was sent");
-        self.set("word", &d.and("frame", &d.hex(all)));
-        self.set("flags", &d.hex(0));
+        self.set_word("word", &d.and(&d.name("frame"), &d.hex(all)));
+        self.set_word("flags", &d.hex(0));
         self.flag(&self.is("word", all), Flags::ONES);
         self.flag(&self.is("word", 0), Flags::ZEROS);
         for (index, pattern) in layout.patterns.iter().enumerate() {
             self.flag(&self.is("word", *pattern), Flags::pattern(index));
         }
         if layout.descriptor().inverted {
-            self.set("word", &d.xor("word", &d.hex(all)));
+            self.set_word("word", &d.xor(&d.name("word"), &d.hex(all)));
         }
         if let Some(repeat) = layout.descriptor().repeat {
             self.comment("its repetition");
             let behind = layout.clocks() - repeat.word;
-            let first = d.left(&d.right("word", behind), behind);
-            self.set("fold", &d.xor(&d.or(&first, &d.right(&first, repeat.word + repeat.gap)), "word"));
+            let first = d.left(&d.right(&d.name("word"), behind), behind);
+            self.set_word("fold", &d.xor(&d.or(&first, &d.right(&first, repeat.word + repeat.gap)), &d.name("word")));
             let again = ones(repeat.word) << behind >> (repeat.word + repeat.gap);
             self.flag(&self.any_of("fold", again), Flags::REPEAT);
             self.flag(&self.any_of("fold", all & !again), Flags::PADDING);
-            self.set("word", &d.right("word", behind));
+            self.set_word("word", &d.right(&d.name("word"), behind));
         }
     }
 
@@ -96,12 +108,12 @@ impl Writer<'_> {
         if let Some(parity) = descriptor.parity {
             self.comment("parity");
             let (bit, before) = layout.parity;
-            self.set("fold", &d.and("word", &d.hex(bit | before)));
+            self.set_word("fold", &d.and(&d.name("word"), &d.hex(bit | before)));
             for bits in [32, 16, 8, 4, 2, 1] {
-                self.set("fold", &d.xor("fold", &d.right("fold", bits)));
+                self.set_word("fold", &d.xor(&d.name("fold"), &d.right(&d.name("fold"), bits)));
             }
             let odd = u64::from(parity.even);
-            self.flag(&d.equal(&d.and("fold", &d.hex(1)), &d.hex(odd)), Flags::PARITY);
+            self.flag(&d.equal(&d.and(&d.name("fold"), &d.hex(1)), &d.hex(odd)), Flags::PARITY);
         }
         if descriptor.coded == Coded::AreaAndErrors {
             self.ungray_inside(layout);
@@ -109,20 +121,20 @@ impl Writer<'_> {
         for (index, (bit, own)) in layout.errors.iter().zip(&descriptor.errors).enumerate() {
             self.comment(&own.name);
             let level = if own.active_low { 0 } else { *bit };
-            self.flag(&d.equal(&d.and("word", &d.hex(*bit)), &d.hex(level)), Flags::error(index));
+            self.flag(&d.equal(&d.and(&d.name("word"), &d.hex(*bit)), &d.hex(level)), Flags::error(index));
         }
         if descriptor.shift_right {
             self.comment("back by the clock by which it comes later");
             let top = ones(1) << (descriptor.area - 1) << layout.behind_area;
             self.flag(&self.any_of("word", top), Flags::PADDING);
             let area = ones(descriptor.area) << layout.behind_area;
-            let moved = d.and(&d.left(&d.and("word", &d.hex(area)), 1), &d.hex(area));
-            self.set("word", &d.or(&moved, &d.and("word", &d.hex(ones(layout.behind_area)))));
+            let moved = d.and(&d.left(&d.and(&d.name("word"), &d.hex(area)), 1), &d.hex(area));
+            self.set_word("word", &d.or(&moved, &d.and(&d.name("word"), &d.hex(ones(layout.behind_area)))));
         }
         if descriptor.coded == Coded::Area {
             self.ungray_inside(layout);
             if descriptor.shift_right {
-                self.set("word", &d.and("word", &d.hex(!(1 << layout.behind_area))));
+                self.set_word("word", &d.and(&d.name("word"), &d.hex(!(1 << layout.behind_area))));
             }
         }
         if layout.zeros != 0 {
@@ -136,15 +148,16 @@ impl Writer<'_> {
         let d = self.dialect;
         let (bits, behind) = layout.gray;
         self.comment("Gray, zeros included");
-        self.set("fold", &d.and(&d.right("word", behind), &d.hex(ones(bits))));
+        self.set_word("fold", &d.and(&d.right(&d.name("word"), behind), &d.hex(ones(bits))));
         self.ungray("fold", bits);
-        let rest = d.and("word", &d.hex(!(ones(bits) << behind)));
-        self.set("word", &d.or(&d.left("fold", behind), &rest));
+        let rest = d.and(&d.name("word"), &d.hex(!(ones(bits) << behind)));
+        self.set_word("word", &d.or(&d.left(&d.name("fold"), behind), &rest));
     }
 
-    fn ungray(&mut self, name: &str, bits: u8) {
+    fn ungray(&mut self, name: &'static str, bits: u8) {
+        let d = self.dialect;
         for shift in [1, 2, 4, 8, 16, 32].into_iter().filter(|shift| *shift < bits) {
-            self.set(name, &self.dialect.xor(name, &self.dialect.right(name, shift)));
+            self.set_word(name, &d.xor(&d.name(name), &d.right(&d.name(name), shift)));
         }
     }
 
@@ -153,16 +166,16 @@ impl Writer<'_> {
         let coding = layout.coding();
         self.comment("the position's bits");
         let part = |part: &crate::devices::ssi::protocol::layout::Part| {
-            d.left(&d.and(&d.right("word", part.in_word), &d.hex(part.mask)), part.in_code)
+            d.left(&d.and(&d.right(&d.name("word"), part.in_word), &d.hex(part.mask)), part.in_code)
         };
         let [high, low] = &layout.parts;
         let code = if high.mask == 0 { part(low) } else { d.or(&part(high), &part(low)) };
-        self.set("code", &code);
+        self.set_word("code", &code);
         if matches!(coding.code(), Code::Gray | Code::GrayExcess) {
             self.comment("Gray");
             self.ungray("code", coding.bits());
         }
-        self.set("position", &d.number("code"));
+        self.set("position", &d.number(&d.name("code")));
         match coding.code() {
             Code::Binary | Code::Gray => {}
             Code::GrayExcess => {
@@ -174,9 +187,9 @@ impl Writer<'_> {
                 self.comment("BCD");
                 self.set("position", "0");
                 for digit in (0..coding.bits() / 4).rev() {
-                    self.set("digit", &d.and(&d.right("code", 4 * digit), &d.hex(0xF)));
-                    self.flag(&format!("{} > 9", d.number("digit")), Flags::CODE);
-                    self.set("position", &format!("position * 10 + {}", d.number("digit")));
+                    self.set_word("digit", &d.and(&d.right(&d.name("code"), 4 * digit), &d.hex(0xF)));
+                    self.flag(&format!("{} > 9", d.number(&d.name("digit"))), Flags::CODE);
+                    self.set("position", &format!("position * 10 + {}", d.number(&d.name("digit"))));
                 }
             }
         }

@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use super::svg::role_name;
+use super::text::{ExportText, ModuleObstacle, Say, SettingMeaning};
 use crate::devices::ssi::protocol::code::Code;
 use crate::devices::ssi::protocol::descriptor::Coded;
 use crate::devices::ssi::protocol::explain::Role;
@@ -22,7 +24,7 @@ struct Places {
 }
 
 impl Places {
-    fn new(layout: &Layout) -> Self {
+    fn new(layout: &Layout, say: Say<'_>) -> Self {
         let frame = layout.clocks();
         let bits = (0..frame).rev().zip(layout.roles());
         let (mut position, mut turns, mut steps, mut others) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
@@ -30,7 +32,7 @@ impl Places {
             match role {
                 Role::Multiturn(_) => turns.push(bit),
                 Role::Singleturn(_) => steps.push(bit),
-                Role::Error(_) | Role::Parity => others.push((bit, layout.role_name(role))),
+                Role::Error(_) | Role::Parity => others.push((bit, role_name(layout, role, say))),
                 Role::Position(_) | Role::Zero | Role::Again(_) => {}
             }
             if matches!(role, Role::Multiturn(_) | Role::Singleturn(_) | Role::Position(_)) {
@@ -49,146 +51,178 @@ impl Places {
 }
 
 /// Returns the settings of common modules, a paragraph each.
-pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str) -> String {
-    let places = Places::new(layout);
+pub fn settings_sheet(layout: &Layout, times: Option<&Times>, title: &str, say: Say<'_>) -> String {
+    let places = Places::new(layout, say);
     let descriptor = layout.descriptor();
-    let gray = descriptor.code == Code::Gray;
-    let code = match descriptor.code {
-        Code::Binary => "binary (dual)",
-        Code::Gray => "Gray",
-        Code::GrayExcess => "Gray excess",
-        Code::Bcd => "BCD",
-    };
-    let mut text =
-        format!("SSI settings: {title}\n\nThis sheet is for the control. It does not program the encoder.\n\n");
-    let mut line = |label: &str, value: &str| {
+    let heading = say(&ExportText::SheetTitle(title.to_owned()));
+    let mut text = format!("{heading}\n\n{}\n\n", say(&ExportText::SheetPurpose));
+    let mut line = |label: &str, value: &ExportText| {
         // Writing into a String cannot fail.
-        let _ = writeln!(text, "{label:32}{value}");
+        let _ = writeln!(text, "{label:32}{}", say(value));
     };
-    line("Frame length", &format!("{} bits", places.frame));
-    line("Code", code);
-    line("Position, lowest bit (LSB)", &format!("bit {}", places.lowest));
-    line("Position, highest bit (MSB)", &format!("bit {}", places.highest));
+    line(&say(&ExportText::FrameLength), &ExportText::Bits(places.frame));
+    line(&say(&ExportText::Code), &ExportText::CodeName(descriptor.code));
+    line(&say(&ExportText::LowestBit), &ExportText::BitNumber(places.lowest));
+    line(&say(&ExportText::HighestBit), &ExportText::BitNumber(places.highest));
     for (bit, name) in &places.others {
-        line(name, &format!("bit {bit}"));
+        line(name, &ExportText::BitNumber(*bit));
     }
     if let Some(parity) = descriptor.parity {
-        line("Parity", if parity.even { "even" } else { "odd" });
+        line(&say(&ExportText::Parity), &ExportText::ParityIs { even: parity.even });
     }
     if let Some(times) = times {
-        line(
-            "Monoflop time (tm)",
-            &format!("{} to {} µs; the pause must be longer", times.monoflop.0, times.monoflop.1),
-        );
-        line("Highest clock", &format!("{} kHz, less on long cables", times.most_hz / 1000));
+        let (least, most) = times.monoflop;
+        line(&say(&ExportText::Monoflop), &ExportText::MonoflopTimes { least, most });
+        line(&say(&ExportText::HighestClock), &ExportText::ClockLimit { kilohertz: times.most_hz / 1000 });
     }
-    text.push_str("Bit 0 is the last bit received, bit ");
-    let _ = writeln!(text, "{} the first.", places.frame - 1);
+    let _ = writeln!(text, "{}", say(&ExportText::Counting { first: places.frame - 1 }));
     if let Some(why) = obstacle(layout) {
-        let _ = writeln!(text, "\n{why} Read the whole frame as binary, and decode it in the program.");
+        let _ = writeln!(text, "\n{} {}", say(&ExportText::Obstacle(why)), say(&ExportText::ReadAsBinary));
     }
-    module(&mut text, "SIMATIC TM PosInput, SSI_Absolute_Encoder", &siemens(layout, &places, gray));
-    module(&mut text, "Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", &beckhoff(layout, &places, gray));
-    module(&mut text, "Delta AS02HC", &delta(layout, &places, gray));
-    module(&mut text, "Synapticon SOMANET (object 2209h)", &synapticon(layout, &places, gray));
+    let mut module = |name: &str, settings: Vec<(Label, Setting)>| {
+        let _ = writeln!(text, "\n{name}");
+        for (label, value) in settings {
+            let label = match label {
+                Label::Own(label) => label.to_owned(),
+                Label::Said(label) => say(&label),
+            };
+            let value = match value {
+                Setting::Plain(value) => value,
+                Setting::Said(value) => say(&value),
+            };
+            let _ = writeln!(text, "  {label:32}{value}");
+        }
+    };
+    module("SIMATIC TM PosInput, SSI_Absolute_Encoder", siemens(layout, &places));
+    module("Beckhoff EL5001, EL5002, EJ5002 (object 8000h)", beckhoff(layout, &places));
+    module("Delta AS02HC", delta(layout, &places));
+    module("Synapticon SOMANET (object 2209h)", synapticon(layout, &places));
     text
 }
 
+/// The name of a setting.
+enum Label {
+    /// As the module's manual has it in every language.
+    Own(&'static str),
+    Said(ExportText),
+}
+
+/// The value of a setting.
+enum Setting {
+    /// The same in every language.
+    Plain(String),
+    Said(ExportText),
+}
+
 /// Returns the property that no module can decode.
-fn obstacle(layout: &Layout) -> Option<&'static str> {
+fn obstacle(layout: &Layout) -> Option<ModuleObstacle> {
     let descriptor = layout.descriptor();
     match descriptor.code {
-        Code::GrayExcess => {
-            Some("Gray excess: modules know binary and Gray; as Gray the value is too high by a fixed number.")
-        }
-        Code::Bcd => Some("BCD: modules know binary and Gray."),
-        _ if descriptor.coded != Coded::Position => {
-            Some("The Gray code goes over more than the position; modules convert the position alone.")
-        }
-        _ if descriptor.inverted => Some("The data wires are exchanged: exchange them again."),
-        _ if descriptor.between > 0 => Some("Turns and steps are apart; most modules read one position without a gap."),
+        Code::GrayExcess => Some(ModuleObstacle::GrayExcess),
+        Code::Bcd => Some(ModuleObstacle::Bcd),
+        _ if descriptor.coded != Coded::Position => Some(ModuleObstacle::GrayOver),
+        _ if descriptor.inverted => Some(ModuleObstacle::Inverted),
+        _ if descriptor.between > 0 => Some(ModuleObstacle::Between),
         _ => None,
     }
 }
 
-fn module(text: &mut String, name: &str, settings: &[(&str, String)]) {
-    let _ = writeln!(text, "\n{name}");
-    for (label, value) in settings {
-        let _ = writeln!(text, "  {label:32}{value}");
-    }
+fn is_gray(layout: &Layout) -> bool {
+    layout.descriptor().code == Code::Gray
 }
 
-fn siemens(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, String)> {
+/// The number of a code: 1 for Gray.
+fn code_number(layout: &Layout) -> Setting {
+    let (number, value) = if is_gray(layout) { (1, SettingMeaning::Gray) } else { (0, SettingMeaning::Binary) };
+    Setting::Said(ExportText::Setting(number, value))
+}
+
+fn siemens(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
     let width = places.highest - places.lowest + 1;
-    let lengths = if (10..=40).contains(&places.frame) { "" } else { " (the module takes 10 to 40)" };
-    let wide = if width > 32 { " (more than 32 bits apart: the module takes 32)" } else { "" };
-    let parity = layout.descriptor().parity.map_or("none", |parity| if parity.even { "even" } else { "odd" });
+    let (bits, bit) = (places.frame, places.highest);
+    let parity = layout.descriptor().parity;
+    let parity = parity.map_or(ExportText::NoParity, |parity| ExportText::ParityIs { even: parity.even });
+    let code = if is_gray(layout) { "Gray" } else { "Dual" };
     vec![
-        ("Frame length", format!("{} bit{lengths}", places.frame)),
-        ("Code type", if gray { "Gray" } else { "Dual" }.to_owned()),
-        ("Parity", parity.to_owned()),
-        ("Bit number LSB of the position", places.lowest.to_string()),
-        ("Bit number MSB of the position", format!("{}{wide}", places.highest)),
+        (
+            Label::Said(ExportText::FrameLength),
+            Setting::Said(ExportText::FrameBits { bits, fits: (10..=40).contains(&bits) }),
+        ),
+        (Label::Said(ExportText::CodeType), Setting::Plain(code.to_owned())),
+        (Label::Said(ExportText::Parity), Setting::Said(parity)),
+        (Label::Said(ExportText::BitNumberLowest), Setting::Plain(places.lowest.to_string())),
+        (
+            Label::Said(ExportText::BitNumberHighest),
+            Setting::Said(ExportText::HighestNumber { bit, fits: width <= 32 }),
+        ),
     ]
 }
 
-fn beckhoff(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, String)> {
+fn beckhoff(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
     let frame_type = match places.frame {
-        25 => "0 (multiturn, 25 bits)".to_owned(),
-        13 => "1 (singleturn, 13 bits)".to_owned(),
-        bits @ 1..=32 => format!("2 (variable, {bits} bits)"),
-        bits => format!("none: the terminal reads up to 32 bits, not {bits}"),
+        25 => ExportText::Setting(0, SettingMeaning::Multiturn),
+        13 => ExportText::Setting(1, SettingMeaning::Singleturn),
+        bits @ 1..=32 => ExportText::Setting(2, SettingMeaning::Variable(bits)),
+        bits => ExportText::FrameTypeNone { bits },
     };
     // A parity bit has no information about the encoder.
     let tells = layout.descriptor().parity.is_none_or(|parity| parity.clock != places.frame);
     let fails = u8::from(tells && matches!(places.others.as_slice(), [.., (0, _)]));
-    let behind = places.behind() - fails;
+    let bits = places.behind() - fails;
+    let error = if fails == 1 { Setting::Said(ExportText::LastIsError) } else { Setting::Plain("0".to_owned()) };
     let mut settings = vec![
-        (":06 SSI coding", if gray { "1 (Gray)" } else { "0 (binary)" }.to_owned()),
-        (":0F SSI frame type", frame_type),
-        (":11 SSI frame size", places.frame.to_string()),
-        (":12 SSI data length", (places.frame - fails).to_string()),
-        (":02 Enable power failure bit", if fails == 1 { "1: the last bit is an error bit" } else { "0" }.to_owned()),
+        (Label::Own(":06 SSI coding"), code_number(layout)),
+        (Label::Own(":0F SSI frame type"), Setting::Said(frame_type)),
+        (Label::Own(":11 SSI frame size"), Setting::Plain(places.frame.to_string())),
+        (Label::Own(":12 SSI data length"), Setting::Plain((places.frame - fails).to_string())),
+        (Label::Own(":02 Enable power failure bit"), error),
     ];
-    if behind > 0 {
-        settings.push(("In the program", format!("divide the value by {} ({behind} bits follow)", 1_u64 << behind)));
+    if bits > 0 {
+        let divide = ExportText::Divide { by: 1_u64 << bits, bits };
+        settings.push((Label::Said(ExportText::InTheProgram), Setting::Said(divide)));
     }
     settings
 }
 
-fn delta(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, String)> {
-    let field = |ends: Option<(u8, u8)>| match ends {
-        Some((low, high)) if low == high => format!("1 bit at b{high}"),
-        Some((low, high)) => format!("{} bits from b{high}", high - low + 1),
-        None => "0 bits".to_owned(),
+fn delta(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
+    let field = |ends: Option<(u8, u8)>| {
+        Setting::Said(match ends {
+            Some((low, highest)) => ExportText::Field { bits: highest - low + 1, highest },
+            None => ExportText::NoField,
+        })
     };
     let position = Some((places.lowest, places.highest));
     let steps = if places.steps.is_some() { places.steps } else { position };
     let status: Vec<u8> =
         places.others.iter().map(|(bit, _)| *bit).filter(|_| layout.descriptor().parity.is_none()).collect();
     let ends = status.last().zip(status.first()).map(|(low, high)| (*low, *high));
+    let code = if is_gray(layout) { ExportText::CodeName(Code::Gray) } else { ExportText::Binary };
     vec![
-        ("Multi-turn data", field(places.turns)),
-        ("Single-turn data", field(steps)),
-        ("Status data", field(ends)),
-        ("Code", if gray { "Gray" } else { "binary" }.to_owned()),
+        (Label::Own("Multi-turn data"), field(places.turns)),
+        (Label::Own("Single-turn data"), field(steps)),
+        (Label::Own("Status data"), field(ends)),
+        (Label::Own("Code"), Setting::Said(code)),
     ]
 }
 
-fn synapticon(layout: &Layout, places: &Places, gray: bool) -> Vec<(&'static str, String)> {
+fn synapticon(layout: &Layout, places: &Places) -> Vec<(Label, Setting)> {
     // Its bits are counted from the first one received.
-    let first =
-        |ends: Option<(u8, u8)>| ends.map_or_else(|| "–".to_owned(), |(_, high)| (places.frame - 1 - high).to_string());
-    let count = |ends: Option<(u8, u8)>| ends.map_or(0, |(low, high)| high - low + 1).to_string();
+    let first = |ends: Option<(u8, u8)>| {
+        Setting::Plain(ends.map_or_else(|| "–".to_owned(), |(_, high)| (places.frame - 1 - high).to_string()))
+    };
+    let count = |ends: Option<(u8, u8)>| Setting::Plain(ends.map_or(0, |(low, high)| high - low + 1).to_string());
     let steps = if places.steps.is_some() { places.steps } else { Some((places.lowest, places.highest)) };
-    let parity =
-        layout.descriptor().parity.map_or("0 (none)", |parity| if parity.even { "2 (even)" } else { "1 (odd)" });
+    let (number, parity) = match layout.descriptor().parity.map(|parity| parity.even) {
+        None => (0, SettingMeaning::NoParity),
+        Some(false) => (1, SettingMeaning::Odd),
+        Some(true) => (2, SettingMeaning::Even),
+    };
     vec![
-        ("Multiturn bits", count(places.turns)),
-        (":11 Multiturn first bit", first(places.turns)),
-        ("Singleturn bits", count(steps)),
-        (":9 Singleturn first bit", first(steps)),
-        (":12 Parity type", parity.to_owned()),
-        (":14 Data ordering", if gray { "1 (Gray)" } else { "0 (binary)" }.to_owned()),
+        (Label::Own("Multiturn bits"), count(places.turns)),
+        (Label::Own(":11 Multiturn first bit"), first(places.turns)),
+        (Label::Own("Singleturn bits"), count(steps)),
+        (Label::Own(":9 Singleturn first bit"), first(steps)),
+        (Label::Own(":12 Parity type"), Setting::Said(ExportText::Setting(number, parity))),
+        (Label::Own(":14 Data ordering"), code_number(layout)),
     ]
 }

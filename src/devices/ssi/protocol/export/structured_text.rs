@@ -9,39 +9,45 @@ use crate::devices::ssi::protocol::layout::Layout;
 struct StructuredText;
 
 impl Dialect for StructuredText {
+    type Word = String;
+
+    fn name(&self, name: &'static str) -> String {
+        name.to_owned()
+    }
+
     fn hex(&self, value: u64) -> String {
         format!("LWORD#16#{value:X}")
     }
 
-    fn and(&self, a: &str, b: &str) -> String {
+    fn and(&self, a: &String, b: &String) -> String {
         format!("({a} AND {b})")
     }
 
-    fn or(&self, a: &str, b: &str) -> String {
+    fn or(&self, a: &String, b: &String) -> String {
         format!("({a} OR {b})")
     }
 
-    fn xor(&self, a: &str, b: &str) -> String {
+    fn xor(&self, a: &String, b: &String) -> String {
         format!("({a} XOR {b})")
     }
 
-    fn right(&self, a: &str, bits: u8) -> String {
+    fn right(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("SHR({a}, {bits})") }
     }
 
-    fn left(&self, a: &str, bits: u8) -> String {
+    fn left(&self, a: &String, bits: u8) -> String {
         if bits == 0 { a.to_owned() } else { format!("SHL({a}, {bits})") }
     }
 
-    fn equal(&self, a: &str, b: &str) -> String {
+    fn equal(&self, a: &String, b: &String) -> String {
         format!("({a} = {b})")
     }
 
-    fn differs(&self, a: &str, b: &str) -> String {
+    fn differs(&self, a: &String, b: &String) -> String {
         format!("({a} <> {b})")
     }
 
-    fn number(&self, word: &str) -> String {
+    fn number(&self, word: &String) -> String {
         format!("LWORD_TO_ULINT({word})")
     }
 
@@ -55,6 +61,10 @@ impl Dialect for StructuredText {
 
     fn assign(&self, name: &str, value: &str) -> String {
         format!("{name} := {value};")
+    }
+
+    fn assign_word(&self, name: &'static str, value: &String) -> Vec<String> {
+        vec![self.assign(name, value)]
     }
 
     fn when(&self, condition: &str, statement: &str) -> String {

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use super::svg::role_name;
+use super::text::{ExportText, Say};
 use crate::devices::ssi::protocol::explain::Role;
 use crate::devices::ssi::protocol::layout::Layout;
 
@@ -22,11 +24,11 @@ impl Layout {
 }
 
 /// Returns a row for each clock: its number, the bit of the frame, its content.
-pub fn bit_table(layout: &Layout) -> String {
-    let mut text = String::from("clock,frame_bit,meaning\n");
+pub fn bit_table(layout: &Layout, say: Say<'_>) -> String {
+    let mut text = say(&ExportText::TableHeading) + "\n";
     let clocks = layout.clocks();
     for (clock, role) in (1..=clocks).zip(layout.roles()) {
-        let name = layout.role_name(role);
+        let name = role_name(layout, role, say);
         let quoted = if name.contains([',', '"', '\n']) { format!("\"{}\"", name.replace('"', "\"\"")) } else { name };
         // Writing into a String cannot fail.
         let _ = writeln!(text, "{clock},{},{quoted}", clocks - clock);

@@ -71,7 +71,8 @@ fn what_linuxcnc_cannot_do_is_said() {
 
 #[test]
 fn a_parity_bit_is_no_error_bit_in_the_sheet() {
-    let sheet = |layout: &Layout| settings_sheet(layout, None, "").lines().map(str::to_owned).collect::<Vec<_>>();
+    let sheet =
+        |layout: &Layout| settings_sheet(layout, None, "", &english).lines().map(str::to_owned).collect::<Vec<_>>();
     let power_failure = |lines: &[String]| lines.iter().find(|line| line.contains("power failure bit")).cloned();
     let error = power_failure(&sheet(&layout("ahs36"))).unwrap();
     assert!(error.ends_with("1: the last bit is an error bit"), "{error}");
@@ -93,7 +94,7 @@ fn flags_have_names_of_their_own() {
 
 #[test]
 fn a_row_for_each_clock() {
-    let table = bit_table(&layout("ahs36,st=12,err=following"));
+    let table = bit_table(&layout("ahs36,st=12,err=following"), &english);
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows.len(), 16);
     assert_eq!(rows[..2], ["clock,frame_bit,meaning", "1,14,ST11"]);

@@ -18,6 +18,25 @@ fn times(key: &str) -> Times {
     Families::built_in().named(key).unwrap().times
 }
 
+/// An encoder of no family: reference section 1 has tm 15…25 µs, 2 MHz and the table of cables for all of SSI, and 33 bits at
+/// 400 kHz take 82.5 µs. How often it makes positions is not known.
+#[test]
+fn any_encoder_has_the_general_times() {
+    let reads = Reads { cable_metres: Some(80.0), ..reads(33, 400e3, 20) };
+    let timing = Times::of_any_encoder(&reads);
+    assert_eq!(timing.burst, Duration::from_nanos(82_500));
+    assert_eq!(timing.cycle, Duration::from_nanos(102_500));
+    assert_eq!(timing.monoflop, (Duration::from_micros(15), Duration::from_micros(25)));
+    assert_eq!((timing.cable_hz, timing.age), (Some(300_000), None));
+    let short = Warning::PauseShort { least: Duration::from_micros(25) };
+    assert_eq!(timing.warnings, [Warning::CableClock { most_hz: 300_000 }, short]);
+    let fast = Reads { clock_hz: 2.5e6, pause: Duration::from_micros(30), cable_metres: None, ..reads };
+    let synchronous = Reads { synchronous: true, ..fast };
+    let too_fast = Warning::EncoderClock { most_hz: 2_000_000 };
+    assert_eq!(Times::of_any_encoder(&fast).warnings, [too_fast]);
+    assert_eq!(Times::of_any_encoder(&synchronous).warnings, [Warning::SynchronousUnknown, too_fast]);
+}
+
 /// Reference section 1: "Duration (bits/f)".
 #[test]
 fn bursts_of_the_reference() {

@@ -4,8 +4,8 @@ use crate::app::Text;
 use crate::app::explain::plain;
 use crate::devices::ssi::profile::EntryError;
 use crate::devices::ssi::protocol::{
-    ClockUse, CodeError, FormatError, FrameTextError, LayoutError, NoFormat, RangeError, RepeatedPart, SettingName,
-    SettingsError, WordOperation,
+    ClockUse, CodeError, FormatError, FrameTextError, LayoutError, NoBursts, NoFormat, RangeError, RepeatedPart,
+    SettingName, SettingsError, WideNumbers, WordOperation,
 };
 use crate::devices::ssi::state::TEXTS;
 use crate::profile::Cause;
@@ -76,6 +76,14 @@ pub fn format(error: &FormatError) -> Text {
     refused(why)
 }
 
+/// A layout for which a controller of 32 bits has no decoder.
+pub fn wide(error: WideNumbers) -> Text {
+    match error {
+        WideNumbers::Position { bits } => TEXTS.text("ssi.wide_position").with("bits", bits),
+        WideNumbers::RoundAxis => TEXTS.text("ssi.wide_round"),
+    }
+}
+
 /// Returns why a text is not a frame.
 pub fn frame_text(error: &FrameTextError) -> Text {
     match error {
@@ -83,6 +91,16 @@ pub fn frame_text(error: &FrameTextError) -> Text {
         FrameTextError::Bits { text, bits, clocks, .. } => {
             TEXTS.text("ssi_trial.bits").with("text", text).with("bits", bits).with("clocks", clocks)
         }
+    }
+}
+
+/// Returns why a recording of clock and data has no frames.
+pub fn bursts(error: NoBursts) -> Text {
+    match error {
+        NoBursts::NoClock => TEXTS.text("ssi_capture.no_clock"),
+        NoBursts::NoPause => TEXTS.text("ssi_capture.no_pause"),
+        NoBursts::Incomplete => TEXTS.text("ssi_capture.incomplete"),
+        NoBursts::Long { clocks } => TEXTS.text("ssi_capture.long").with("clocks", clocks),
     }
 }
 

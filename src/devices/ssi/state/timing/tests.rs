@@ -108,6 +108,37 @@ fn times_are_said_with_four_figures() {
     }
 }
 
+#[test]
+fn frequencies_are_said_and_read_in_their_unit() {
+    for (hertz, english, german) in [
+        (0.0, "0 Hz", "0 Hz"),
+        (999.0, "999 Hz", "999 Hz"),
+        (10_811.0, "10.811 kHz", "10,811 kHz"),
+        (400e3, "400 kHz", "400 kHz"),
+        (999_999.9, "1 MHz", "1 MHz"),
+        (1.5e6, "1.5 MHz", "1,5 MHz"),
+        (2e6, "2 MHz", "2 MHz"),
+    ] {
+        assert_eq!(frequency(hertz).words(Language::English), english);
+        assert_eq!(frequency(hertz).words(Language::German), german);
+    }
+    for (text, hertz) in [
+        ("400000", 400_000),
+        ("400 000", 400_000),
+        ("400 kHz", 400_000),
+        ("400k", 400_000),
+        (" 1,5 MHz ", 1_500_000),
+        ("1.5mhz", 1_500_000),
+        ("812.5 khz", 812_500),
+        ("1000 Hz", 1000),
+    ] {
+        assert_eq!(read_frequency(text), Ok(hertz), "{text}");
+    }
+    for text in ["", "kHz", "fast", "-1 kHz", "1e6", "1 GHz", "9999 MHz", "1.2.3"] {
+        assert_eq!(read_frequency(text).unwrap_err().id(), "ssi_form.frequency", "{text}");
+    }
+}
+
 proptest! {
     /// Every event is on the axis, which is in order and never longer than its content.
     #[test]

@@ -1,0 +1,68 @@
+//! Frames of a command: as arguments, in a file, or on standard input.
+
+use std::io::Read;
+use std::path::Path;
+
+use crate::cli::output::Output;
+use crate::cli::runner::failed;
+use crate::cli::{Failure, Result};
+use crate::devices::ssi::protocol::{FrameTextError, Layout, parse_frame};
+use crate::devices::ssi::state::{Frames, Origin, TEXTS, frames_of, read_frames};
+use crate::store::MAX_TEXT;
+
+/// Standard input in place of a file or a frame.
+const INPUT: &str = "-";
+
+/// Frames of a file, or of standard input where it is `-`; those that are numbers have so many bits. Incomplete bursts are a
+/// remark.
+pub(super) fn read(output: &Output, path: &Path, clocks: u8) -> Result<Frames> {
+    let frames = if path == Path::new(INPUT) {
+        frames_of(&input()?, "standard input".to_owned(), clocks)
+    } else {
+        read_frames(path, clocks)
+    };
+    let frames = frames.map_err(|why| failed(&why))?;
+    if frames.left_out > 0 {
+        output.remark(&TEXTS.text("ssi_capture.left_out").with("count", frames.left_out).terminal());
+    }
+    Ok(frames)
+}
+
+fn input() -> Result<String> {
+    let mut text = String::new();
+    let unreadable = |error: std::io::Error| Failure::Failed(vec![format!("Standard input cannot be read: {error}.")]);
+    std::io::stdin().lock().take(MAX_TEXT + 1).read_to_string(&mut text).map_err(unreadable)?;
+    if text.len() as u64 > MAX_TEXT {
+        let too_large = TEXTS.text("ssi_capture.too_large").with("path", "Standard input");
+        return Err(failed(&too_large.with("megabytes", MAX_TEXT >> 20)));
+    }
+    Ok(text)
+}
+
+/// The frames that an argument names: one as it is written, `@FILE`, or `-`.
+pub(super) fn named(output: &Output, layout: &Layout, text: &str) -> Result<Vec<u64>> {
+    let path = match text.strip_prefix('@') {
+        Some(path) => path,
+        None if text == INPUT => INPUT,
+        None => return frame(layout, text).map(|frame| vec![frame]),
+    };
+    let clocks = layout.clocks();
+    let Frames { origin, clocks: bits, frames, .. } = read(output, Path::new(path), clocks)?;
+    if bits != clocks {
+        let name = match origin {
+            Origin::File(name) => name,
+            Origin::Live => path.to_owned(),
+        };
+        let other = TEXTS.text("ssi_capture.other_clocks").with("name", name);
+        return Err(failed(&other.with("bits", bits).with("clocks", clocks)));
+    }
+    Ok(frames)
+}
+
+/// The bits of a frame, right-justified.
+fn frame(layout: &Layout, text: &str) -> Result<u64> {
+    parse_frame(text, layout.clocks()).map_err(|error| match error {
+        FrameTextError::Form(_) => Failure::Usage(error.to_string()),
+        FrameTextError::Bits { .. } => Failure::Failed(vec![format!("{error}.")]),
+    })
+}

@@ -1,0 +1,207 @@
+//! Frames of the levels of both lines, as a logic analyser records them (SICK SSI description 2.2; reference section 1): the
+//! clock rests high, each rising edge brings a bit, the host samples on the falling edge; behind the last one the line stays
+//! for half a period. Bursts are parted by pauses.
+
+/// The levels from a moment on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Levels {
+    /// In seconds.
+    pub at: f64,
+    /// CLOCK+ is high.
+    pub clock: bool,
+    /// DATA+ is high.
+    pub data: bool,
+}
+
+/// The frames of a recording.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Bursts {
+    /// Bits of each, 1…64.
+    pub clocks: u8,
+    /// The frames in the order of reading, right-justified.
+    pub frames: Vec<u64>,
+    /// Bursts of another number of clocks: cut off at an end of the recording, or disturbed.
+    pub left_out: usize,
+}
+
+/// Why there are no frames in a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoBursts {
+    /// The clock never changes.
+    #[error("the clock has no edges")]
+    NoClock,
+    /// The clock never rests.
+    #[error("there is no pause between bursts")]
+    NoPause,
+    /// No burst is whole.
+    #[error("no burst is complete")]
+    Incomplete,
+    /// Bursts are longer than a frame can be.
+    #[error("bursts have {clocks} clocks, and a frame has at most 64")]
+    Long {
+        /// Clocks of most of them.
+        clocks: usize,
+    },
+}
+
+/// tm, the least: as long at one level, and the encoder takes the burst for ended.
+const LEAST_MONOFLOP: f64 = 15e-6;
+/// A pause is at least so many halves of a period, where the clock is slow.
+const HALVES: f64 = 3.0;
+/// The last bit is looked at after this part of half a period: behind it the line falls.
+const SETTLED: f64 = 0.9;
+
+/// An edge of the clock, by its place in the recording.
+#[derive(Clone, Copy)]
+struct Edge {
+    at: f64,
+    row: usize,
+    rises: bool,
+}
+
+/// The frames of a recording, whose times do not go back. An exchanged clock pair (CLOCK− in place of CLOCK+) is seen by its
+/// rest.
+///
+/// # Errors
+/// [`NoBursts`] with what is missing.
+pub fn bursts(levels: &[Levels]) -> Result<Bursts, NoBursts> {
+    let edges = edges(levels);
+    let mut halves: Vec<f64> = edges.windows(2).filter_map(|two| Some(two.last()?.at - two.first()?.at)).collect();
+    halves.sort_by(f64::total_cmp);
+    let half = *halves.get(halves.len() / 2).ok_or(NoBursts::NoClock)?;
+    let pause = LEAST_MONOFLOP.max(HALVES * half);
+    let rests_high = rests_high(levels, &edges, pause).ok_or(NoBursts::NoPause)?;
+    let runs: Vec<&[Edge]> = edges.chunk_by(|one, next| next.at - one.at < pause).collect();
+    let falls = |edge: &Edge| edge.rises != rests_high;
+    // A whole burst falls first and rises last.
+    let whole = |run: &[Edge]| run.len().is_multiple_of(2) && run.first().is_some_and(falls);
+    let clocks = usual(runs.iter().filter(|run| whole(run)).map(|run| run.len() / 2)).ok_or(NoBursts::Incomplete)?;
+    let bits = u8::try_from(clocks).ok().filter(|bits| *bits <= 64).ok_or(NoBursts::Long { clocks })?;
+    let kept = runs.iter().filter(|run| whole(run) && run.len() / 2 == clocks);
+    let frames: Vec<u64> = kept.map(|run| frame(levels, run, half)).collect();
+    Ok(Bursts { clocks: bits, left_out: runs.len() - frames.len(), frames })
+}
+
+fn edges(levels: &[Levels]) -> Vec<Edge> {
+    let pairs = levels.windows(2).zip(1..);
+    let changes = pairs.filter_map(|(two, row)| {
+        let (before, now) = (two.first()?, two.last()?);
+        (before.clock != now.clock).then_some(Edge { at: now.at, row, rises: now.clock })
+    });
+    changes.collect()
+}
+
+/// The level at which the clock stays for longest in all; `None`: it never rests.
+fn rests_high(levels: &[Levels], edges: &[Edge], pause: f64) -> Option<bool> {
+    let (first, last) = (levels.first()?, levels.last()?);
+    let begins = std::iter::once((first.at, first.clock)).chain(edges.iter().map(|edge| (edge.at, edge.rises)));
+    let ends = edges.iter().map(|edge| edge.at).chain(std::iter::once(last.at));
+    let mut rests = [0.0, 0.0];
+    for ((from, high), to) in begins.zip(ends).filter(|((from, _), to)| to - from >= pause) {
+        let [low_time, high_time] = &mut rests;
+        *(if high { high_time } else { low_time }) += to - from;
+    }
+    let [low, high] = rests;
+    (low + high > 0.0).then_some(high >= low)
+}
+
+/// The number that most have; of several the greatest.
+fn usual(numbers: impl Iterator<Item = usize>) -> Option<usize> {
+    let mut sorted: Vec<usize> = numbers.collect();
+    sorted.sort_unstable();
+    let runs = sorted.chunk_by(|one, other| one == other);
+    runs.max_by_key(|run| run.len()).and_then(|run| run.first().copied())
+}
+
+/// The bits of a burst that is whole.
+fn frame(levels: &[Levels], run: &[Edge], half: f64) -> u64 {
+    let sampled = run.chunks(2).skip(1).filter_map(|clock| levels.get(clock.first()?.row - 1));
+    let bits = sampled.fold(0, |bits, before| bits << 1 | u64::from(before.data));
+    // The half periods of this burst tell how long the last bit stays.
+    let high = run.windows(2).skip(1).step_by(2).filter_map(|two| Some(two.last()?.at - two.first()?.at));
+    let half = high.reduce(f64::min).unwrap_or(half);
+    let last = run.last().and_then(|edge| {
+        let until = edge.at + SETTLED * half;
+        levels.get(edge.row..)?.iter().take_while(|row| row.at <= until).last()
+    });
+    bits << 1 | last.map_or(0, |row| u64::from(row.data))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both lines as reference section 1 describes a transfer of these bits, beginning at a time: half periods in µs.
+    fn transfer(levels: &mut Vec<Levels>, begins: f64, bits: &str, half: f64) -> f64 {
+        let mut put = |at: f64, clock, data| levels.push(Levels { at: at * 1e-6, clock, data });
+        let mut data = true;
+        let mut at = begins;
+        for bit in bits.chars() {
+            put(at, false, data);
+            at += half;
+            put(at, true, data);
+            // A delay of the line: less than half a period.
+            data = bit == '1';
+            put(at + 0.3 * half, true, data);
+            at += half;
+        }
+        put(at, true, false);
+        put(at + 20.0, true, true);
+        at + 20.0
+    }
+
+    fn recording(frames: &[&str], half: f64, pause: f64) -> Vec<Levels> {
+        let mut levels = vec![Levels { at: 0.0, clock: true, data: true }];
+        let mut at = 50.0;
+        for frame in frames {
+            at = transfer(&mut levels, at, frame, half) + pause;
+        }
+        levels
+    }
+
+    /// Reference section 8: AHM36, MT 123h, ST 2A5Bh, in Gray; and with every bit the other way.
+    const GRAY: &str = "000110110010011111011101100";
+    const INVERSE: &str = "111001001101100000100010011";
+
+    #[test]
+    fn bits_are_sampled_as_the_host_does() {
+        // 400 kHz, 2 MHz, and 25 kHz, where half a period is longer than tm.
+        for (half, pause) in [(1.25, 30.0), (0.25, 30.0), (20.0, 200.0)] {
+            let found = bursts(&recording(&[GRAY, INVERSE, GRAY], half, pause)).unwrap();
+            assert_eq!(found, Bursts { clocks: 27, frames: vec![0x0D9_3EEC, 0x726_C113, 0x0D9_3EEC], left_out: 0 });
+        }
+        // The last bit is 1 and the line falls half a period later; one clock alone.
+        assert_eq!(bursts(&recording(&["1", "0", "1"], 1.0, 30.0)).unwrap().frames, [1, 0, 1]);
+    }
+
+    #[test]
+    fn bursts_that_are_not_whole_are_left_out_and_counted() {
+        let mut levels = recording(&[GRAY, GRAY, "1010", GRAY], 1.25, 30.0);
+        // It begins and ends in the middle of a burst.
+        levels.drain(..20);
+        levels.truncate(levels.len() - 9);
+        let found = bursts(&levels).unwrap();
+        assert_eq!((found.clocks, found.frames, found.left_out), (27, vec![0x0D9_3EEC], 3));
+    }
+
+    #[test]
+    fn an_exchanged_clock_pair_is_seen_by_its_rest() {
+        let mut levels = recording(&[GRAY, INVERSE], 1.25, 60.0);
+        levels.iter_mut().for_each(|own| own.clock = !own.clock);
+        assert_eq!(bursts(&levels).unwrap().frames, [0x0D9_3EEC, 0x726_C113]);
+    }
+
+    #[test]
+    fn what_is_no_transfer_says_why() {
+        let row = |at: f64, clock| Levels { at: at * 1e-6, clock, data: false };
+        assert_eq!(bursts(&[]), Err(NoBursts::NoClock));
+        assert_eq!(bursts(&[row(0.0, true), row(9.0, true)]), Err(NoBursts::NoClock));
+        let runs: Vec<Levels> = (0..200).map(|at| row(f64::from(at), at % 2 == 0)).collect();
+        assert_eq!(bursts(&runs), Err(NoBursts::NoPause));
+        let late = runs.iter().map(|own| Levels { at: own.at + 50e-6, ..*own });
+        let long: Vec<Levels> = std::iter::once(row(0.0, true)).chain(late).collect();
+        let whole = &long[..=200];
+        assert_eq!(bursts(whole), Err(NoBursts::Incomplete), "it ends low");
+        assert_eq!(bursts(&[whole, &[row(250.0, true)]].concat()), Err(NoBursts::Long { clocks: 100 }));
+    }
+}

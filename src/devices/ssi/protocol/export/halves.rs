@@ -1,0 +1,356 @@
+//! A decoder for controllers that have no word of 64 bits: a frame is a double word, or two of them; a position is a number
+//! of 32 bits. In IEC 61131-3 structured text, and as a source file for SIMATIC (SCL of TIA Portal: S7-1200 and S7-1500).
+
+use std::fmt::Write;
+
+use super::c::flags;
+use super::procedure::{Dialect, statements};
+use crate::devices::ssi::protocol::layout::Layout;
+use crate::devices::ssi::protocol::range::Range;
+
+/// Why a layout has no decoder of 32 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum WideNumbers {
+    /// The position has more bits.
+    #[error("the position has {bits} bits, and a number of the controller 32")]
+    Position {
+        /// Bits of its code word.
+        bits: u8,
+    },
+    /// The calculation of turns and steps needs more.
+    #[error("the turns of this round axis need numbers of more than 32 bits")]
+    RoundAxis,
+}
+
+/// The language of the text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Language {
+    /// IEC 61131-3.
+    StructuredText,
+    /// SCL of TIA Portal.
+    Scl,
+}
+
+/// Bits of half a word.
+const HALF: u8 = 32;
+
+struct Halves {
+    language: Language,
+    /// A frame needs both.
+    is_wide: bool,
+}
+
+/// The halves of a word; none: it is 0.
+struct Pair {
+    high: Option<String>,
+    low: Option<String>,
+}
+
+/// A function block `SSI_DECODE` in structured text, with DWORD in place of LWORD.
+///
+/// # Errors
+/// [`WideNumbers`]: 32 bits do not suffice.
+pub fn structured_text_32(layout: &Layout, title: &str) -> Result<String, WideNumbers> {
+    let halves = Halves::of(layout, Language::StructuredText)?;
+    let mut text = String::new();
+    // Writing into a String does not fail.
+    let _ = writeln!(text, "(* SSI decoder: {}", one_line(title).replace("*)", "* )"));
+    let _ = writeln!(text, "   {} IEC 61131-3, 32 bits.", halves.first_bit(layout));
+    for (name, flag, meaning) in flags(layout) {
+        let _ = writeln!(text, "   flags 16#{:X}: {name}, {}", flag.0, one_line(&meaning).replace("*)", "* )"));
+    }
+    text.push_str("*)\nFUNCTION_BLOCK SSI_DECODE\n");
+    let lines = statements(layout, &halves);
+    halves.variables(&mut text, &lines, ["    ", "DWORD", "UDINT", "BOOL", "VAR"]);
+    for line in lines {
+        let _ = writeln!(text, "{line}");
+    }
+    text.push_str("END_FUNCTION_BLOCK\n");
+    Ok(text)
+}
+
+/// A source file with a function block `SSI_DECODE`, for *External source files* of TIA Portal.
+///
+/// # Errors
+/// [`WideNumbers`]: 32 bits do not suffice.
+pub fn scl(layout: &Layout, title: &str) -> Result<String, WideNumbers> {
+    let halves = Halves::of(layout, Language::Scl)?;
+    let mut text = String::from("FUNCTION_BLOCK \"SSI_DECODE\"\n{ S7_Optimized_Access := 'TRUE' }\nVERSION : 0.1\n");
+    let lines = statements(layout, &halves);
+    halves.variables(&mut text, &lines, ["    ", "DWord", "UDInt", "Bool", "VAR_TEMP"]);
+    text.push_str("BEGIN\n");
+    let mut comment = |words: &str| {
+        let _ = writeln!(text, "    {}", halves.comment(words));
+    };
+    comment(&format!("SSI decoder: {title}"));
+    comment(&halves.first_bit(layout));
+    for (name, flag, meaning) in flags(layout) {
+        comment(&format!("flags 16#{:X}: {name}, {meaning}", flag.0));
+    }
+    for line in lines {
+        let _ = writeln!(text, "    {}", if line.starts_with("//") { line } else { local(&line) });
+    }
+    text.push_str("END_FUNCTION_BLOCK\n");
+    Ok(text)
+}
+
+impl Halves {
+    fn of(layout: &Layout, language: Language) -> Result<Self, WideNumbers> {
+        let bits = layout.coding().bits();
+        if bits > HALF {
+            return Err(WideNumbers::Position { bits });
+        }
+        if let Range::RoundAxis { steps, revolutions } = layout.descriptor().range {
+            let (above, below) = (u64::from(revolutions.numerator), u64::from(revolutions.denominator));
+            let steps = u64::from(steps);
+            // The greatest numbers on the way: position × above, and turns × steps × below + above.
+            let greatest = (steps * above).checked_add(above).zip(steps.checked_mul(below));
+            greatest.filter(|(one, other)| (*one).max(*other) <= u64::from(u32::MAX)).ok_or(WideNumbers::RoundAxis)?;
+        }
+        Ok(Halves { language, is_wide: layout.clocks() > HALF })
+    }
+
+    /// Says into which bit the first one of a frame comes.
+    fn first_bit(&self, layout: &Layout) -> String {
+        let clocks = layout.clocks();
+        let (bit, name) = if self.is_wide { (clocks - 1 - HALF, "frame_high") } else { (clocks - 1, "frame") };
+        format!("{clocks} clocks; the first bit received is bit {bit} of {name}.")
+    }
+
+    /// The variables of the function block: of the auxiliary ones those that its statements use.
+    fn variables(&self, text: &mut String, lines: &[String], [indent, word, number, truth, auxiliary]: [&str; 5]) {
+        let mut section = |kind: &str, rows: &[(String, &str)]| {
+            let _ = writeln!(text, "{kind}");
+            for (name, own) in rows {
+                let _ = writeln!(text, "{indent}{name} : {own};");
+            }
+            text.push_str("END_VAR\n");
+        };
+        let halves = |name: &str| match self.is_wide {
+            true => vec![(format!("{name}_high"), word), (format!("{name}_low"), word)],
+            false => vec![(name.to_owned(), word)],
+        };
+        let own = |name: &str, kind| (name.to_owned(), kind);
+        section("VAR_INPUT", &halves("frame"));
+        let numbers = ["position", "turns", "steps"].map(|name| own(name, number));
+        section("VAR_OUTPUT", &[&numbers[..], &[own("flags", word), own("valid", truth)]].concat());
+        let words = if self.is_wide { halves("word") } else { vec![own("word_", word)] };
+        let next = if self.is_wide { vec![own("next_low", word)] } else { Vec::new() };
+        let single = ["code", "digit"].map(|name| own(name, word));
+        let all = [words, halves("fold"), next, single.to_vec()].concat();
+        let is_used = |name: &str| lines.iter().any(|line| mentions(line, name));
+        let used: Vec<(String, &str)> = all.into_iter().filter(|(name, _)| is_used(name)).collect();
+        section(auxiliary, &used);
+    }
+
+    fn call(&self, function: &str, value: &str, bits: u8) -> String {
+        match self.language {
+            Language::StructuredText => format!("{function}({value}, {bits})"),
+            Language::Scl => format!("{function}(IN := {value}, N := {bits})"),
+        }
+    }
+
+    fn shifted_right(&self, half: Option<&String>, bits: u8) -> Option<String> {
+        match bits {
+            0 => half.cloned(),
+            HALF.. => None,
+            _ => half.map(|half| self.call("SHR", half, bits)),
+        }
+    }
+
+    fn shifted_left(&self, half: Option<&String>, bits: u8) -> Option<String> {
+        match bits {
+            0 => half.cloned(),
+            HALF.. => None,
+            _ => half.map(|half| self.call("SHL", half, bits)),
+        }
+    }
+
+    /// The variables that hold the halves.
+    fn half_names(&self, name: &str) -> (Option<String>, String) {
+        match name {
+            "frame" | "word" | "fold" if self.is_wide => (Some(format!("{name}_high")), format!("{name}_low")),
+            // WORD is a type.
+            "word" => (None, "word_".to_owned()),
+            _ => (None, name.to_owned()),
+        }
+    }
+}
+
+/// Both halves; where one is 0, the other.
+fn joined(a: Option<String>, b: Option<String>, operator: &str) -> Option<String> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(format!("({a} {operator} {b})")),
+        (one, other) => one.or(other),
+    }
+}
+
+fn half(value: u64) -> Option<String> {
+    (value != 0).then(|| format!("DWORD#16#{value:X}"))
+}
+
+const ALL: &str = "DWORD#16#FFFFFFFF";
+const NONE: &str = "DWORD#16#0";
+
+fn masked(a: Option<&String>, b: Option<&String>) -> Option<String> {
+    match (a?, b?) {
+        (own, all) | (all, own) if all == ALL => Some(own.clone()),
+        (a, b) => Some(format!("({a} AND {b})")),
+    }
+}
+
+impl Pair {
+    /// Compares the halves of both that are not 0 anyway.
+    fn compared(&self, other: &Pair, operator: &str, between: &str, none: &str) -> String {
+        let halves = [(&self.high, &other.high), (&self.low, &other.low)].into_iter();
+        let halves = halves.filter(|(a, b)| a.is_some() || b.is_some());
+        let text = |half: &Option<String>| half.clone().unwrap_or_else(|| NONE.to_owned());
+        let parts: Vec<String> = halves.map(|(a, b)| format!("({} {operator} {})", text(a), text(b))).collect();
+        match parts.as_slice() {
+            [] => none.to_owned(),
+            [one] => one.clone(),
+            more => format!("({})", more.join(between)),
+        }
+    }
+}
+
+impl Dialect for Halves {
+    type Word = Pair;
+
+    fn name(&self, name: &'static str) -> Pair {
+        let (high, low) = self.half_names(name);
+        Pair { high, low: Some(low) }
+    }
+
+    fn hex(&self, value: u64) -> Pair {
+        Pair { high: half(value >> HALF), low: half(value & u64::from(u32::MAX)) }
+    }
+
+    fn and(&self, a: &Pair, b: &Pair) -> Pair {
+        Pair { high: masked(a.high.as_ref(), b.high.as_ref()), low: masked(a.low.as_ref(), b.low.as_ref()) }
+    }
+
+    fn or(&self, a: &Pair, b: &Pair) -> Pair {
+        Pair { high: joined(a.high.clone(), b.high.clone(), "OR"), low: joined(a.low.clone(), b.low.clone(), "OR") }
+    }
+
+    fn xor(&self, a: &Pair, b: &Pair) -> Pair {
+        Pair { high: joined(a.high.clone(), b.high.clone(), "XOR"), low: joined(a.low.clone(), b.low.clone(), "XOR") }
+    }
+
+    fn right(&self, a: &Pair, bits: u8) -> Pair {
+        if bits >= HALF {
+            return Pair { high: None, low: self.shifted_right(a.high.as_ref(), bits - HALF) };
+        }
+        let crossing = if bits == 0 { None } else { self.shifted_left(a.high.as_ref(), HALF - bits) };
+        Pair {
+            high: self.shifted_right(a.high.as_ref(), bits),
+            low: joined(self.shifted_right(a.low.as_ref(), bits), crossing, "OR"),
+        }
+    }
+
+    fn left(&self, a: &Pair, bits: u8) -> Pair {
+        if bits >= HALF {
+            return Pair { high: self.shifted_left(a.low.as_ref(), bits - HALF), low: None };
+        }
+        let crossing = if bits == 0 { None } else { self.shifted_right(a.low.as_ref(), HALF - bits) };
+        Pair {
+            high: joined(self.shifted_left(a.high.as_ref(), bits), crossing, "OR"),
+            low: self.shifted_left(a.low.as_ref(), bits),
+        }
+    }
+
+    fn equal(&self, a: &Pair, b: &Pair) -> String {
+        a.compared(b, "=", " AND ", "TRUE")
+    }
+
+    fn differs(&self, a: &Pair, b: &Pair) -> String {
+        a.compared(b, "<>", " OR ", "FALSE")
+    }
+
+    fn number(&self, word: &Pair) -> String {
+        format!("DWORD_TO_UDINT({})", word.low.as_deref().unwrap_or(NONE))
+    }
+
+    fn divided(&self, number: &str, by: u64) -> String {
+        format!("({number}) / UDINT#{by}")
+    }
+
+    fn rest(&self, number: &str, by: u64) -> String {
+        format!("({number}) MOD UDINT#{by}")
+    }
+
+    fn assign(&self, name: &str, value: &str) -> String {
+        format!("{name} := {value};")
+    }
+
+    /// What has no upper half stays below 32 bits: what a shift carries there is always 0.
+    fn assign_word(&self, name: &'static str, value: &Pair) -> Vec<String> {
+        let text = |half: &Option<String>| half.clone().unwrap_or_else(|| NONE.to_owned());
+        match self.half_names(name) {
+            (None, own) => vec![self.assign(&own, &text(&value.low))],
+            (Some(high), low) => {
+                let (upper, lower) = (text(&value.high), text(&value.low));
+                // A half may be made of both that there were.
+                if !mentions(&upper, &low) {
+                    vec![self.assign(&low, &lower), self.assign(&high, &upper)]
+                } else if !mentions(&lower, &high) {
+                    vec![self.assign(&high, &upper), self.assign(&low, &lower)]
+                } else {
+                    vec![self.assign("next_low", &lower), self.assign(&high, &upper), self.assign(&low, "next_low")]
+                }
+            }
+        }
+    }
+
+    fn when(&self, condition: &str, statement: &str) -> String {
+        format!("IF {condition} THEN {statement} END_IF;")
+    }
+
+    fn comment(&self, text: &str) -> String {
+        match self.language {
+            Language::StructuredText => format!("(* {} *)", one_line(text).replace("*)", "* )")),
+            // A source file is read as ASCII by some versions.
+            Language::Scl => format!("// {}", one_line(text).replace(|c: char| !c.is_ascii(), "_")),
+        }
+    }
+
+    fn negated(&self, condition: &str) -> String {
+        format!("NOT {condition}")
+    }
+
+    fn both(&self, a: &str, b: &str) -> String {
+        format!("({a} AND {b})")
+    }
+}
+
+/// A variable stands in a line, and not only as a part of another's name.
+fn mentions(line: &str, name: &str) -> bool {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    line.split(|c| !is_name(c)).any(|word| word == name)
+}
+
+fn one_line(text: &str) -> String {
+    text.replace(['\n', '\r'], " ")
+}
+
+/// Variables of a block of SCL are marked with `#`; all of them are in small letters, and nothing else is.
+fn local(line: &str) -> String {
+    let mut out = String::new();
+    let mut word = String::new();
+    for c in line.chars().chain(std::iter::once('\n')) {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        if word.starts_with(|c: char| c.is_ascii_lowercase()) {
+            out.push('#');
+        }
+        out.push_str(&word);
+        word.clear();
+        if c != '\n' {
+            out.push(c);
+        }
+    }
+    out
+}

@@ -1,0 +1,217 @@
+//! The export of a logic analyser as levels of clock and data. Saleae Logic writes a row for each change, with
+//! `Time [s],Channel 0,Channel 1` above; sigrok (PulseView) begins with lines of `;`, one of which has the sample rate, and
+//! writes a row for each sample, with its time in front or without.
+
+use crate::app::Text;
+use crate::devices::ssi::protocol::Levels;
+use crate::devices::ssi::state::TEXTS;
+
+/// The rows of a file, with their numbers, and what stands above them.
+struct Table<'t> {
+    heading: Vec<&'t str>,
+    delimiter: char,
+    rate_hz: Option<f64>,
+    rows: Vec<(usize, &'t str)>,
+}
+
+/// The meaning of the first column.
+#[derive(Clone, Copy)]
+enum Times {
+    /// A time in units of so many seconds.
+    Column(f64),
+    /// There is none: a row for each sample, so many seconds apart.
+    Samples(f64),
+}
+
+/// Words for the clock and the data in the names of channels.
+const CLOCK: [&str; 4] = ["clk", "clock", "takt", "sck"];
+const DATA: [&str; 2] = ["dat", "miso"];
+
+/// The levels of both lines; `None`: the text is no export of a logic analyser.
+///
+/// # Errors
+/// It is one that cannot be used: which line, why, and what to do.
+pub(super) fn levels(text: &str) -> Option<Result<Vec<Levels>, Text>> {
+    let table = Table::of(text)?;
+    Some(table.times().and_then(|times| table.levels(times)))
+}
+
+impl<'t> Table<'t> {
+    fn of(text: &'t str) -> Option<Self> {
+        let mut rate_hz = None;
+        let mut has_comment = false;
+        let mut rows = Vec::new();
+        for (number, line) in (1..).zip(text.lines()) {
+            let line = line.trim().trim_start_matches('\u{feff}');
+            match line.strip_prefix(';') {
+                Some(comment) if rows.is_empty() => {
+                    let rate = comment.trim().strip_prefix("Samplerate:").and_then(frequency);
+                    has_comment |= rate.is_some() || comment.contains("sigrok");
+                    rate_hz = rate.or(rate_hz);
+                }
+                _ if line.is_empty() => {}
+                _ => rows.push((number, line)),
+            }
+        }
+        let (_, first) = *rows.first()?;
+        let count = |delimiter: &char| first.matches(*delimiter).count();
+        let delimiter = [',', ';', '\t'].into_iter().max_by_key(|own| (count(own), *own == ','))?;
+        let cells = |line: &'t str| line.split(delimiter).map(cell).collect::<Vec<_>>();
+        let heading = cells(first);
+        let has_time = heading.first().is_some_and(|own| time_unit(own, rate_hz).is_some() || is_time(own));
+        let is_saleae = heading.first().is_some_and(|own| own.to_ascii_lowercase().starts_with("time ["));
+        // Columns of 0 and 1 alone are levels; other tables have a time, too.
+        let are_levels = rows.get(1).is_some_and(|(_, row)| {
+            let mut levels = row.split(delimiter).map(cell).skip(1).peekable();
+            levels.peek().is_some() && levels.all(|own| matches!(own, "0" | "1" | "X"))
+        });
+        if !(has_comment || is_saleae || has_time && are_levels) {
+            return None;
+        }
+        // Without names the first row has levels already.
+        let is_named = !heading.iter().all(|own| own.parse::<f64>().is_ok());
+        let heading = if is_named { heading } else { vec![""; heading.len()] };
+        let rows = if is_named { rows.get(1..).unwrap_or_default().to_vec() } else { rows };
+        Some(Table { heading, delimiter, rate_hz, rows })
+    }
+
+    fn times(&self) -> Result<Times, Text> {
+        let first = self.heading.first().copied().unwrap_or_default();
+        if let Some(unit) = time_unit(first, self.rate_hz) {
+            return Ok(Times::Column(unit));
+        }
+        match self.rate_hz {
+            Some(rate) if !is_time(first) => Ok(Times::Samples(1.0 / rate)),
+            _ => Err(TEXTS.text("ssi_capture.no_times")),
+        }
+    }
+
+    fn levels(&self, times: Times) -> Result<Vec<Levels>, Text> {
+        let skipped = match times {
+            Times::Column(_) => 1,
+            Times::Samples(_) => 0,
+        };
+        let channels = self.heading.len().saturating_sub(skipped);
+        if channels < 2 {
+            return Err(TEXTS.text("ssi_capture.one_channel"));
+        }
+        let mut read = Vec::with_capacity(self.rows.len());
+        let mut last = f64::NEG_INFINITY;
+        for (index, (line, row)) in self.rows.iter().enumerate() {
+            let at = |id| TEXTS.text(id).with("line", line);
+            let cells: Vec<&str> = row.split(self.delimiter).map(cell).collect();
+            if cells.len() != self.heading.len() {
+                let id = if cells.len() < self.heading.len() { "ssi_capture.cut_off" } else { "ssi_capture.columns" };
+                return Err(at(id).with("columns", cells.len()).with("expected", self.heading.len()));
+            }
+            let (time, levels) = cells.split_at(skipped);
+            let time = match (times, time.first()) {
+                (Times::Column(unit), Some(text)) => {
+                    let number: Option<f64> = text.replace(',', ".").parse().ok().filter(|own: &f64| own.is_finite());
+                    number.ok_or_else(|| at("ssi_capture.time").with("text", text))? * unit
+                }
+                (Times::Column(unit) | Times::Samples(unit), _) => index as f64 * unit,
+            };
+            if time < last {
+                return Err(at("ssi_capture.back"));
+            }
+            last = time;
+            let bits: Vec<Option<bool>> = levels
+                .iter()
+                .map(|text| match *text {
+                    "0" => Ok(Some(false)),
+                    "1" => Ok(Some(true)),
+                    // Nothing was recorded there.
+                    "X" | "x" => Ok(None),
+                    other => Err(at("ssi_capture.level").with("text", other)),
+                })
+                .collect::<Result<_, Text>>()?;
+            read.push((time, bits));
+        }
+        let (clock, data) = self.lines(skipped, &read)?;
+        let of = |bits: &[Option<bool>], channel: usize| bits.get(channel).copied().flatten();
+        let mut levels: Vec<Levels> = Vec::new();
+        for (at, bits) in &read {
+            let (Some(clock), Some(data)) = (of(bits, clock), of(bits, data)) else { continue };
+            levels.push(Levels { at: *at, clock, data });
+        }
+        Ok(levels)
+    }
+
+    /// The channels of the clock and the data: by their names, else the two that change, of which the clock does more often.
+    fn lines(&self, skipped: usize, read: &[(f64, Vec<Option<bool>>)]) -> Result<(usize, usize), Text> {
+        let names: Vec<String> = self.heading.iter().skip(skipped).map(|name| name.to_lowercase()).collect();
+        let named = |words: &[&str]| names.iter().position(|name| words.iter().any(|word| name.contains(word)));
+        if let (Some(clock), Some(data)) = (named(&CLOCK), named(&DATA))
+            && clock != data
+        {
+            return Ok((clock, data));
+        }
+        let changes = |channel: usize| {
+            let levels = read.iter().filter_map(|(_, bits)| bits.get(channel).copied().flatten());
+            levels.clone().zip(levels.skip(1)).filter(|(before, now)| before != now).count()
+        };
+        let counts: Vec<usize> = (0..names.len()).map(changes).collect();
+        let mut active: Vec<usize> =
+            (0..names.len()).filter(|own| counts.get(*own).is_some_and(|own| *own > 0)).collect();
+        // A data line that never changes is one, too, where there is no other.
+        if active.len() == 1 && names.len() == 2 {
+            active.extend((0..2).filter(|own| counts.get(*own) == Some(&0)));
+        }
+        let count = |channel: &usize| counts.get(*channel).copied().unwrap_or(0);
+        match active.as_slice() {
+            [] => Err(TEXTS.text("ssi_capture.no_edges")),
+            [one, other] if count(one) >= count(other) => Ok((*one, *other)),
+            [one, other] => Ok((*other, *one)),
+            more => Err(TEXTS.text("ssi_capture.channels").with("count", more.len().max(names.len()))),
+        }
+    }
+}
+
+fn cell(text: &str) -> &str {
+    text.trim().trim_matches('"').trim()
+}
+
+fn is_time(name: &str) -> bool {
+    name.to_ascii_lowercase().starts_with("time")
+}
+
+/// The unit of a column of times in seconds, by its name: `Time [s]`; of sigrok `nanoseconds`, or `Time` alone, whose unit
+/// depends on the sample rate.
+fn time_unit(name: &str, rate_hz: Option<f64>) -> Option<f64> {
+    const UNITS: [(&str, &str, f64); 5] = [
+        ("s", "seconds", 1.0),
+        ("ms", "milliseconds", 1e-3),
+        ("us", "microseconds", 1e-6),
+        ("ns", "nanoseconds", 1e-9),
+        ("ps", "picoseconds", 1e-12),
+    ];
+    let name = name.to_lowercase().replace('µ', "u").replace('μ', "u");
+    let inside = name
+        .split_once(['[', '('])
+        .and_then(|(time, unit)| (time.trim() == "time").then(|| unit.trim_end_matches([']', ')']).trim().to_owned()));
+    match inside {
+        Some(own) => UNITS.iter().find(|(short, ..)| *short == own).map(|(.., unit)| *unit),
+        None if name == "time" => {
+            // The largest of these units in which a sample takes one or more.
+            let rate = rate_hz?;
+            Some(UNITS.iter().map(|(.., unit)| *unit).find(|unit| 1.0 / rate >= *unit).unwrap_or(1e-12))
+        }
+        None => UNITS.iter().find(|(_, long, _)| *long == name).map(|(.., unit)| *unit),
+    }
+}
+
+/// `24 MHz`, as sigrok writes a sample rate.
+fn frequency(text: &str) -> Option<f64> {
+    let text = text.trim();
+    let begins = text.find(|c: char| c.is_alphabetic())?;
+    let (number, unit) = text.split_at_checked(begins)?;
+    let unit = match unit.trim() {
+        "Hz" => 1.0,
+        "kHz" => 1e3,
+        "MHz" => 1e6,
+        "GHz" => 1e9,
+        _ => return None,
+    };
+    number.trim().parse::<f64>().ok().map(|own| own * unit).filter(|own| *own > 0.0)
+}

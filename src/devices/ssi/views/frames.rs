@@ -1,0 +1,80 @@
+//! The frames of a search in the order of reading, decoded by the layout as it is designed.
+
+use egui::{RichText, ScrollArea, Ui};
+
+use crate::app::{Action, Rgb};
+use crate::devices::ssi::protocol::Location;
+use crate::devices::ssi::state::{Decoded, Encoder, SsiAction as Ssi, TEXTS, Try};
+use crate::devices::ssi::views::say;
+use crate::ui::Theme;
+use crate::ui::controls::{card, paragraph};
+
+/// Rows that are seen at once.
+const ROWS: f32 = 12.0;
+
+/// Draws the frames; a click on one tries the layout with it.
+pub(super) fn card_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    encoder: &Encoder,
+    (clocks, frames): (u8, &[u64]),
+    actions: &mut Vec<Action>,
+) {
+    let layout = encoder.designer.layout();
+    card(ui, theme, TEXTS.text("ssi_frames.title"), |ui| {
+        if layout.clocks() != clocks {
+            let text = TEXTS.text("ssi_frames.other_clocks").with("bits", clocks).with("clocks", layout.clocks());
+            paragraph(ui, theme.caption(theme.words(&text)));
+            return;
+        }
+        paragraph(ui, theme.caption(say(theme, "ssi_frames.try")));
+        let digits = usize::from(clocks).div_ceil(4);
+        let names = ["ssi_frames.number", "ssi_frames.frame", "ssi_trial.position", "live.turns", "live.step"];
+        let [number, frame, position, turns, steps] = names.map(|id| say(theme, id));
+        let heading = row(&[&number, &frame, &position, &turns, &steps], digits);
+        ui.label(theme.mono(heading).color(theme.palette.muted));
+        let height = ui.text_style_height(&egui::TextStyle::Monospace) + 4.0;
+        // Rows of a table: no room around their buttons.
+        let spacing = ui.spacing_mut();
+        (spacing.item_spacing.y, spacing.interact_size.y, spacing.button_padding.y) = (0.0, height, 0.0);
+        let seen = ROWS * height;
+        let area = ScrollArea::vertical().id_salt("frames").max_height(seen).min_scrolled_height(seen);
+        area.auto_shrink([false, true]).show_rows(ui, height, frames.len(), |ui, rows| {
+            for (index, frame) in frames.iter().enumerate().skip(rows.start).take(rows.len()) {
+                let decoded = Decoded::of(layout, *frame);
+                let (words, colour) = told(theme, index + 1, &decoded, digits);
+                let text = RichText::new(words).monospace().color(colour);
+                if ui.add(egui::Button::new(text).frame(false)).clicked() {
+                    let bits = format!("0x{frame:X}");
+                    actions.push(Action::device(encoder.session.id, Ssi::Try(Try::Bits(bits))));
+                }
+            }
+        });
+    });
+}
+
+/// A frame in a row, and its colour.
+fn told(theme: &Theme, number: usize, decoded: &Decoded, digits: usize) -> (String, Rgb) {
+    let frame = format!("0x{:0digits$X}", decoded.frame);
+    let (position, turns, steps) = match decoded.place {
+        Some((position, Location::Shaft { turns, steps, .. })) => {
+            (position.to_string(), turns.to_string(), steps.to_string())
+        }
+        Some((position, Location::Length { millimetres })) => {
+            (position.to_string(), String::new(), format!("{} mm", theme.number(millimetres, 3)))
+        }
+        None => ("–".to_owned(), String::new(), String::new()),
+    };
+    let own = row(&[&number.to_string(), &frame, &position, &turns, &steps], digits);
+    if decoded.is_valid {
+        (own, theme.palette.text)
+    } else {
+        (format!("{own}  {}", theme.say("live.invalid")), theme.palette.bad)
+    }
+}
+
+/// Columns of fixed widths, numbers to the right.
+fn row([number, frame, position, turns, steps]: &[&str; 5], digits: usize) -> String {
+    let width = (digits + 2).max(8);
+    format!("{number:>5}  {frame:<width$} {position:>10} {turns:>11} {steps:>9}")
+}

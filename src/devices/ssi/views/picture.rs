@@ -1,0 +1,103 @@
+//! A picture of an export, drawn from the shapes that its file is made of.
+
+use egui::accesskit::Role;
+use egui::{
+    Align2, Color32, FontId, Pos2, Rect, ScrollArea, Sense, Shape, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, pos2,
+};
+
+use crate::devices::ssi::protocol::{PathStep, Picture, PictureLabel, PictureShape};
+use crate::ui::Theme;
+
+/// Smaller than this, its numbers cannot be read; then the picture scrolls.
+const LEAST_SCALE: f32 = 0.75;
+const MOST_SCALE: f32 = 1.4;
+
+/// Draws a picture on its paper, as wide as there is room. Its title is its accessible name.
+pub(super) fn picture_ui(ui: &mut Ui, theme: &Theme, picture: &Picture) {
+    ScrollArea::horizontal().id_salt("picture").auto_shrink([false, true]).show(ui, |ui| {
+        let scale = (ui.available_width() / picture.width as f32).clamp(LEAST_SCALE, MOST_SCALE);
+        let size = Vec2::new(picture.width as f32, picture.height as f32) * scale;
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        let told = texts(picture);
+        response.widget_info(|| {
+            let mut info = WidgetInfo::labeled(Role::Image, true, &picture.title);
+            info.current_text_value = Some(told.clone());
+            info
+        });
+        if ui.is_rect_visible(rect) {
+            let paper = Paper { ui, theme, origin: rect.min, scale };
+            ui.painter().rect_filled(rect, theme.radius, Color32::WHITE);
+            picture.shapes.iter().for_each(|shape| paper.draw(shape));
+        }
+    });
+}
+
+/// What stands in a picture.
+fn texts(picture: &Picture) -> String {
+    let texts = picture.shapes.iter().filter_map(|shape| match shape {
+        PictureShape::Text(label) if !label.text.is_empty() => Some(label.text.as_str()),
+        _ => None,
+    });
+    texts.collect::<Vec<_>>().join(", ")
+}
+
+struct Paper<'a> {
+    ui: &'a Ui,
+    theme: &'a Theme,
+    origin: Pos2,
+    scale: f32,
+}
+
+impl Paper<'_> {
+    fn at(&self, x: f64, y: u32) -> Pos2 {
+        self.origin + Vec2::new(x as f32, y as f32) * self.scale
+    }
+
+    fn draw(&self, shape: &PictureShape) {
+        let painter = self.ui.painter();
+        match shape {
+            PictureShape::Box { x, y, width, height, fill, line } => {
+                let corners = [self.at(x.units(), *y), self.at(x.units() + width.units(), y + height)];
+                let [from, to] = corners;
+                let stroke = Stroke::new(self.scale, colour(line));
+                painter.rect(Rect::from_min_max(from, to), 0.0, colour(fill), stroke, StrokeKind::Middle);
+            }
+            PictureShape::Line { path, colour: own } => self.line(path, colour(own)),
+            PictureShape::Text(label) => self.text(label),
+        }
+    }
+
+    fn line(&self, path: &[PathStep], colour: Color32) {
+        let stroke = Stroke::new(self.scale, colour);
+        let mut runs: Vec<Vec<Pos2>> = Vec::new();
+        for step in path {
+            let last = runs.last().and_then(|run| run.last()).copied().unwrap_or(self.origin);
+            let next = match step {
+                PathStep::Move(x, y) => {
+                    runs.push(vec![self.at(x.units(), *y)]);
+                    continue;
+                }
+                PathStep::Across(x) => pos2(self.at(x.units(), 0).x, last.y),
+                PathStep::Down(y) => pos2(last.x, self.at(0.0, *y).y),
+            };
+            if let Some(run) = runs.last_mut() {
+                run.push(next);
+            }
+        }
+        self.ui.painter().extend(runs.into_iter().map(|run| Shape::line(run, stroke)));
+    }
+
+    fn text(&self, label: &PictureLabel) {
+        let size = label.size as f32 * self.scale;
+        let font = if label.is_bold { self.theme.strong(size) } else { FontId::proportional(size) };
+        let align = if label.is_centred { Align2::CENTER_BOTTOM } else { Align2::LEFT_BOTTOM };
+        // Letters go below their baseline by about a fifth of their size.
+        let at = self.at(label.x.units(), label.y) + Vec2::new(0.0, 0.22 * size);
+        self.ui.painter().text(at, align, &label.text, font, label.colour.map_or(Color32::BLACK, colour));
+    }
+}
+
+/// A colour of a file: black where it is none.
+fn colour(text: &str) -> Color32 {
+    Color32::from_hex(text).unwrap_or(Color32::BLACK)
+}
