@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
 use super::dialogs::{ConnectView, FileView};
+use super::panels::TraceView;
 use super::plot;
 use crate::app::{AnyDevice, SessionId, Studio, Tab};
 
@@ -16,6 +17,8 @@ pub struct Views {
     pub(super) file: Option<FileView>,
     pub(super) about: bool,
     pub(super) help: bool,
+    /// The list of frames.
+    pub(super) trace: TraceView,
     /// The plot of the encoder that is shown.
     pub(super) plot: plot::PlotUiState,
     /// Microseconds from one reading of the position to the next.
@@ -33,6 +36,7 @@ impl Views {
             file: None,
             about: false,
             help: false,
+            trace: TraceView::default(),
             plot: plot::PlotUiState::in_panel(),
             rate: 50_000,
         }
