@@ -1,5 +1,7 @@
 //! Requests to one device: actions of its kind, or commands that every device has.
 
+use std::time::Duration;
+
 use super::action::ReadError;
 use super::devices::{ActContext, DeviceCommand};
 use super::documents::read_error;
@@ -7,13 +9,44 @@ use super::payload::{Payload, WrongKind};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
 
+/// The interval of live values that start by themselves.
+const LIVE: Duration = Duration::from_millis(50);
+
 impl Studio {
     /// Asks a device for what every device can be asked for. Links are opened here, and here two sessions meet.
     pub(super) fn command(&mut self, id: SessionId, command: DeviceCommand) {
         match command {
             DeviceCommand::Reconnect => self.reconnect(id),
             DeviceCommand::WriteInto(target) => self.write_into(id, target),
+            DeviceCommand::Poll(interval) => {
+                self.settings.live_stopped = interval.is_none();
+                self.poll_device(id, interval);
+            }
             command => self.with_device(id, |device, services| device.obey(command, services)),
+        }
+    }
+
+    fn poll_device(&mut self, id: SessionId, interval: Option<Duration>) {
+        self.with_device(id, |device, services| {
+            device.state_mut().live_due = false;
+            device.obey(DeviceCommand::Poll(interval), services);
+        });
+    }
+
+    /// Starts live values where they start by themselves: once the device was read, and while nothing runs on its line.
+    pub(super) fn start_live(&mut self) {
+        let is_due = |device: &AnyDevice| {
+            let state = device.state();
+            state.live_due && !state.just_connected && device.is_ready()
+        };
+        let due: Vec<SessionId> =
+            self.devices.iter().filter(|own| is_due(own.as_ref())).map(|device| device.id()).collect();
+        for id in due {
+            if self.settings.live_stopped {
+                self.with_device(id, |device, _| device.state_mut().live_due = false);
+            } else {
+                self.poll_device(id, Some(LIVE));
+            }
         }
     }
 

@@ -5,7 +5,7 @@
 use egui::Ui;
 
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
-use super::{Theme, workspace};
+use super::{Theme, status_line};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
 /// A page of a tab, as the navigation and the help show it. `word` and `help` name texts of the table.
@@ -81,7 +81,7 @@ pub trait TypedDeviceView: Sync + 'static {
         actions: &mut Vec<Action>,
     );
 
-    /// Draws the progress of the running job, apart from the page.
+    /// Draws the progress of the running job in the status line, from the right.
     fn running_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -90,7 +90,7 @@ pub trait TypedDeviceView: Sync + 'static {
         _page: Self::Page,
         actions: &mut Vec<Action>,
     ) {
-        workspace::running_ui(ui, theme, any, None, actions);
+        status_line::running_ui(ui, theme, any, None, actions);
     }
 
     /// Draws the position large, in this ink, and the numbers beside it.
@@ -156,7 +156,7 @@ pub trait SessionView {
     /// Draws the open page.
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>);
 
-    /// Draws the progress of the running job, apart from the page.
+    /// Draws the progress of the running job in the status line, from the right.
     fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
     /// Draws the menu of the values that are read beside the position, where the device has any.
