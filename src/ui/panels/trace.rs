@@ -12,7 +12,7 @@ use crate::ui::{Theme, Views, icons};
 const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 
-/// Where the list of frames stands.
+/// The scroll position of the list of frames.
 #[derive(Default)]
 pub(in crate::ui) struct TraceView {
     /// Whose frames they are, and how many had gone when it was drawn last.
