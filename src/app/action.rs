@@ -30,6 +30,10 @@ pub enum Action {
     SetLanguage(Language),
     /// The arrangement of the panels has changed.
     KeepLayout(String),
+    /// Open the lower panel, or close it to one line.
+    OpenLowerPanel(bool),
+    /// Show live values without their plot, or with it.
+    ShowValuesAlone(bool),
     /// The window has another size, in points.
     KeepSize(u32, u32),
     /// Show another session.

@@ -1,5 +1,7 @@
 //! Requests to one device: actions of its kind, or commands that every device has.
 
+use std::time::Duration;
+
 use super::action::ReadError;
 use super::devices::{ActContext, DeviceCommand};
 use super::documents::read_error;
@@ -7,6 +9,9 @@ use super::file_question::FileQuestion;
 use super::payload::{Payload, WrongKind};
 use super::studio::{SessionId, Studio};
 use super::{AnyDevice, Severity, Text};
+
+/// The interval of live values that start by themselves.
+const LIVE: Duration = Duration::from_millis(50);
 
 impl Studio {
     /// Carries out a command that every device has. Links are opened here, and commands between two sessions are handled
@@ -18,7 +23,35 @@ impl Studio {
             DeviceCommand::AskRestore => self.services.file_question = Some(FileQuestion::Restore(id)),
             DeviceCommand::AskCompare => self.services.file_question = Some(FileQuestion::Compare(id)),
             DeviceCommand::Compare(path) => self.compare_with(id, path),
+            DeviceCommand::Poll(interval) => {
+                self.settings.live_stopped = interval.is_none();
+                self.poll_device(id, interval);
+            }
             command => self.with_device(id, |device, services| device.obey(command, services)),
+        }
+    }
+
+    fn poll_device(&mut self, id: SessionId, interval: Option<Duration>) {
+        self.with_device(id, |device, services| {
+            device.state_mut().live_due = false;
+            device.obey(DeviceCommand::Poll(interval), services);
+        });
+    }
+
+    /// Starts live values where they start by themselves: once the device was read, and while nothing runs on its line.
+    pub(super) fn start_live(&mut self) {
+        let is_due = |device: &AnyDevice| {
+            let state = device.state();
+            state.live_due && !state.just_connected && device.is_ready()
+        };
+        let due: Vec<SessionId> =
+            self.devices.iter().filter(|own| is_due(own.as_ref())).map(|device| device.id()).collect();
+        for id in due {
+            if self.settings.live_stopped {
+                self.with_device(id, |device, _| device.state_mut().live_due = false);
+            } else {
+                self.poll_device(id, Some(LIVE));
+            }
         }
     }
 

@@ -16,8 +16,10 @@ use super::{AnyDevice, Severity, Text};
 use crate::link::{LinkUrl, Scheme, TraceEntry, UrlError};
 use crate::worker::{OpenError, Ring, Session, Worker};
 
-/// Frames that wait for the window, at most.
-const FRAMES: usize = 2_000;
+/// Frames that wait for the window, at most: ten seconds of 2,000 a second, which a window that draws always outruns.
+const FRAMES: usize = 20_000;
+/// The memory that they may take, in bytes.
+const FRAME_BYTES: usize = 8 << 20;
 
 impl Studio {
     /// Returns the tab of the device that a link leads to. If the link does not tell, this is the kind of device last used
@@ -49,8 +51,9 @@ impl Studio {
 
     /// Opens a link to a device found by a search: other masters on its line were asked about before.
     pub(super) fn open_found(&mut self, tab: Tab, url: LinkUrl) {
+        let was_asked = self.services.world.kinds.of_tab(tab).is_some_and(|kind| kind.may_have_other_master(&url));
         if let Some(id) = self.session_at(tab, &url) {
-            self.attempt_to_open(id, url);
+            self.attempt_to_open(id, url, was_asked);
         }
     }
 
@@ -128,7 +131,7 @@ impl Studio {
         let kinds = self.services.world.kinds;
         let Some(device) = self.device_mut(id) else { return };
         if !kinds.of_tab(device.tab()).is_some_and(|kind| kind.may_have_other_master(&url)) {
-            return self.attempt_to_open(id, url);
+            return self.attempt_to_open(id, url, false);
         }
         *device.phase_mut() = Phase::Lost(Text::new("session.not_asked"));
         self.question = Some(Question::other_master(&url, Then::OpenLink(id)));
@@ -137,19 +140,19 @@ impl Studio {
     /// Opens the link after the user has confirmed that no drive is on its line.
     pub(super) fn open_confirmed(&mut self, id: SessionId) {
         if let Some(Source::Link(url)) = self.device(id).map(|device| device.source()) {
-            self.attempt_to_open(id, url.clone());
+            self.attempt_to_open(id, url.clone(), true);
         }
     }
 
     /// Opens a link for a session again: only the result of this attempt counts.
-    fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl) {
+    fn attempt_to_open(&mut self, id: SessionId, url: LinkUrl, is_sole_master: bool) {
         let attempt = self.new_number();
         self.free_wire_of_tools(&url);
         let Some(device) = self.devices.iter_mut().find(|device| device.id() == id) else { return };
         let earlier = device.opening_mut().take().map(|opening| opening.over);
         let over = device.open(url, attempt, earlier, &mut self.services);
         *device.phase_mut() = Phase::Opening;
-        *device.opening_mut() = Some(Opening { attempt: Some(attempt), over });
+        *device.opening_mut() = Some(Opening { attempt: Some(attempt), over, is_sole_master });
     }
 
     /// Handles the end of opening a link.
@@ -220,7 +223,7 @@ fn open<D: Kind>(
         .map_err(|error| Box::new(OpenFailed::Link(error)))?;
     prepare(&mut session);
     let (is_virtual, aside) = (session.is_virtual(), D::session_handle(&session));
-    let trace: Ring<TraceEntry> = Ring::new(FRAMES);
+    let trace: Ring<TraceEntry> = Ring::bounded(FRAMES, FRAME_BYTES, |entry| entry.bytes.len() + size_of_val(entry));
     let (ring, last) = (trace.clone(), WakeOnDrop(wake.clone()));
     session.watch(move |entry| {
         let _ = &last;

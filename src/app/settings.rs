@@ -38,6 +38,15 @@ pub struct Settings {
     pub tab: Tab,
     /// Size of the window in points.
     pub size: Option<(u32, u32)>,
+    /// The lower panel, with trace, jobs and log, is open.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub lower_open: bool,
+    /// Live values do not start by themselves: the user has stopped them.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub live_stopped: bool,
+    /// The panel Live shows values alone, without its plot.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub values_alone: bool,
     /// Stored data about drives, by the device that they are behind.
     drives: BTreeMap<String, RememberedDrives>,
 }
@@ -51,6 +60,9 @@ impl Default for Settings {
             layout: None,
             tab: Tab::default(),
             size: None,
+            lower_open: false,
+            live_stopped: false,
+            values_alone: false,
             drives: BTreeMap::new(),
         }
     }
@@ -97,6 +109,9 @@ impl Settings {
             layout: entry!(layout: Option<String>, usual.layout),
             tab: entry!(tab: Tab, usual.tab),
             size: entry!(size: Option<(u32, u32)>, usual.size),
+            lower_open: entry!(lower_open: bool, usual.lower_open),
+            live_stopped: entry!(live_stopped: bool, usual.live_stopped),
+            values_alone: entry!(values_alone: bool, usual.values_alone),
             drives: entry!(
                 drives: BTreeMap<String, RememberedDrives>,
                 // Unconfirmed limits stay unconfirmed, even if other parts are broken.
@@ -115,7 +130,7 @@ impl Settings {
         macro_rules! take {
             ($($name:ident),*) => { $(if ours.$name != known.$name { self.$name = ours.$name.clone(); })* };
         }
-        take!(theme, language, layout, tab, size);
+        take!(theme, language, layout, tab, size, lower_open, live_stopped, values_alone);
         self.change_drives(known, ours);
         for tab in ours.links.tabs() {
             let used = newer_links(known.links(tab), ours.links(tab));

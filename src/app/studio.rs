@@ -93,6 +93,8 @@ impl Studio {
             Action::SetTheme(theme) => self.settings.theme = theme,
             Action::SetLanguage(language) => self.settings.language = language,
             Action::KeepLayout(layout) => self.settings.layout = Some(layout),
+            Action::OpenLowerPanel(open) => self.settings.lower_open = open,
+            Action::ShowValuesAlone(alone) => self.settings.values_alone = alone,
             Action::KeepSize(width, height) => self.settings.size = Some((width, height)),
             Action::Select(id) => {
                 if let Some(tab) = self.device(id).map(|device| device.tab()) {
@@ -170,6 +172,7 @@ impl Studio {
             connect.pump();
         }
         self.services.poll_closing_sessions();
+        self.start_live();
         self.feed_exports();
         self.remember_drives();
         self.refresh_settings();

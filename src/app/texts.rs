@@ -35,6 +35,16 @@ enum Argument {
 }
 
 impl Argument {
+    /// Returns the memory that it points to, in bytes.
+    fn size(&self) -> usize {
+        match self {
+            Argument::Words(words) | Argument::Number(words) => words.len(),
+            Argument::Name(english, german) => english.len() + german.len(),
+            Argument::Text(text) => text.size(),
+            Argument::List(texts) => texts.iter().map(Text::size).sum(),
+        }
+    }
+
     fn text_for(&self, place: Output) -> String {
         match self {
             Argument::Number(number) if matches!(place, Output::Window(Language::German)) => number.replace('.', ","),
@@ -127,6 +137,12 @@ impl Text {
             *argument == "path" && matches!(value, Argument::Words(words) if *words == name)
         };
         self.arguments.iter().any(is_it)
+    }
+
+    /// Returns about how much memory it takes, in bytes.
+    pub(super) fn size(&self) -> usize {
+        let arguments = self.arguments.iter().map(|(_, own)| size_of_val(own) + size_of::<&str>() + own.size());
+        size_of::<Self>() + arguments.sum::<usize>()
     }
 
     /// Returns the text's id in its catalogue.

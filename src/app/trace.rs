@@ -53,6 +53,11 @@ impl From<Vec<Text>> for Explained {
 }
 
 impl TraceLine {
+    /// Returns about how much memory it takes, in bytes.
+    fn size(&self) -> usize {
+        size_of::<Self>() + self.bytes.len() + self.meaning.iter().map(Text::size).sum::<usize>()
+    }
+
     /// Returns the meaning in one line.
     pub fn words(&self, language: Language) -> String {
         self.meaning.iter().map(|text| text.words(language)).collect::<Vec<_>>().join(" · ")
@@ -63,22 +68,38 @@ impl TraceLine {
 #[derive(Debug, Default)]
 pub struct TraceLog {
     lines: VecDeque<TraceLine>,
+    /// Memory that they take.
+    size: usize,
+    /// Lines that had to go for newer ones.
+    gone: u64,
     dropped: u64,
     began: Option<Zoned>,
 }
 
 impl TraceLog {
-    const CAPACITY: usize = 5_000;
+    /// The memory that lines may take, in bytes: about 40,000 readings of a position.
+    const MOST: usize = 16 << 20;
 
     /// Adds frames with their meanings. `dropped` arrived too fast to be shown.
     pub fn add(&mut self, entries: impl IntoIterator<Item = (TraceEntry, Explained)>, dropped: u64) {
         self.dropped += dropped;
         for (entry, Explained { meaning, fault }) in entries {
             let bytes = entry.bytes.to_string();
-            self.lines.push_back(TraceLine { at: entry.at, direction: entry.direction, bytes, meaning, fault });
+            let line = TraceLine { at: entry.at, direction: entry.direction, bytes, meaning, fault };
+            self.size += line.size();
+            self.lines.push_back(line);
         }
-        let surplus = self.lines.len().saturating_sub(Self::CAPACITY);
-        self.lines.drain(..surplus);
+        while self.size > Self::MOST
+            && let Some(oldest) = self.lines.pop_front()
+        {
+            self.size -= oldest.size();
+            self.gone += 1;
+        }
+    }
+
+    /// Lines that were removed to make room for newer ones.
+    pub fn gone(&self) -> u64 {
+        self.gone
     }
 
     /// Returns the frames, the oldest first.

@@ -121,6 +121,8 @@ fn of_program(theme: &Theme, studio: &Studio, views: &Views) -> Vec<Command> {
         Language::English => act("shell.language", Action::SetLanguage(Language::German)),
         Language::German => act("shell.language", Action::SetLanguage(Language::English)),
     });
+    let (word, opens) = if settings.lower_open { ("status_line.close", false) } else { ("status_line.open", true) };
+    commands.push(act(word, Action::OpenLowerPanel(opens)).by(COMMAND, Key::T));
     commands.push(command("shell.help", Effect::ToggleHelp).by(Modifiers::NONE, HELP_KEY));
     commands.push(command("shell.about", Effect::About));
     commands.push(command("shell.reset_layout", Effect::ResetLayout));

@@ -153,7 +153,8 @@ pub(crate) fn primary(ui: &mut Ui, theme: &Theme, enabled: bool, icon: &str, wor
     let ink = if enabled { theme.palette.on_accent } else { theme.palette.muted };
     let mut button = Button::new(RichText::new(shown).color(ink)).min_size(vec2(96.0, 0.0));
     if enabled {
-        button = button.fill(theme.palette.accent).stroke(Stroke::NONE);
+        // Its line is as wide as that of a disabled one, so that both are of the same size.
+        button = button.fill(theme.palette.accent).stroke(Stroke::new(1.0, theme.palette.accent));
     }
     name(ui.add_enabled(enabled, button), enabled, word)
 }

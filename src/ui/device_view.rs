@@ -6,7 +6,7 @@ use egui::Ui;
 
 use super::commands::NamedAction;
 use super::dialogs::connect::{self, ConnectForm, TypedConnectForm};
-use super::{Theme, workspace};
+use super::{Theme, status_line};
 use crate::app::{Action, AnyDevice, DeviceKind, DeviceType, Rgb, Studio, Tab, Text, ToolKind};
 
 /// Page of a tab, for the navigation and the help. `word` and `help` are text ids.
@@ -82,7 +82,7 @@ pub trait TypedDeviceView: Sync + 'static {
         actions: &mut Vec<Action>,
     );
 
-    /// Draws the progress of the running job, apart from the page.
+    /// Draws the progress of the running job in the status line, from the right.
     fn running_ui(
         ui: &mut Ui,
         theme: &Theme,
@@ -91,7 +91,7 @@ pub trait TypedDeviceView: Sync + 'static {
         _page: Self::Page,
         actions: &mut Vec<Action>,
     ) {
-        workspace::running_ui(ui, theme, any, None, actions);
+        status_line::running_ui(ui, theme, any, None, actions);
     }
 
     /// Draws the position large, in this colour, and the numbers beside it.
@@ -165,7 +165,7 @@ pub trait SessionView {
     /// Draws the open page.
     fn page_ui(&mut self, ui: &mut Ui, theme: &Theme, shared: (&Studio, &AnyDevice), actions: &mut Vec<Action>);
 
-    /// Draws the progress of the running job, apart from the page.
+    /// Draws the progress of the running job in the status line, from the right.
     fn running_ui(&self, ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>);
 
     /// Draws the menu of the values that are read with the position, if the device has any.

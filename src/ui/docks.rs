@@ -1,7 +1,7 @@
 //! The panels around the workspace: they can be docked and resized, and are restored. A layout that does not load is
 //! replaced by the default.
 
-use egui_tiles::{Container, SimplificationOptions, TileId, Tiles, Tree, UiResponse};
+use egui_tiles::{Container, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
 use serde::{Deserialize, Serialize};
 
 use super::{Theme, Views, panels, workspace};
@@ -20,21 +20,32 @@ pub(super) enum Pane {
     Log,
 }
 
+/// The part of the row that the panel Live takes at first.
+const LIVE: f32 = 0.3;
+/// Width of the panel Live with values alone.
+const VALUES: f32 = 248.0;
+
 impl Pane {
     const ALL: [Pane; 5] = [Pane::Workspace, Pane::Live, Pane::Trace, Pane::Jobs, Pane::Log];
+    /// The panes of the lower panel.
+    const LOWER: [Pane; 3] = [Pane::Trace, Pane::Jobs, Pane::Log];
 }
 
 /// The arrangement of the panels.
 pub(super) struct Docks {
     tree: Tree<Pane>,
     edited: bool,
+    /// The panel Live was drawn as values alone; `None` before it was drawn.
+    alone: Option<bool>,
+    /// Its part of the row that it stands in, with its plot.
+    with_plot: f32,
 }
 
 impl Docks {
     /// Loads the stored arrangement, or else the default.
     pub(super) fn load(layout: Option<&str>) -> Self {
         let tree = layout.and_then(|text| ron::from_str::<Tree<Pane>>(text).ok()).filter(is_complete);
-        Docks { tree: tree.unwrap_or_else(first_layout), edited: false }
+        Docks { tree: tree.unwrap_or_else(first_layout), edited: false, alone: None, with_plot: LIVE }
     }
 
     /// Returns the arrangement as text, if it has changed since the last call.
@@ -55,16 +66,74 @@ impl Docks {
         views: &mut Views,
         actions: &mut Vec<Action>,
     ) {
+        self.fit_live(studio.settings.values_alone, ui.available_width());
+        let hidden = if studio.settings.lower_open { Vec::new() } else { self.lower_tiles() };
+        hidden.iter().for_each(|tile| self.tree.set_visible(*tile, false));
         let mut behaviour = Behaviour { theme, studio, views, actions, edited: false };
         self.tree.ui(&mut behaviour, ui);
         self.edited |= behaviour.edited;
+        // The layout that is remembered has all of them in their places.
+        hidden.iter().for_each(|tile| self.tree.set_visible(*tile, true));
+    }
+
+    /// Gives the panel Live the width of its values, or the one it had with its plot, when that changes.
+    fn fit_live(&mut self, alone: bool, width: f32) {
+        if self.alone.replace(alone).is_none_or(|before| before == alone) {
+            return;
+        }
+        let Some(mut tile) = self.tree.tiles.find_pane(&Pane::Live) else { return };
+        while let Some(parent) = self.tree.tiles.parent_of(tile) {
+            if let Some(Tile::Container(Container::Linear(row))) = self.tree.tiles.get_mut(parent)
+                && row.dir == egui_tiles::LinearDir::Horizontal
+            {
+                let beside: f32 = row.children.iter().filter(|own| **own != tile).map(|own| row.shares[*own]).sum();
+                let before = row.shares[tile] / (row.shares[tile] + beside);
+                let part = if alone {
+                    self.with_plot = before;
+                    (VALUES / width.max(VALUES * 2.0)).min(before)
+                } else {
+                    self.with_plot
+                };
+                row.shares.set_share(tile, beside * part / (1.0 - part).max(0.1));
+                self.edited = true;
+                return;
+            }
+            tile = parent;
+        }
+    }
+
+    /// Returns the tiles that make up the lower panel, wherever they were dragged: those with nothing but its panes.
+    fn lower_tiles(&self) -> Vec<TileId> {
+        let mut lower = Vec::new();
+        if let Some(root) = self.tree.root() {
+            self.find_lower(root, &mut lower);
+        }
+        lower
+    }
+
+    /// Collects the outermost such tiles at or below `tile`. A pane that shares its tabs with another one stays there.
+    fn find_lower(&self, tile: TileId, lower: &mut Vec<TileId>) {
+        if self.is_lower(tile) {
+            lower.push(tile);
+        } else if let Some(Container::Linear(_) | Container::Grid(_)) = self.tree.tiles.get_container(tile) {
+            let children = self.tree.tiles.get_container(tile).map(Container::children_vec).unwrap_or_default();
+            children.into_iter().for_each(|child| self.find_lower(child, lower));
+        }
+    }
+
+    fn is_lower(&self, tile: TileId) -> bool {
+        match self.tree.tiles.get(tile) {
+            Some(Tile::Pane(pane)) => Pane::LOWER.contains(pane),
+            Some(Tile::Container(container)) => container.children().all(|child| self.is_lower(*child)),
+            None => false,
+        }
     }
 }
 
 /// Returns whether each panel is in it once.
 fn is_complete(tree: &Tree<Pane>) -> bool {
     Pane::ALL.iter().all(|pane| {
-        let same = |tile: &egui_tiles::Tile<Pane>| matches!(tile, egui_tiles::Tile::Pane(own) if own == pane);
+        let same = |tile: &Tile<Pane>| matches!(tile, Tile::Pane(own) if own == pane);
         tree.tiles.tiles().filter(|tile| same(tile)).count() == 1
     })
 }
@@ -76,9 +145,9 @@ fn first_layout() -> Tree<Pane> {
     let live = tiles.insert_tab_tile(vec![live]);
     let lower = [Pane::Trace, Pane::Jobs, Pane::Log].map(|pane| tiles.insert_pane(pane));
     let lower = tiles.insert_tab_tile(lower.to_vec());
-    let upper = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Horizontal, [workspace, live], 0.7);
+    let upper = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Horizontal, [workspace, live], 1.0 - LIVE);
     let upper = tiles.insert_container(Container::Linear(upper));
-    let root = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Vertical, [upper, lower], 0.78);
+    let root = egui_tiles::Linear::new_binary(egui_tiles::LinearDir::Vertical, [upper, lower], 0.7);
     let root = tiles.insert_container(Container::Linear(root));
     Tree::new(egui::Id::unique("docks"), root, tiles)
 }

@@ -2,12 +2,12 @@
 
 use egui::{RichText, Stroke, Ui};
 
-use super::controls::{badge, button, dot, enabled_button, icon_button, name, severity};
+use super::controls::{badge, button, dot, enabled_button, icon_button, name};
 use super::page::apart;
 use super::stop_debounce::{goes_down, means_motion, pressed_at};
 use super::{Theme, Views, icons};
 use crate::app::session::{Phase, Source};
-use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Notice, Studio, Text, connect};
+use crate::app::{Action, AnyDevice, ColorScheme, DeviceCommand, Language, Studio, Text, connect};
 
 /// Width of STOP while nothing moves.
 const STOP: f32 = 72.0;
@@ -220,6 +220,8 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     // Motion by another master cannot be stopped from here: that is no reason to let a job continue.
     let (moves, by_hand) = (studio.moves(), studio.moves_by_hand());
     let active = moves || studio.can_stop() || studio.is_in_control();
+    // Live values alone are nothing to be alarmed about.
+    let is_alarming = moves || studio.works() || studio.is_in_control();
     let (word, hint) = if studio.has_drives() {
         (theme.say("hd_bar.stop"), theme.say("hd_bar.stop_hint"))
     } else {
@@ -227,7 +229,9 @@ fn stop(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) 
     };
     let text = format!("{}  {word}", icons::STOP);
     let palette = theme.palette;
-    let stop = if active {
+    let stop = if active && !is_alarming {
+        egui::Button::new(text)
+    } else if active {
         egui::Button::new(RichText::new(text).color(palette.on_bad)).fill(palette.bad).stroke(Stroke::NONE)
     } else {
         egui::Button::new(RichText::new(text).color(palette.muted))
@@ -256,26 +260,4 @@ pub(super) fn stop_over_ui(ctx: &egui::Context, theme: &Theme, studio: &Studio, 
 
 fn stop_place() -> egui::Id {
     egui::Id::unique("place of stop")
-}
-
-/// Draws the notice of the window: a strip that covers nothing, and is dismissed by a click.
-pub(super) fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice, actions: &mut Vec<Action>) {
-    let (icon, colour) = severity(theme, notice.severity);
-    let strip = egui::UiBuilder::new().sense(egui::Sense::click());
-    let response = ui.scope_builder(strip, |ui| {
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            if icon_button(ui, true, icons::X, &theme.say("shell.dismiss")).clicked() {
-                actions.push(Action::Dismiss);
-            }
-            ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                ui.label(RichText::new(icon).size(theme.sizes.section).color(colour));
-                let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
-                let about = notice.prefix(|text| theme.words(text));
-                ui.add(egui::Label::new(format!("{about}{}", words.join(" "))).wrap().selectable(false));
-            });
-        });
-    });
-    if response.response.clicked() {
-        actions.push(Action::Dismiss);
-    }
 }

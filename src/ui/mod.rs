@@ -21,6 +21,7 @@ pub(crate) mod panels;
 pub mod plot;
 mod review;
 mod run;
+pub(crate) mod status_line;
 pub(crate) mod stop_debounce;
 mod theme;
 mod views;

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::device_view::{PageInfo, SessionView, TabViews, ToolPages};
 use super::dialogs::{ConnectView, FileView, PaletteUiState};
+use super::panels::TraceView;
 use super::plot;
 use crate::app::{AnyDevice, SessionId, Studio, Tab};
 
@@ -18,6 +19,8 @@ pub struct Views {
     pub(super) help: bool,
     /// The command palette, while it is open.
     pub(super) palette: Option<PaletteUiState>,
+    /// The list of frames.
+    pub(super) trace: TraceView,
     /// The plot of the encoder that is shown.
     pub(super) plot: plot::PlotUiState,
     /// Microseconds from one reading of the position to the next.
@@ -36,6 +39,7 @@ impl Views {
             about: false,
             help: false,
             palette: None,
+            trace: TraceView::default(),
             plot: plot::PlotUiState::in_panel(),
             rate: 50_000,
         }

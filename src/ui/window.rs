@@ -12,7 +12,7 @@ use super::keys::Keys;
 use super::navigation::navigation_ui;
 use super::page::apart;
 use super::widgets::{HoldSurroundings, surround_hold_buttons};
-use super::{Theme, Views, header, review, stop_debounce};
+use super::{Theme, Views, header, review, status_line, stop_debounce};
 use crate::app::{Action, AnyDevice, Studio, ThemeData};
 
 pub struct Window {
@@ -86,7 +86,7 @@ impl Window {
             .show(ui, |ui| header::header_ui(ui, theme, studio, views, actions));
         writing_bar(ui, theme, studio);
         moving_edge(ui, theme, studio);
-        self.notice(ui, theme, actions);
+        self.status_line(ui, theme, actions);
         let Window { studio, views, docks, .. } = self;
         Panel::left("navigation")
             .exact_size(if ui.available_width() < 1000.0 { 140.0 } else { 148.0 })
@@ -134,9 +134,10 @@ impl Window {
         dialogs::question_ui(ctx, theme, &self.studio, actions);
     }
 
-    /// Draws the notice, at the bottom and over nothing. Notices that need an action stay until they are dismissed, the
-    /// others disappear by themselves.
-    fn notice(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
+    /// Draws the line at the bottom, with the notice where one stands. Notices that need an action stay until they are
+    /// dismissed, the others disappear by themselves.
+    fn status_line(&mut self, ui: &mut Ui, theme: &Theme, actions: &mut Vec<Action>) {
+        status_line::status_line_ui(ui, theme, &self.studio, &mut self.views, actions);
         let Some(notice) = self.studio.services.log.standing() else {
             self.notice_since = None;
             return;
@@ -147,12 +148,6 @@ impl Window {
             _ => now,
         };
         self.notice_since = Some((notice.at.clone(), since));
-        let margin = egui::Margin { left: 12, right: 12, top: 6, bottom: 6 };
-        let frame = egui::Frame::NONE.fill(theme.palette.raised.into()).inner_margin(margin);
-        let strip = Panel::bottom("notice").frame(frame).show(ui, |ui| header::notice_ui(ui, theme, notice, actions));
-        let (_, colour) = super::controls::severity(theme, notice.severity);
-        let place = strip.response.rect;
-        ui.painter().hline(place.x_range(), place.top(), egui::Stroke::new(2.0, colour));
         match notice.severity.stands_for(Duration::from_secs_f64(now - since)) {
             Some(Duration::ZERO) => actions.push(Action::Dismiss),
             Some(left) => ui.ctx().request_repaint_after(left),
@@ -170,6 +165,10 @@ impl Window {
             self.studio.act(Action::LetGo);
         }
         if !self.studio.is_closing() && !self.studio.brakes().has_begun() {
+            if ctx.input(|input| input.raw.viewport().minimized == Some(true)) {
+                // Samples and frames are taken in before they are too many.
+                self.studio.poll();
+            }
             return;
         }
         self.studio.poll();

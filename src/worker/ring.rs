@@ -11,21 +11,43 @@ pub struct Ring<T>(Arc<Mutex<State<T>>>);
 struct State<T> {
     items: VecDeque<T>,
     capacity: usize,
+    /// Sizes that they may have together, and that they have.
+    most: usize,
+    size: usize,
+    size_of: fn(&T) -> usize,
     dropped: u64,
+}
+
+impl<T> State<T> {
+    fn drop_oldest(&mut self) -> Option<T> {
+        let oldest = self.items.pop_front()?;
+        self.size -= (self.size_of)(&oldest);
+        self.dropped += 1;
+        Some(oldest)
+    }
 }
 
 impl<T> Ring<T> {
     /// Creates an empty ring for `capacity` entries, at least one.
     pub fn new(capacity: usize) -> Self {
-        let capacity = capacity.max(1);
-        Ring(Arc::new(Mutex::new(State { items: VecDeque::new(), capacity, dropped: 0 })))
+        Ring::bounded(capacity, usize::MAX, |_| 0)
+    }
+
+    /// The same, and no more than so many bytes as `size_of` counts them; the newest thing stays in any case.
+    pub fn bounded(capacity: usize, most: usize, size_of: fn(&T) -> usize) -> Self {
+        let (items, capacity) = (VecDeque::new(), capacity.max(1));
+        Ring(Arc::new(Mutex::new(State { items, capacity, most, size: 0, size_of, dropped: 0 })))
     }
 
     /// Adds one; in a full ring the oldest is dropped.
     pub fn push(&self, item: T) {
         let mut state = self.lock();
-        let oldest = if state.items.len() >= state.capacity { state.items.pop_front() } else { None };
-        state.dropped += u64::from(oldest.is_some());
+        let size = (state.size_of)(&item);
+        let mut oldest = if state.items.len() >= state.capacity { state.drop_oldest() } else { None };
+        while state.size + size > state.most && !state.items.is_empty() {
+            oldest = state.drop_oldest();
+        }
+        state.size += size;
         state.items.push_back(item);
         // Dropping an entry may take time, and is done without the lock.
         drop(state);
@@ -37,6 +59,7 @@ impl<T> Ring<T> {
         let mut state = self.lock();
         let items = std::mem::take(&mut state.items);
         let dropped = std::mem::take(&mut state.dropped);
+        state.size = 0;
         drop(state);
         (items.into(), dropped)
     }
@@ -90,6 +113,20 @@ mod tests {
         ring.push('a');
         ring.push('b');
         assert_eq!(ring.drain(), (vec!['b'], 1));
+    }
+
+    #[test]
+    fn the_newest_stay_within_their_bytes() {
+        let ring = Ring::bounded(9, 8, Vec::len);
+        for item in [vec![1; 3], vec![2; 3], vec![3; 4], vec![4; 1]] {
+            ring.push(item);
+        }
+        assert_eq!(ring.drain(), (vec![vec![2; 3], vec![3; 4], vec![4; 1]], 1));
+        ring.push(vec![5; 4]);
+        ring.push(vec![6; 99]);
+        assert_eq!(ring.drain(), (vec![vec![6; 99]], 1), "one alone may be larger");
+        ring.push(vec![7; 8]);
+        assert_eq!(ring.drain(), (vec![vec![7; 8]], 0));
     }
 
     #[test]

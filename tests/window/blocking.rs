@@ -212,7 +212,7 @@ fn samples_and_frames_that_nobody_takes_are_counted_and_the_newest_stay() {
     let mut desk = Desk::begun("rpm=60");
     let wire = desk.wire();
     desk.command(DeviceCommand::Poll(Some(Duration::ZERO)));
-    without_polling(|| wire.count(0x42) > 6_000);
+    without_polling(|| wire.count(0x42) > 10_500);
     desk.studio.poll();
     let (dropped, positions) = (desk.encoder().record().dropped(), desk.encoder().record.positions());
     assert!(dropped > 0 && positions >= 4_096, "{dropped} {positions}");

@@ -72,6 +72,11 @@ fn edited() -> Screen {
 fn settle(screen: &mut Screen) {
     for _ in 0..2 {
         screen.until("nothing runs", |studio| !studio.works());
+        // Drafts and settings are written on threads.
+        for _ in 0..50 {
+            screen.harness.step();
+            std::thread::sleep(std::time::Duration::from_millis(2));
+        }
         pictures(screen);
     }
 }

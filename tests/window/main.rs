@@ -41,6 +41,7 @@ mod remembering;
 mod saving;
 mod screen;
 mod served;
+mod shell;
 mod signals;
 mod signals_adapter;
 mod signals_beside;

@@ -101,6 +101,7 @@ fn another_encoder_begins_another_recording() {
     desk.until("it is lost", lost);
     desk.wire().exchange("serial=OTHER0001&model=sks36");
     desk.wire().plug();
+    desk.studio.settings.live_stopped = true;
     desk.command(DeviceCommand::Reconnect);
     desk.until_read();
     assert!(recorded(&desk.studio) <= 1, "the position that is read with the rest");

@@ -15,6 +15,13 @@ fn kept(desk: &mut Desk) {
     });
 }
 
+/// The program starts again as it does by itself: no setting is changed.
+fn restarted(desk: Desk) -> Desk {
+    let Desk { studio, outside } = desk;
+    drop(studio);
+    Desk { studio: outside.usual_studio(), outside }
+}
+
 #[test]
 fn looks_language_layout_and_links_survive() {
     let mut desk = Desk::begun("");
@@ -59,7 +66,7 @@ fn broken_settings_are_told_and_left_until_something_changes() {
         let path = desk.outside.store().settings_path();
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         fs::write(&path, broken).unwrap();
-        let mut desk = desk.crash();
+        let mut desk = restarted(desk);
         desk.settle();
         assert_eq!(desk.told(Severity::Warning), ["session.settings_broken"]);
         let aside = desk.outside.path("config/settings.ron.broken");
@@ -81,7 +88,7 @@ fn settings_that_cannot_be_read_are_left() {
     let desk = Desk::fresh("");
     let path = desk.outside.store().settings_path();
     fs::create_dir_all(&path).unwrap();
-    let mut desk = desk.crash();
+    let mut desk = restarted(desk);
     assert_eq!(desk.told(Severity::Warning), ["session.settings_unread"]);
     desk.act(Action::SetTheme(ColorScheme::Light));
     desk.settle();
@@ -100,7 +107,7 @@ fn settings_that_come_late_hold_and_are_not_overwritten_before() {
     settings.use_link(crate::tabs::HIPERFACE, "tcp:host:1");
     fs::create_dir_all(path.parent().unwrap()).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
-    let mut desk = desk.crash();
+    let mut desk = restarted(desk);
     assert_eq!(desk.told(Severity::Warning), ["session.settings_slow"]);
     desk.act(Action::SetLanguage(Language::German));
     desk.settle();

@@ -175,7 +175,15 @@ impl Outside {
         }
     }
 
+    /// A studio whose live values start only when they are asked for, so that a test knows what passes over the line.
     pub(crate) fn studio(&self) -> Studio {
+        let mut studio = self.usual_studio();
+        studio.settings.live_stopped = true;
+        studio
+    }
+
+    /// A studio as the program starts it.
+    pub(crate) fn usual_studio(&self) -> Studio {
         let wakes = self.wakes.clone();
         let wake = move || {
             wakes.fetch_add(1, Ordering::SeqCst);

@@ -35,6 +35,7 @@ fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
                     assert!(window.contains_rect(place), "{id} at {place:?} on {page} in {language:?}");
                 }
             }
+            screen.act(Action::OpenLowerPanel(true));
             for panel in PANELS {
                 let label = screen.say(panel);
                 let tab = screen.harness.query_all_by_label(&label).next();
@@ -42,6 +43,7 @@ fn look_at_everything(screen: &mut Screen, size: [f32; 2]) {
                 screen.steps();
                 screen.check_language();
             }
+            screen.act(Action::OpenLowerPanel(false));
         }
     }
 }

@@ -6,7 +6,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use encoder_studio::app::Action;
 use encoder_studio::app::DeviceCommand;
-use encoder_studio::devices::ssi::state::{Field, Hunt, Input, SsiAction as Ssi, Try};
+use encoder_studio::devices::ssi::state::{Field, Input, SearchState, SsiAction as Ssi, Try};
 
 use crate::screen::Screen;
 use crate::support::Outside;
@@ -85,7 +85,7 @@ fn frames_of_a_file_are_listed_and_tried() {
     std::fs::write(&path, "000110110010011111011101100\n".repeat(20)).unwrap();
     screen.act(Action::device(id, Ssi::Enter(Field::Code, Input::Choice(1))));
     screen.act(Action::device(id, Ssi::FindIn(path)));
-    screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().hunt, Hunt::Found { .. }));
+    screen.until("it is searched", |studio| matches!(studio.ssi().unwrap().hunt, SearchState::Found { .. }));
     screen.click("page.find");
     let row = "    2  0x0D93EEC    4778587         291     10843";
     assert!(screen.shows(row));

@@ -24,6 +24,9 @@ pub trait Kind: Device + Sized {
     /// Review of a write: the [`Review`](crate::app::review::Review) of a kind with a memory.
     type Review;
 
+    /// Whether its live values may start by themselves, on a line that has no other master.
+    const STARTS_LIVE: bool = true;
+
     /// Returns the handle of a session before the session moves to its thread.
     fn session_handle(session: &Session<Self>) -> Self::SessionHandle;
 

@@ -95,6 +95,8 @@ pub(crate) struct Opening {
     pub(crate) attempt: Option<u32>,
     /// Disconnects when it has ended.
     pub(crate) over: crossbeam_channel::Receiver<()>,
+    /// The user has confirmed that no other master is on the line.
+    pub(crate) is_sole_master: bool,
 }
 
 /// Link parameters that are neither shown nor stored, for any kind of device: the access codes of a virtual encoder.
@@ -200,9 +202,10 @@ impl<D: Kind> Session<D> {
 
     /// Takes over the opened line.
     pub fn take_line(&mut self, opened: Opened<D>, services: &mut Services) {
-        self.opening = None;
+        let is_sole_master = self.opening.take().is_some_and(|opening| opening.is_sole_master);
         self.trace.begin(opened.began.clone());
         self.line = Some(LiveSession::new(opened));
+        self.live_due = D::STARTS_LIVE && (is_sole_master || self.is_virtual());
         self.phase = Phase::Connected;
         services.log.settle("session.not_connected", Some(&self.name()));
         self.just_connected = true;
@@ -222,11 +225,13 @@ impl<D: Kind> Session<D> {
         if self.is_polling() {
             return;
         }
-        if let Some(first) = why.first().filter(|_| is_silent && !self.is_busy()) {
-            self.phase = Phase::Silent(first.clone());
+        let silent = why.first().filter(|_| is_silent && !self.is_busy()).cloned();
+        let stands_there = silent.is_some();
+        if let Some(why) = silent {
+            self.phase = Phase::Silent(why);
         }
         let texts = std::iter::once(Text::new("session.poll_failed")).chain(why).collect();
-        services.notify(Severity::Error, texts, Some(&self.name()));
+        self.report(Severity::Error, texts, stands_there, services);
     }
 
     /// Starts a job; reports why not and returns false if it cannot.
@@ -262,6 +267,7 @@ impl<D: Kind> Session<D> {
 
     /// Stops the running job, and cancels a link that is being opened.
     pub(crate) fn stop(&mut self, services: &mut Services) {
+        self.live_due = false;
         if self.phase == Phase::Opening {
             let why = Text::new("session.open_cancelled");
             services.note(Severity::Note, vec![why.clone()], Some(&self.name()));

@@ -29,6 +29,8 @@ pub struct SessionState {
     pub statuses: Vec<StatusEntry>,
     /// Nothing has been read since the link was opened.
     pub just_connected: bool,
+    /// Live values start by themselves as soon as the device was read and nothing runs.
+    pub(in crate::app) live_due: bool,
     /// The file for the profile that is being read.
     pub(crate) save_to: Option<PathBuf>,
     /// A profile is being written to a file, whose content is not known before that ends.
@@ -49,6 +51,7 @@ impl SessionState {
             cycles: None,
             statuses: Vec::new(),
             just_connected: false,
+            live_due: false,
             save_to: None,
             is_saving: false,
         }

@@ -23,6 +23,8 @@ pub(in crate::ui) fn jobs_ui(ui: &mut Ui, theme: &Theme, studio: &Studio) {
     TableBuilder::new(ui)
         .id_salt("jobs")
         .auto_shrink(false)
+        // Else the last rows of a low panel are below its end.
+        .min_scrolled_height(0.0)
         .column(Column::exact(64.0))
         .column(Column::exact(72.0))
         .column(Column::exact(20.0))

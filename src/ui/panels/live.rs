@@ -6,7 +6,7 @@ use egui::{RichText, Ui};
 
 use crate::app::session::Phase;
 use crate::app::{Action, AnyDevice, DeviceCommand, RecorderOwner, Rgb, Studio, Text};
-use crate::ui::controls::{choice, empty, enabled_button, icon_button};
+use crate::ui::controls::{choice, empty, enabled_button, icon_button, name};
 use crate::ui::page::apart;
 use crate::ui::{Theme, Views, icons, plot};
 
@@ -41,15 +41,25 @@ pub(in crate::ui) fn live_ui(
     if let Some(view) = views.tabs.device(device.tab()) {
         view.value_ui(ui, theme, device, ink);
     }
-    if paused {
-        ui.label(theme.caption(theme.say("live.paused_by_job")));
-    }
-    ui.add_space(theme.space.inside);
-    apart(ui, "controls", |ui| controls(ui, theme, device, views, actions));
+    pause_ui(ui, theme, device, paused);
+    let alone = studio.settings.values_alone;
+    apart(ui, "controls", |ui| controls(ui, theme, (device, alone), views, actions));
     ui.add_space(theme.space.between);
-    if !views.plot.is_large() {
+    if !alone && !views.plot.is_large() {
         apart(ui, "plot", |ui| plot_ui(ui, theme, device, views, actions));
     }
+}
+
+/// Draws why the values pause. Its place is reserved: what is below stays where it is.
+fn pause_ui(ui: &mut Ui, theme: &Theme, device: &AnyDevice, paused: bool) {
+    let size = egui::vec2(ui.available_width().max(0.0), theme.sizes.caption + theme.space.inside);
+    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_min_size(size);
+        if let Some(running) = device.running().filter(|_| paused) {
+            let text = Text::new("live.paused_by_job").with_text("job", running.title);
+            ui.add(egui::Label::new(theme.caption(theme.words(&text))).truncate());
+        }
+    });
 }
 
 /// Returns whether a job prevents reading the position. A very short one does not count: the number would only flicker.
@@ -85,13 +95,21 @@ pub(crate) fn mark(ui: &mut Ui, theme: &Theme, word: &'static str, ink: Rgb) {
     ui.add(egui::Label::new(RichText::new(theme.say(word)).color(ink)).truncate());
 }
 
-fn controls(ui: &mut Ui, theme: &Theme, device: &AnyDevice, views: &mut Views, actions: &mut Vec<Action>) {
+fn controls(
+    ui: &mut Ui,
+    theme: &Theme,
+    (device, alone): (&AnyDevice, bool),
+    views: &mut Views,
+    actions: &mut Vec<Action>,
+) {
     let connected = *device.phase() == Phase::Connected;
     let polling = device.is_polling();
     let streams = if device.streams() { &STREAMS[..] } else { &[] };
     let rates: Vec<(u64, String)> = streams.iter().chain(&RATES).map(|(every, id)| (*every, theme.say(id))).collect();
     let mut rate = Some(views.rate).filter(|rate| rates.iter().any(|(own, _)| own == rate)).unwrap_or(USUAL);
     ui.horizontal_wrapped(|ui| {
+        // In the usual width they stand in one row.
+        ui.spacing_mut().item_spacing.x = theme.space.inside;
         if polling {
             if enabled_button(ui, true, icons::PAUSE, &theme.say("live.pause")).clicked() {
                 actions.push(device.command(DeviceCommand::Poll(None)));
@@ -104,6 +122,11 @@ fn controls(ui: &mut Ui, theme: &Theme, device: &AnyDevice, views: &mut Views, a
         }
         if let Some(session) = views.session(device) {
             session.watch_menu(ui, theme, device, actions);
+        }
+        let word = theme.say(if alone { "live.show_plot" } else { "live.hide_plot" });
+        let plot = egui::Button::selectable(!alone, icons::CHART_LINE).min_size(egui::vec2(28.0, 28.0));
+        if name(ui.add(plot), true, &word).on_hover_text(&word).clicked() {
+            actions.push(Action::ShowValuesAlone(!alone));
         }
         if choice(ui, &theme.say("live.rate"), &mut rate, rates) {
             views.rate = rate;

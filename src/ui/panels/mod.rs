@@ -6,4 +6,4 @@ mod trace;
 
 pub(super) use lists::{jobs_ui, log_ui};
 pub(super) use live::{live_ui, plot_ui};
-pub(super) use trace::trace_ui;
+pub(super) use trace::{TraceView, trace_ui};

@@ -1,34 +1,70 @@
 //! The trace panel of the selected session: time, direction, bytes, meaning. The newest entry is at the bottom and stays
-//! visible until the user scrolls away.
+//! visible until the user scrolls away; what is read then stays in its place while others come and go.
 
-use egui::{RichText, Ui};
+use egui::{Align, RichText, Ui};
 use egui_extras::{Column, TableBuilder};
 
-use crate::app::{AnyDevice, Studio, TraceFault};
+use crate::app::{SessionId, Studio, Text, TraceFault};
 use crate::link::Direction;
-use crate::ui::controls::empty;
-use crate::ui::{Theme, Views};
+use crate::ui::controls::{empty, name};
+use crate::ui::{Theme, Views, icons};
 
 const ROW: f32 = 18.0;
 const TIME: &str = "%H:%M:%S%.3f";
 
+/// The scroll position of the list of frames.
+#[derive(Default)]
+pub(in crate::ui) struct TraceView {
+    /// Whose frames they are, and how many had gone when it was drawn last.
+    of: Option<(SessionId, u64)>,
+    /// Distance that it is scrolled by.
+    offset: f32,
+    /// It was scrolled away from the newest frame.
+    is_behind: bool,
+}
+
 /// Draws the panel.
-pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, _views: &mut Views) {
-    let lines = studio.selected_device().map(AnyDevice::trace);
-    let Some(trace) = lines.filter(|trace| !trace.lines().is_empty()) else {
+pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views) {
+    let shown = studio.selected_device().filter(|device| !device.trace().lines().is_empty());
+    let Some((session, trace)) = shown.map(|device| (device.id(), device.trace())) else {
         empty(ui, theme, &theme.say("trace.nothing"), None);
         return;
     };
     let palette = theme.palette;
-    if trace.dropped() > 0 {
-        let text = crate::app::Text::new("trace.dropped").with("count", trace.dropped());
-        ui.label(RichText::new(theme.words(&text)).color(palette.warn));
-    }
+    let view = &mut views.trace;
+    let gone = match view.of.replace((session, trace.gone())) {
+        Some((before, gone)) if before == session => trace.gone().saturating_sub(gone),
+        _ => {
+            view.is_behind = false;
+            0
+        }
+    };
+    let mut follows = !view.is_behind;
+    ui.horizontal(|ui| {
+        let word = theme.say("trace.follow");
+        let follow = egui::Button::selectable(follows, format!("{}  {word}", icons::FAST_FORWARD));
+        let follow = name(ui.add(follow.frame_when_inactive(true)), true, &word);
+        follows |= follow.on_hover_text(theme.say("trace.follow_hint")).clicked();
+        if trace.dropped() > 0 {
+            let text = Text::new("trace.dropped").with("count", trace.dropped());
+            ui.label(RichText::new(theme.words(&text)).color(palette.warn));
+        }
+    });
     let lines = trace.lines();
-    TableBuilder::new(ui)
+    ui.spacing_mut().item_spacing.y = theme.space.inside;
+    let pitch = ROW + ui.spacing().item_spacing.y;
+    let mut table = TableBuilder::new(ui)
         .id_salt("trace")
         .auto_shrink(false)
-        .stick_to_bottom(true)
+        // Else the last rows of a low panel are below its end.
+        .min_scrolled_height(0.0)
+        .stick_to_bottom(true);
+    if view.is_behind && follows {
+        table = table.scroll_to_row(lines.len().saturating_sub(1), Some(Align::BOTTOM)).animate_scrolling(false);
+    } else if view.is_behind && gone > 0 {
+        table = table.vertical_scroll_offset((view.offset - gone as f32 * pitch).max(0.0));
+    }
+    let shown = table
         .column(Column::exact(96.0))
         .column(Column::exact(16.0))
         .column(Column::initial(330.0).at_least(120.0).resizable(true).clip(true))
@@ -59,4 +95,6 @@ pub(in crate::ui) fn trace_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, _view
                 });
             });
         });
+    view.offset = shown.state.clamped_offset().y;
+    view.is_behind = view.offset + shown.inner_rect.height() < shown.content_size.y - pitch / 2.0;
 }

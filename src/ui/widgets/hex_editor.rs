@@ -93,6 +93,21 @@ fn address_text(at: usize, digits: usize) -> String {
     format!("0x{at:0digits$X}")
 }
 
+/// Height of a line, of what surrounds the lines, and of the typed view below the editor.
+const LINE: f32 = 20.0;
+const AROUND: f32 = 60.0;
+const TYPED: f32 = 240.0;
+
+/// Returns how many lines an editor shows in this height: all that fit beside the typed view; above it as many as keep it
+/// visible, and sixteen in any case.
+pub fn hex_lines(height: f32, beside: bool) -> usize {
+    if beside {
+        ((height - AROUND) / LINE).clamp(4.0, 64.0) as usize
+    } else {
+        ((height - AROUND - TYPED) / LINE).clamp(16.0, 64.0) as usize
+    }
+}
+
 /// Draws the editor and returns the user's actions, in order; the caller changes the bytes.
 pub fn hex_editor(ui: &mut Ui, theme: &Theme, label: &str, model: &HexModel<'_>, view: &mut HexView) -> Vec<HexEdit> {
     let id = ui.make_persistent_id(("hex_editor", label));

@@ -8,7 +8,7 @@ use crate::devices::biss::state::explain as words;
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS, places};
 use crate::devices::biss::views::say;
 use crate::ui::controls::{empty, enabled_button, name, paragraph};
-use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, typed_view};
+use crate::ui::widgets::{HexEdit, HexModel, HexView, hex_editor, hex_lines, typed_view};
 use crate::ui::{Theme, edit_bar, icons};
 
 /// The state of the page between frames.
@@ -90,7 +90,7 @@ fn bytes(
         });
     }
     let beside = ui.available_width() >= 820.0;
-    let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
+    let lines = hex_lines(ui.available_height(), beside);
     let model = HexModel { device: read, wanted, marks: &[], read_only: read_only.as_ref(), lines };
     let mut edits = Vec::new();
     let label = theme.words(&words::name(&area.name));

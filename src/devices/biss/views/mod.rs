@@ -18,7 +18,7 @@ use crate::app::{Action, AnyDevice, Rgb, Studio};
 use crate::devices::biss::state::{BissAction as Biss, Encoder, TEXTS};
 use crate::ui::controls::{enabled_button, paragraph};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{NamedAction, Theme, backups, icons, page, workspace};
+use crate::ui::{NamedAction, Theme, backups, icons, page, status_line};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -153,7 +153,7 @@ impl TypedDeviceView for BissView {
         let is_led = encoder.guide.as_ref().is_some_and(|guide| guide.is_running()) && page == Page::Procedures;
         // The progress is shown below, step by step: this tells the effect of cancelling.
         let instead = is_led.then(|| say(theme, "guide.cancel_note"));
-        workspace::running_ui(ui, theme, device, instead, actions);
+        status_line::running_ui(ui, theme, device, instead, actions);
     }
 
     fn value_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, ink: Rgb) {

@@ -27,7 +27,7 @@ use crate::app::{Action, AnyDevice, Rgb, Studio, Text};
 use crate::devices::hiperdrive::protocol::DriveNumber;
 use crate::devices::hiperdrive::state::{HiperdriveAction, Unit};
 use crate::ui::device_view::{PageInfo, TabPage, TypedDeviceView};
-use crate::ui::{NamedAction, Theme, backups, edit_bar, icons, workspace};
+use crate::ui::{NamedAction, Theme, backups, edit_bar, icons};
 
 /// A page of the tab.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -164,23 +164,6 @@ impl TypedDeviceView for HiperdriveView {
                 Page::Backups => backups::page_ui(ui, theme, device, actions),
             });
         });
-    }
-
-    fn running_ui(
-        ui: &mut Ui,
-        theme: &Theme,
-        device: &AnyDevice,
-        _unit: &Unit,
-        _page: Page,
-        actions: &mut Vec<Action>,
-    ) {
-        // Below, so that nothing moves under the pointer that holds a drive's button.
-        if device.running().is_some() && !device.is_reviewing() {
-            egui::Panel::bottom(egui::Id::unique(device.id()).with("hiperdrive_running"))
-                .frame(egui::Frame::NONE.inner_margin(egui::Margin { left: 0, right: 0, top: 0, bottom: 8 }))
-                .show_separator_line(false)
-                .show(ui, |ui| workspace::running_ui(ui, theme, device, None, actions));
-        }
     }
 
     fn value_ui(ui: &mut Ui, theme: &Theme, unit: &Unit, ink: Rgb) {

@@ -13,7 +13,7 @@ use crate::devices::hiperface::state::{Encoder, HiperfaceAction as Hiperface, St
 use crate::devices::hiperface::views::say;
 use crate::ui::controls::{allowed_button, choice, empty, name, paragraph};
 use crate::ui::widgets::{
-    FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, typed_view,
+    FieldMap, HexEdit, HexMark, HexModel, HexView, MapEvent, MapField, field_map, hex_editor, hex_lines, typed_view,
 };
 use crate::ui::{Theme, edit_bar, icons};
 
@@ -175,7 +175,7 @@ fn field_ui(
     let mounting = encoder.mounting(field.number);
     let marks: Vec<HexMark> = mounting.iter().map(|(range, words)| HexMark { range: range.clone(), words }).collect();
     let beside = ui.available_width() >= 820.0;
-    let lines = ((ui.available_height() - 60.0) / 20.0).clamp(4.0, 64.0) as usize;
+    let lines = hex_lines(ui.available_height(), beside);
     let model = HexModel { device: &device, wanted: bytes, marks: &marks, read_only: read_only.as_ref(), lines };
     let label = theme.words(&TEXTS.text("memory.bytes").with("number", field.number));
     let mut edits = Vec::new();

@@ -20,6 +20,8 @@ use crate::worker::{OpenError, Session};
 
 impl Kind for Interbus {
     const KIND: &'static str = KIND;
+    /// Its parameters and its position share one word, and a control may be reading it.
+    const STARTS_LIVE: bool = false;
     type Edits = Edits;
     type SessionHandle = Option<Motor>;
     type Review = Review<Self>;

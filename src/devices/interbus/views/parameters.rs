@@ -187,7 +187,7 @@ fn wear(ui: &mut Ui, theme: &Theme, encoder: &Encoder) {
             None => palette.accent,
         };
         let text = TEXTS.text("ib_wear.seen").with("stores", stores).with("nominal", WEAR_ASK).with("last", WEAR_LAST);
-        ui.label(theme.words(&text));
+        paragraph(ui, theme.words(&text));
         let share = (stores as f32 / WEAR_LAST as f32).min(1.0);
         ui.add(egui::ProgressBar::new(share).desired_height(6.0).fill(ink.into()));
         let text =

@@ -9,8 +9,8 @@ use crate::devices::interbus::views::say;
 use crate::ui::controls::{card, icon_button, paragraph};
 use crate::ui::{Theme, icons};
 
-/// Width of the column of names.
-const NAMES: f32 = 168.0;
+/// Width of a column of names, at least and at most.
+const NAMES: [f32; 2] = [120.0, 168.0];
 /// Width of a register of the chip.
 const REGISTER: f32 = 132.0;
 
@@ -24,6 +24,8 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
         paragraph(ui, theme.label(say(theme, "ib_values.words")));
         let wide = ui.available_width() > 640.0;
         let columns = if wide { 2 } else { 1 };
+        let [least, most] = NAMES;
+        let names = (ui.available_width() * 0.2).clamp(least, most);
         egui::Grid::new("read_outs").num_columns(columns * 3).spacing([12.0, 4.0]).show(ui, |ui| {
             for (at, row) in READ_OUTS.iter().enumerate() {
                 let name = theme.words(&explain::read_out(row.read_out));
@@ -31,7 +33,7 @@ pub(super) fn cards_ui(ui: &mut Ui, theme: &Theme, encoder: &Encoder, actions: &
                     actions.push(Action::device(id, Interbus::ReadOut(row.read_out)));
                 }
                 ui.horizontal(|ui| {
-                    ui.set_min_width(NAMES);
+                    ui.set_min_width(names);
                     ui.label(theme.label(&name));
                 });
                 let value = encoder.read_out(row.read_out);

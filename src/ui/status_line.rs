@@ -1,0 +1,247 @@
+//! The line at the bottom of the window, whose place is reserved, so that nothing moves when a message comes: the notice, why
+//! there is no connection, the job that runs, or else the last frame or message; and what opens the lower panel.
+
+use egui::text::{LayoutJob, TextFormat};
+use egui::{Align, Color32, Layout, Panel, RichText, Sense, TextStyle, Ui, UiBuilder, vec2};
+
+use super::controls::{button, enabled_button, icon_button, severity, spinner};
+use super::page::apart;
+use super::views::shown_in;
+use super::{Theme, Views, icons};
+use crate::app::session::Phase;
+use crate::app::{Action, AnyDevice, DeviceCommand, Notice, Studio, TraceFault, TraceLine, TraceLog, connect};
+use crate::link::Direction;
+
+/// Height of the line: two lines of small text.
+const HEIGHT: f32 = 36.0;
+/// Share of the line for the running job while a notice stands beside it.
+const SHARE: f32 = 0.45;
+const TIME: &str = "%H:%M:%S%.3f";
+
+pub(super) fn status_line_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    studio: &Studio,
+    views: &mut Views,
+    actions: &mut Vec<Action>,
+) {
+    let margin = egui::Margin { left: 8, right: 12, top: 0, bottom: 0 };
+    let frame = egui::Frame::NONE.fill(theme.palette.raised.into()).inner_margin(margin);
+    let line = Panel::bottom("status").exact_size(HEIGHT).frame(frame).show(ui, |ui| {
+        let whole = UiBuilder::new().sense(Sense::click());
+        let response = ui.scope_builder(whole, |ui| {
+            ui.horizontal_centered(|ui| {
+                chevron(ui, theme, studio, actions);
+                let size = vec2(ui.available_width(), ui.available_height());
+                ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+                    line_ui(ui, theme, studio, views, actions);
+                });
+            });
+        });
+        if response.response.clicked() {
+            actions.push(match studio.services.log.standing() {
+                Some(_) => Action::Dismiss,
+                None => Action::OpenLowerPanel(!studio.settings.lower_open),
+            });
+        }
+    });
+    if let Some(notice) = studio.services.log.standing() {
+        let (_, colour) = severity(theme, notice.severity);
+        let place = line.response.rect;
+        ui.painter().hline(place.x_range(), place.top(), egui::Stroke::new(2.0, colour));
+    }
+}
+
+fn chevron(ui: &mut Ui, theme: &Theme, studio: &Studio, actions: &mut Vec<Action>) {
+    let open = studio.settings.lower_open;
+    let (icon, word) =
+        if open { (icons::CARET_DOWN, "status_line.close") } else { (icons::CARET_RIGHT, "status_line.open") };
+    if icon_button(ui, true, icon, &theme.say(word)).clicked() {
+        actions.push(Action::OpenLowerPanel(!open));
+    }
+}
+
+/// Draws the line from the right: what is pressed stays in its place however long the words are.
+fn line_ui(ui: &mut Ui, theme: &Theme, studio: &Studio, views: &mut Views, actions: &mut Vec<Action>) {
+    let notice = studio.services.log.standing();
+    let device = shown_in(studio, studio.settings.tab);
+    apart(ui, "dismiss", |ui| match notice {
+        Some(_) => {
+            if icon_button(ui, true, icons::X, &theme.say("shell.dismiss")).clicked() {
+                actions.push(Action::Dismiss);
+            }
+        }
+        None => {
+            ui.allocate_exact_size(vec2(28.0, 28.0), Sense::hover());
+        }
+    });
+    let works = device.filter(|device| is_at_work(*device));
+    let lost = device.and_then(lost_of);
+    apart(ui, "activity", |ui| {
+        if let Some(device) = works {
+            let share = if notice.is_some() { SHARE } else { 1.0 };
+            let size = vec2(ui.available_width() * share, ui.available_height());
+            ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+                if let Some(session) = views.session(device) {
+                    session.running_ui(ui, theme, device, actions);
+                }
+            });
+        } else if let Some((device, _)) = lost {
+            ways_back(ui, theme, device, actions);
+        }
+    });
+    ui.with_layout(Layout::left_to_right(Align::Center), |ui| match (notice, lost) {
+        (Some(notice), _) => notice_ui(ui, theme, notice),
+        (None, Some((device, why))) => {
+            let mut words = theme.words(why);
+            if device.is_dirty() {
+                words = format!("{words} {}", theme.say("shell.edits_kept"));
+            }
+            ui.label(RichText::new(icons::PLUGS).size(theme.sizes.section).color(theme.palette.bad));
+            message(ui, theme, words, theme.palette.text.into());
+        }
+        (None, None) if works.is_none() && !studio.settings.lower_open => latest(ui, theme, studio),
+        (None, None) => {}
+    });
+}
+
+/// A job runs, or a link is being opened. A review that is open says how far it is by itself.
+fn is_at_work(device: &AnyDevice) -> bool {
+    *device.phase() == Phase::Opening || device.running().is_some() && !device.is_reviewing()
+}
+
+/// Returns why there is no connection to a device that had or wants one.
+fn lost_of(device: &AnyDevice) -> Option<(&AnyDevice, &crate::app::Text)> {
+    match device.phase() {
+        Phase::Lost(why) | Phase::Silent(why) => Some((device, why)),
+        Phase::Opening | Phase::Connected | Phase::Offline => None,
+    }
+}
+
+/// Draws the ways back to a connection, the last one first.
+fn ways_back(ui: &mut Ui, theme: &Theme, device: &AnyDevice, actions: &mut Vec<Action>) {
+    if button(ui, icons::PLUGS_CONNECTED, &theme.say("shell.connect")).clicked() {
+        actions.push(Action::Connect(connect::ConnectAction::Open));
+    }
+    if matches!(device.phase(), Phase::Silent(_)) {
+        let word = theme.say("memory.read");
+        if enabled_button(ui, device.is_readable(), icons::ARROW_CLOCKWISE, &word).clicked() {
+            actions.push(device.command(DeviceCommand::Read));
+        }
+    } else if button(ui, icons::ARROW_CLOCKWISE, &theme.say("shell.reconnect")).clicked() {
+        actions.push(device.command(DeviceCommand::Reconnect));
+    }
+}
+
+fn notice_ui(ui: &mut Ui, theme: &Theme, notice: &Notice) {
+    let (icon, colour) = severity(theme, notice.severity);
+    ui.label(RichText::new(icon).size(theme.sizes.section).color(colour));
+    message(ui, theme, notice_words(theme, notice), theme.palette.text.into());
+}
+
+fn notice_words(theme: &Theme, notice: &Notice) -> String {
+    let words: Vec<String> = notice.texts.iter().map(|text| theme.words(text)).collect();
+    format!("{}{}", notice.prefix(|text| theme.words(text)), words.join(" "))
+}
+
+/// Draws a message in the room that is left: in small text over two lines where it is too long for one.
+fn message(ui: &mut Ui, theme: &Theme, words: String, colour: Color32) {
+    let body = TextStyle::Body.resolve(ui.style());
+    let width = ui.painter().layout_no_wrap(words.clone(), body.clone(), colour).size().x;
+    if width <= ui.available_width() {
+        ui.label(RichText::new(words).color(colour));
+        return;
+    }
+    let small = TextFormat::simple(TextStyle::Small.resolve(ui.style()), colour);
+    let mut job = LayoutJob::single_section(words, small);
+    job.wrap.max_rows = 2;
+    ui.spacing_mut().item_spacing.y = theme.space.inside;
+    ui.add(egui::Label::new(job).wrap().selectable(false));
+}
+
+/// Draws the last frame of the device that is shown, or the last message if that is newer.
+fn latest(ui: &mut Ui, theme: &Theme, studio: &Studio) {
+    let frame = studio.selected_device().and_then(|device| Some((device.trace(), last_of(device.trace())?)));
+    let frame = frame.and_then(|(trace, line)| Some((trace.time_of(line)?, line)));
+    let message = studio.services.log.notices().next_back();
+    match (frame, message) {
+        (Some((at, line)), message) if message.is_none_or(|message| message.at <= at) => {
+            frame_ui(ui, theme, &at.strftime(TIME).to_string(), line);
+        }
+        (_, Some(notice)) => {
+            let (icon, colour) = severity(theme, notice.severity);
+            let time = notice.at.strftime(TIME).to_string();
+            ui.label(theme.mono(time).size(theme.sizes.caption).color(theme.palette.muted));
+            ui.label(RichText::new(icon).color(colour));
+            let words = theme.label(notice_words(theme, notice));
+            ui.add(egui::Label::new(words).truncate());
+        }
+        (_, None) => {
+            ui.label(theme.label(theme.say("log.nothing")));
+        }
+    }
+}
+
+/// Returns the last reply where it is the last frame or the one before it, so that the line does not flicker between
+/// requests and replies; else the last frame.
+fn last_of(trace: &TraceLog) -> Option<&TraceLine> {
+    let mut newest = trace.lines().iter().rev().take(2);
+    let is_reply = |line: &&TraceLine| line.direction == Direction::Received;
+    newest.find(is_reply).or_else(|| trace.lines().back())
+}
+
+fn frame_ui(ui: &mut Ui, theme: &Theme, time: &str, line: &TraceLine) {
+    let palette = theme.palette;
+    let arrow = if line.direction == Direction::Sent { "→" } else { "←" };
+    let colour = match line.fault {
+        Some(TraceFault::Broken) => palette.bad,
+        Some(TraceFault::Reported) => palette.warn,
+        None => palette.muted,
+    };
+    ui.label(theme.mono(time).size(theme.sizes.caption).color(palette.muted));
+    ui.label(theme.mono(arrow).color(palette.accent));
+    let most = (ui.available_width() * 0.4).max(0.0);
+    ui.scope(|ui| {
+        ui.set_max_width(most);
+        ui.add(egui::Label::new(theme.mono(&line.bytes).color(colour)).truncate());
+    });
+    ui.add(egui::Label::new(RichText::new(line.words(theme.language)).color(colour)).truncate());
+}
+
+/// Draws the running job with its progress, or `instead`, and the button that stops it, from the right.
+pub(crate) fn running_ui(
+    ui: &mut Ui,
+    theme: &Theme,
+    device: &AnyDevice,
+    instead: Option<String>,
+    actions: &mut Vec<Action>,
+) {
+    let running = device.running();
+    let is_told_below = instead.is_some();
+    let words = match &running {
+        _ if is_told_below => instead.unwrap_or_default(),
+        Some(running) => {
+            let what = theme.words(&running.title);
+            match &running.progress {
+                Some((done, total, doing)) => format!("{what}  {done}/{total}  {}", theme.words(doing)),
+                None => what,
+            }
+        }
+        None => theme.say("shell.opening"),
+    };
+    if let Some(running) = running {
+        let stopping = running.stopping;
+        let word = theme.say(if stopping { "shell.stopping" } else { "shell.cancel" });
+        if enabled_button(ui, !stopping, icons::X, &word).clicked() {
+            actions.push(Action::Stop);
+        }
+        if let Some((done, total, _)) = running.progress.filter(|_| !is_told_below) {
+            let part = done as f32 / total.max(1) as f32;
+            ui.add(egui::ProgressBar::new(part).desired_height(4.0).desired_width(120.0));
+        }
+    }
+    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+        spinner(ui, theme);
+        ui.add(egui::Label::new(theme.label(words)).truncate());
+    });
+}

@@ -1,0 +1,246 @@
+//! The shell of the window: the lower panel and the line below it, what stays in its place while messages come and go, and
+//! live values that start by themselves.
+
+use std::time::Duration;
+
+use egui::{Key, Modifiers, Rect};
+use encoder_studio::app::session::Phase;
+use encoder_studio::app::{Action, DeviceCommand, FileQuestion, Studio, connect};
+use encoder_studio::devices::hiperface::state::HiperfaceAction as Hiperface;
+
+use crate::screen::Screen;
+use crate::support::{Desk, GATE, Outside, PORT, only_master};
+use crate::tabs::Tabs as _;
+
+const LARGE: [f32; 2] = [1280.0, 800.0];
+const SMALL: [f32; 2] = [1024.0, 640.0];
+
+/// A desk with the program's own settings, at a link.
+fn usual(query: &str, link: Option<&str>) -> Desk {
+    let outside = Outside::new(query);
+    let mut desk = Desk { studio: outside.usual_studio(), outside };
+    desk.studio.begin(link.map(|link| link.parse().unwrap()), None);
+    only_master(&mut desk.studio);
+    desk
+}
+
+fn is_live(studio: &Studio) -> bool {
+    studio.selected_device().is_some_and(|device| device.is_polling())
+}
+
+/// The places of these buttons on the page that is open.
+fn places(screen: &Screen, ids: &[&'static str]) -> Vec<Rect> {
+    ids.iter().map(|id| screen.button(id).rect()).collect()
+}
+
+#[test]
+fn the_lower_panel_is_one_line_until_it_is_opened_and_is_remembered() {
+    let mut screen = Screen::begun(LARGE);
+    let trace = screen.say("panel.trace");
+    let is_open = |screen: &Screen| screen.harness.query_all_by_label(&trace).next().is_some();
+    use egui_kittest::kittest::Queryable;
+    assert!(!is_open(&screen));
+    let last = screen.encoder().session.trace.lines().back().unwrap().clone();
+    assert!(screen.shows(&last.bytes), "the last frame");
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::T);
+    screen.steps();
+    assert!(is_open(&screen) && screen.studio().settings.lower_open);
+    screen.click("status_line.close");
+    assert!(!is_open(&screen));
+    screen.click("status_line.open");
+    assert!(is_open(&screen));
+    let path = screen.outside.store().settings_path();
+    screen.until("it is kept", |_| std::fs::read_to_string(&path).is_ok_and(|text| text.contains("lower_open: true")));
+    let studio = screen.outside.usual_studio();
+    assert!(studio.settings.lower_open);
+    // Another window with the layout of that time.
+    let Screen { outside, .. } = screen;
+    let again = Screen::of(outside, studio, LARGE);
+    assert!(is_open(&again));
+}
+
+#[test]
+fn nothing_that_can_be_clicked_moves_when_a_message_or_a_job_comes() {
+    for size in [LARGE, SMALL] {
+        let mut screen = Screen::begun(size);
+        screen.click("page.memory");
+        screen.ask(Hiperface::Put { field: 0, address: 0, bytes: vec![0xEE] });
+        let ids = ["memory.undo", "memory.review", "shell.stop", "live.start", "status_line.open", "page.encoder"];
+        let before = places(&screen, &ids);
+        // A notice.
+        screen.command(DeviceCommand::AskSave);
+        screen.act(Action::Open("/no/such/profile.ron".into()));
+        screen.until("it is told", |studio| studio.services.log.standing().is_some());
+        assert!(screen.has_button("shell.dismiss"));
+        assert_eq!(places(&screen, &ids), before, "a notice");
+        // A job, beside the notice and without it.
+        let wire = screen.outside.wire(PORT).clone();
+        wire.hold_at(0x56, 1);
+        screen.command(DeviceCommand::Read);
+        wire.wait_until_held();
+        screen.steps();
+        assert!(screen.encoder().session.is_busy() && screen.has_button("shell.cancel"));
+        assert_eq!(places(&screen, &ids), before, "a job beside a notice");
+        wire.release();
+        screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
+        screen.act(Action::Dismiss);
+        assert_eq!(places(&screen, &ids), before, "the notice is gone");
+        wire.hold_at(0x56, 1);
+        screen.command(DeviceCommand::Read);
+        wire.wait_until_held();
+        screen.steps();
+        assert!(screen.has_button("shell.cancel"));
+        assert_eq!(places(&screen, &ids), before, "a job");
+        wire.release();
+        screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
+        // The encoder falls silent, and its ways back come.
+        screen.outside.wire(PORT).unplug();
+        screen.command(DeviceCommand::Read);
+        screen.until("it is lost", |studio| {
+            matches!(studio.hiperface().unwrap().session.phase, Phase::Lost(_) | Phase::Silent(_))
+        });
+        assert_eq!(places(&screen, &ids), before, "no connection");
+        assert!(screen.has_button("shell.reconnect") || screen.has_button("memory.read"));
+    }
+}
+
+#[test]
+fn live_values_start_by_themselves_on_virtual_devices_and_confirmed_lines() {
+    for (link, starts) in [
+        (None, true),
+        (Some(format!("serial:{PORT}")), true),
+        (Some(format!("modbus:{GATE}")), false),
+        (Some("bridge:tcp:adapter:5000".to_owned()), false),
+    ] {
+        let mut desk = usual("", link.as_deref());
+        desk.until("it is read", |studio| {
+            studio.selected_device().is_some_and(|own| own.is_ready() && !own.state().just_connected)
+        });
+        desk.settle();
+        assert_eq!(is_live(&desk.studio), starts, "{link:?}");
+    }
+    // The virtual INTERBUS encoder is not disturbed either.
+    let mut desk = usual("", Some("serial:/dev/nothing"));
+    desk.act(Action::ShowTab(crate::tabs::INTERBUS));
+    desk.act(Action::OpenVirtual);
+    desk.until("it is read", |studio| studio.interbus().is_some_and(|own| own.session.is_ready()));
+    desk.settle();
+    assert!(!is_live(&desk.studio));
+}
+
+#[test]
+fn live_values_that_were_stopped_stay_so_at_the_next_start() {
+    let mut desk = usual("", None);
+    desk.until("it starts", is_live);
+    // STOP is for now; the button in the panel is the choice.
+    desk.act(Action::Stop);
+    assert!(!is_live(&desk.studio) && !desk.studio.settings.live_stopped);
+    desk.command(DeviceCommand::Reconnect);
+    desk.until("it starts again", is_live);
+    desk.command(DeviceCommand::Poll(None));
+    assert!(desk.studio.settings.live_stopped);
+    let path = desk.outside.store().settings_path();
+    desk.until("it is kept", |_| std::fs::read_to_string(&path).is_ok_and(|text| text.contains("live_stopped: true")));
+    let Desk { studio, outside } = desk;
+    drop(studio);
+    let mut desk = Desk { studio: outside.usual_studio(), outside };
+    desk.studio.begin(None, None);
+    desk.until_read();
+    assert!(!is_live(&desk.studio));
+    desk.command(DeviceCommand::Poll(Some(Duration::from_millis(20))));
+    assert!(!desk.studio.settings.live_stopped);
+    desk.command(DeviceCommand::Reconnect);
+    desk.until("it starts again", is_live);
+}
+
+/// Reading the position by itself changes nothing: nothing but reading passes over the line.
+#[test]
+fn live_values_that_start_by_themselves_only_read() {
+    let mut desk = usual("", None);
+    desk.until("it starts", is_live);
+    let wire = desk.wire();
+    let (before, sent) = (wire.count(0x42), wire.sent());
+    desk.until("some positions", |_| wire.count(0x42) > before + 5);
+    assert_eq!(wire.sent() - sent, wire.count(0x42) - before, "nothing but 42h");
+}
+
+#[test]
+fn a_pause_says_which_job_it_is_for_and_moves_nothing() {
+    let mut screen = Screen::begun(LARGE);
+    screen.click("live.start");
+    let ids = ["live.pause", "live.hide_plot"];
+    let before = places(&screen, &ids);
+    let paused = screen.words(&crate::texts::text("live.paused_by_job").with("job", ""));
+    let wire = screen.outside.wire(PORT).clone();
+    wire.hold_at(0x56, 1);
+    screen.command(DeviceCommand::Read);
+    let began = std::time::Instant::now();
+    while !screen.shows(paused.trim()) {
+        screen.harness.step();
+        assert!(began.elapsed() < Duration::from_secs(10), "never paused");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(places(&screen, &ids), before);
+    wire.release();
+    screen.until("it is read", |studio| studio.hiperface().unwrap().session.is_ready());
+}
+
+#[test]
+fn live_narrows_to_values_alone_and_remembers_it() {
+    let mut screen = Screen::begun(LARGE);
+    let wide = screen.button("live.start").rect().left();
+    screen.click("live.hide_plot");
+    assert!(!screen.has_button("recorder.large") && screen.studio().settings.values_alone);
+    assert!(screen.button("live.start").rect().left() > wide + 60.0, "the page has the room");
+    screen.click("live.show_plot");
+    assert!(screen.has_button("recorder.large") && !screen.studio().settings.values_alone);
+    assert!((screen.button("live.start").rect().left() - wide).abs() < 1.0, "as it was");
+}
+
+#[test]
+fn the_last_frames_are_in_reach_and_stay_while_others_come() {
+    use egui_kittest::kittest::Queryable;
+    let mut screen = Screen::begun(SMALL);
+    screen.act(Action::OpenLowerPanel(true));
+    screen.command(DeviceCommand::Poll(Some(Duration::from_millis(2))));
+    screen.until("many frames", |studio| studio.hiperface().unwrap().session.trace.lines().len() > 200);
+    screen.command(DeviceCommand::Poll(None));
+    screen.steps();
+    let last = screen.encoder().session.trace.lines().back().unwrap().clone();
+    let time = |screen: &Screen, line| {
+        screen.encoder().session.trace.time_of(line).unwrap().strftime("%H:%M:%S%.3f").to_string()
+    };
+    let time = time(&screen, &last);
+    let row = screen.harness.query_all_by_label(&time).last().expect("the last frame is drawn").rect();
+    let line = screen.button("status_line.close").rect();
+    assert!(row.bottom() <= line.top(), "{row:?} above {line:?}");
+    // Scrolled away, nothing follows until it is asked for.
+    screen.harness.event(egui::Event::PointerMoved(row.center()));
+    screen.harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: egui::vec2(0.0, 900.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Unknown,
+        modifiers: Modifiers::NONE,
+    });
+    for _ in 0..60 {
+        screen.harness.step();
+    }
+    assert!(screen.harness.query_all_by_label(&time).next().is_none(), "scrolled away");
+    screen.click("trace.follow");
+    for _ in 0..10 {
+        screen.harness.step();
+    }
+    assert!(screen.harness.query_all_by_label(&time).next().is_some(), "back at the end");
+}
+
+/// A file that is asked for by its path stands over the window: the keys of the lower panel wait.
+#[test]
+fn the_key_of_the_lower_panel_waits_for_dialogs() {
+    let mut screen = Screen::begun(SMALL);
+    screen.act(Action::TypePath(FileQuestion::Open));
+    screen.harness.key_press_modifiers(Modifiers::COMMAND, Key::T);
+    screen.steps();
+    assert!(!screen.studio().settings.lower_open);
+    screen.act(Action::Connect(connect::ConnectAction::Close));
+}
