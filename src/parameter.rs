@@ -41,6 +41,11 @@ pub struct Entry {
     pub is_decimal: bool,
 }
 
+/// Returns the entries with these keys, in the order of the keys.
+pub fn chosen(entries: &[Entry], keys: &[&str]) -> Vec<Entry> {
+    keys.iter().filter_map(|key| entries.iter().find(|own| own.key == *key).cloned()).collect()
+}
+
 /// Parameters that stand together, made by `parameters!`. The default is what counts where they say nothing.
 pub trait Parameters: Default {
     /// Why a value is refused.
