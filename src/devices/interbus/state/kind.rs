@@ -6,9 +6,12 @@ use crate::app::services::Services;
 use crate::app::session::Session;
 use crate::app::{DeviceType, Text};
 use crate::devices::interbus::jobs::{Interbus, check};
+use crate::devices::interbus::procedures::LinkParameters;
 use crate::devices::interbus::profile::InterbusProfile;
+use crate::devices::interbus::sim::Config;
 use crate::devices::interbus::state::explain;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
@@ -21,6 +24,10 @@ impl DeviceType for Encoder {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 
     fn explain(cause: &Cause) -> Option<Text> {

@@ -10,9 +10,12 @@ use crate::app::session::{Drafted, Session, Source};
 use crate::app::studio::SessionId;
 use crate::app::{DeviceType, Text};
 use crate::devices::ssi::jobs::{Ssi, check};
+use crate::devices::ssi::procedures::LinkParameters;
 use crate::devices::ssi::profile::SsiProfile;
+use crate::devices::ssi::sim::Settings;
 use crate::devices::ssi::state::explain;
 use crate::link::LinkUrl;
+use crate::parameter::Parameters as _;
 use crate::profile::Cause;
 use crate::store::Store;
 use crate::worker::OpenError;
@@ -25,6 +28,10 @@ impl DeviceType for Encoder {
 
     fn check(url: &LinkUrl) -> Result<(), OpenError> {
         check(url)
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Settings::SECRETS].concat()
     }
 
     fn explain(cause: &Cause) -> Option<Text> {
