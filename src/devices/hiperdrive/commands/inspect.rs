@@ -10,6 +10,10 @@ use crate::cli::{Done, Result};
 use crate::devices::hiperdrive::jobs::{HiperdriveJob, HiperdriveOutput};
 use crate::devices::hiperdrive::procedures::{DriveIdentity, DriveStatus, Identity, Status};
 use crate::devices::hiperdrive::profile::Item;
+use crate::devices::hiperdrive::protocol::drive_parameter::{
+    CONTROL, NEWEST_ERROR, NO_TIMEOUT, OLDEST_ERROR, SPEED, SPEED_DENOMINATOR, SPEED_NUMERATOR, STATUS, TIMEOUT,
+    VARIANT,
+};
 use crate::devices::hiperdrive::protocol::{
     DriveNumber, ErrorCode, KIND, ParameterNumber, SpeedScale, State, StatusBit, StatusWord, Value, Variant, nominal,
 };
@@ -207,26 +211,23 @@ fn number_text(item: Item, number: i64) -> String {
     let (base, unit) = (item.0.base(), item.0.row().map_or("", |row| row.unit));
     let word = u16::try_from(number).ok();
     match (base, word, unit.strip_prefix("0.1 ")) {
-        (105, Some(word), _) => {
+        (STATUS, Some(word), _) => {
             let state = words::state(StatusWord::new(word).state());
             format!("0x{word:04X} ({})", state.terminal())
         }
-        (108..=115, Some(0), _) => "0x0000 (no error)".to_owned(),
-        (108..=115, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
-        (101 | 116..=118, Some(word), _) => format!("0x{word:04X}"),
-        (120, Some(word), _) => {
+        (NEWEST_ERROR..=OLDEST_ERROR, Some(0), _) => "0x0000 (no error)".to_owned(),
+        (NEWEST_ERROR..=OLDEST_ERROR, Some(word), _) => format!("0x{word:04X} {}", error_text(ErrorCode::new(word))),
+        (CONTROL | 116..=118, Some(word), _) => format!("0x{word:04X}"),
+        (VARIANT, Some(word), _) => {
             format!("{number} ({})", words::variant(Variant::new(word)).terminal())
         }
-        (186, Some(255), _) => "255 (no time-out)".to_owned(),
+        (TIMEOUT, Some(word), _) if i64::from(word) == NO_TIMEOUT => "255 (no time-out)".to_owned(),
         // Of 32 bits.
         (.., Some(whole)) => format!("{number} × {unit} = {:.1} {whole}", number as f64 / 10.0),
         (.., None) if unit.is_empty() => number.to_string(),
         (.., None) => format!("{number} {unit}"),
     }
 }
-
-/// The speed as it is scaled, by the number of drive 1.
-const SPEED: u16 = 106;
 
 /// The speed scale of a drive (162, 164); `None` where it has a 0 in it.
 fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedScale>> {
@@ -235,7 +236,7 @@ fn speed_scale(runner: &mut Runner, drive: DriveNumber) -> Result<Option<SpeedSc
         Some(Err(why)) => Err(why),
         Some(Ok(Value::Text(_))) | None => Ok(0),
     };
-    Ok(SpeedScale::new(part(162)?, part(164)?).ok())
+    Ok(SpeedScale::new(part(SPEED_NUMERATOR)?, part(SPEED_DENOMINATOR)?).ok())
 }
 
 /// A text of a parameter for a person: with the number that it tells, where it tells one.
