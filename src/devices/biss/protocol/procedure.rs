@@ -3,6 +3,8 @@
 
 use std::fmt;
 
+use super::status::DeviceMode;
+
 /// A procedure that leads an encoder through a device mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -30,6 +32,53 @@ impl ProcedureKind {
     ];
 }
 
+/// A register whose codes are the program's, named by a description in place of a list of values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum CodeTable {
+    /// [`DeviceMode`].
+    DeviceMode,
+    /// [`WiegandCommand`].
+    WiegandCommand,
+    /// [`WiegandStatus`].
+    WiegandStatus,
+    /// [`CalibrationCommand`].
+    CalibrationCommand,
+    /// [`CalibrationStatus`].
+    CalibrationStatus,
+    /// [`DataCommand`].
+    DataCommand,
+    /// [`DataStatus`].
+    DataStatus,
+    /// [`FilterCommand`].
+    FilterCommand,
+    /// [`FilterStatus`].
+    FilterStatus,
+    /// [`PresetCommand`].
+    PresetCommand,
+    /// [`PresetStatus`].
+    PresetStatus,
+}
+
+impl CodeTable {
+    /// Returns the codes with their names.
+    pub(super) const fn rows(self) -> &'static [(u8, &'static str)] {
+        match self {
+            CodeTable::DeviceMode => DeviceMode::TABLE,
+            CodeTable::WiegandCommand => WiegandCommand::TABLE,
+            CodeTable::WiegandStatus => WiegandStatus::TABLE,
+            CodeTable::CalibrationCommand => CalibrationCommand::TABLE,
+            CodeTable::CalibrationStatus => CalibrationStatus::TABLE,
+            CodeTable::DataCommand => DataCommand::TABLE,
+            CodeTable::DataStatus => DataStatus::TABLE,
+            CodeTable::FilterCommand => FilterCommand::TABLE,
+            CodeTable::FilterStatus => FilterStatus::TABLE,
+            CodeTable::PresetCommand => PresetCommand::TABLE,
+            CodeTable::PresetStatus => PresetStatus::TABLE,
+        }
+    }
+}
+
 /// Codes of a register as a type: unknown ones keep their number.
 macro_rules! codes {
     ($(#[$about:meta])* $name:ident { $($(#[$doc:meta])* $variant:ident = $code:literal $text:literal,)* }) => {
@@ -42,6 +91,9 @@ macro_rules! codes {
         }
 
         impl $name {
+            /// Every code of the manual with its name, in the manual's order.
+            pub const TABLE: &'static [(u8, &'static str)] = &[$(($code, $text),)*];
+
             /// Returns the state for the register's value.
             pub const fn from_byte(byte: u8) -> Self {
                 match byte {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer};
 
 use super::super::address::RegisterAddress;
 use super::super::crc::Crc;
-use super::super::procedure::ProcedureKind;
+use super::super::procedure::{CodeTable, ProcedureKind};
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
 use super::german::German;
@@ -132,6 +132,8 @@ struct RegisterRow {
     #[serde(default)]
     decode: Decoding,
     #[serde(default)]
+    codes: Option<CodeTable>,
+    #[serde(default)]
     unit: String,
     #[serde(default)]
     saves: Vec<u8>,
@@ -240,12 +242,18 @@ impl RegisterRow {
         if !self.default.is_empty() && self.default.len() != usize::from(width) {
             return Err(format!("\"{name}\": {} default bytes for a width of {width}", self.default.len()));
         }
-        if let Decoding::Bits(bits) = &self.decode
+        let decoding = match self.codes {
+            Some(table) => {
+                Decoding::Choice(table.rows().iter().map(|(code, name)| ((*code).into(), Name::new(*name))).collect())
+            }
+            None => self.decode,
+        };
+        if let Decoding::Bits(bits) = &decoding
             && let Some((bit, _)) = bits.iter().find(|(bit, _)| *bit >= width * 8)
         {
             return Err(format!("\"{name}\": there is no bit {bit} in a width of {width}"));
         }
-        if let Decoding::Scaled { factor, offset } = self.decode
+        if let Decoding::Scaled { factor, offset } = decoding
             && !(factor.is_finite() && offset.is_finite())
         {
             return Err(format!("\"{name}\": factor and offset must be finite numbers"));
@@ -261,7 +269,7 @@ impl RegisterRow {
             access: self.access,
             order: self.order,
             default: self.default,
-            decoding: self.decode,
+            decoding,
             unit: self.unit,
             saves: self.saves,
             since: firmware(self.since),
