@@ -351,6 +351,9 @@ impl PulseVoltage {
 }
 
 impl WiegandResult {
+    /// Revolutions in each direction that its pulses are of (manual 6.3).
+    pub const REVOLUTIONS: u16 = 515;
+
     /// Parses the registers in the order of their addresses.
     pub fn parse(bytes: [u8; 4]) -> Self {
         let [average_cw, lowest_cw, average_ccw, lowest_ccw] = bytes.map(PulseVoltage);
