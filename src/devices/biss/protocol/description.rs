@@ -2,6 +2,7 @@
 //! registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
 
 mod file;
+mod flaw;
 mod german;
 mod name;
 mod register;
@@ -10,6 +11,7 @@ mod tests;
 
 use std::fmt;
 
+pub use flaw::{Claim, Flaw};
 pub use name::Name;
 pub use register::{Access, Area, Decoded, Decoding, Register, Role};
 
@@ -93,7 +95,7 @@ pub struct DescriptionError {
     /// Column, counted from 1.
     pub column: usize,
     /// The problem.
-    pub what: String,
+    pub what: Flaw,
 }
 
 /// All kinds of encoders known, the most particular first.
@@ -107,11 +109,11 @@ impl Description {
     /// With line and column: text that is not RON, unknown or missing keys, numbers out of their range, registers that
     /// overlap.
     pub fn parse(file: &str, text: &str) -> Result<Self, DescriptionError> {
-        file::parse(text).map_err(|error| DescriptionError {
+        file::parse(text).map_err(|(place, what)| DescriptionError {
             file: file.to_owned(),
-            line: error.span.start.line,
-            column: error.span.start.col,
-            what: error.code.to_string(),
+            line: place.line,
+            column: place.col,
+            what,
         })
     }
 

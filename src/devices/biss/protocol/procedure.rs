@@ -6,7 +6,7 @@ use std::fmt;
 use super::status::DeviceMode;
 
 /// A procedure that leads an encoder through a device mode.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProcedureKind {
     /// Manual 6.3.

@@ -245,7 +245,7 @@ fn a_broken_description_says_where() {
     for (text, line, what) in cases {
         let error = Description::parse("mine.ron", &text).unwrap_err();
         assert_eq!(error.line, line, "{error}");
-        assert!(error.what.contains(what), "{error}");
+        assert!(error.what.to_string().contains(what), "{error}");
         assert!(error.to_string().starts_with(&format!("mine.ron, line {line}, column ")), "{error}");
     }
 }
