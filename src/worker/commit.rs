@@ -80,26 +80,49 @@ pub trait Planned {
     /// Kinds of change that differ in what completes one that was cut off.
     type Kind;
 
-    /// Returns what would be written.
-    fn plan(&self) -> &Plan<Self::Base, Self::Op>;
-
-    /// Returns the kind of change that it is for.
-    fn kind(&self) -> Self::Kind;
+    /// Returns the plan, what it is for, and the wear of the device.
+    fn head(&self) -> PlanHead<'_, Self>;
 
     /// Returns how backups and the logbook know the device.
     fn device(&self, is_virtual: bool) -> DeviceKey;
-
-    /// Returns the write cycles that this computer has seen the device take; `None` where the logbook does not tell.
-    fn cycles_seen(&self) -> Option<u64>;
-
-    /// Returns the write cycles beyond which the device counts as worn.
-    fn wear_limit(&self) -> u64;
 
     /// Returns what an operation changes, as the logbook tells it.
     fn note(&self, op: &Self::Op) -> String;
 
     /// Returns a restorable text of what the plan touches, as it was.
     fn before_image(&self) -> String;
+
+    /// Returns what would be written.
+    fn plan(&self) -> &Plan<Self::Base, Self::Op> {
+        self.head().plan
+    }
+
+    /// Returns the kind of change that it is for.
+    fn kind(&self) -> Self::Kind {
+        self.head().kind
+    }
+
+    /// Returns the write cycles that this computer has seen the device take; `None` where the logbook does not tell.
+    fn cycles_seen(&self) -> Option<u64> {
+        self.head().cycles_seen
+    }
+
+    /// Returns the write cycles beyond which the device counts as worn.
+    fn wear_limit(&self) -> u64 {
+        self.head().wear_limit
+    }
+}
+
+/// A plan, what it is for, and the wear of the device.
+pub struct PlanHead<'p, P: Planned + ?Sized> {
+    /// What would be written.
+    pub plan: &'p Plan<P::Base, P::Op>,
+    /// The kind of change that it is for.
+    pub kind: P::Kind,
+    /// Write cycles that this computer has seen the device take; `None` where the logbook does not tell.
+    pub cycles_seen: Option<u64>,
+    /// Write cycles beyond which the device counts as worn.
+    pub wear_limit: u64,
 }
 
 /// A write that is not done, or not to its end; where the base does not hold, it is the device's error.
