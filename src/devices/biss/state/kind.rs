@@ -28,17 +28,6 @@ impl DeviceType for Encoder {
         check(url)
     }
 
-    fn secrets() -> Vec<&'static str> {
-        [
-            PinParameters::SECRETS,
-            LineParameters::SECRETS,
-            BusParameters::SECRETS,
-            FrameParameters::SECRETS,
-            Config::SECRETS,
-        ]
-        .concat()
-    }
-
     fn explain(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
@@ -55,5 +44,16 @@ impl DeviceType for Encoder {
             encoder.take_profile(profile);
         }
         encoder
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [
+            PinParameters::SECRETS,
+            LineParameters::SECRETS,
+            BusParameters::SECRETS,
+            FrameParameters::SECRETS,
+            Config::SECRETS,
+        ]
+        .concat()
     }
 }

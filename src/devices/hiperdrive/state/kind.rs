@@ -27,10 +27,6 @@ impl DeviceType for Unit {
         check(url)
     }
 
-    fn secrets() -> Vec<&'static str> {
-        [LinkParameters::SECRETS, Config::SECRETS].concat()
-    }
-
     fn explain(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
@@ -46,5 +42,9 @@ impl DeviceType for Unit {
             unit.drive = unit.drives().first().copied().unwrap_or(DriveNumber::FIRST);
         }
         unit
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

@@ -26,10 +26,6 @@ impl DeviceType for Encoder {
         check(url)
     }
 
-    fn secrets() -> Vec<&'static str> {
-        [LinkParameters::SECRETS, Config::SECRETS].concat()
-    }
-
     fn may_have_other_master(url: &LinkUrl) -> bool {
         jobs::may_have_other_master(url)
     }
@@ -58,5 +54,9 @@ impl DeviceType for Encoder {
             encoder.staged.refresh(profile.fields.clone());
         }
         encoder
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

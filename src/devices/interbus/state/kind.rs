@@ -26,10 +26,6 @@ impl DeviceType for Encoder {
         check(url)
     }
 
-    fn secrets() -> Vec<&'static str> {
-        [LinkParameters::SECRETS, Config::SECRETS].concat()
-    }
-
     fn explain(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
@@ -39,5 +35,9 @@ impl DeviceType for Encoder {
     fn begin(session: Session<Interbus>, profile: Option<(&InterbusProfile, ())>, _: &mut Services) -> Self {
         let staged = profile.map(|(profile, ())| Staged::of_profile(profile.image.clone(), profile.names.clone()));
         Encoder::with(session, staged.unwrap_or_default())
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Config::SECRETS].concat()
     }
 }

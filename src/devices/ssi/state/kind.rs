@@ -30,10 +30,6 @@ impl DeviceType for Encoder {
         check(url)
     }
 
-    fn secrets() -> Vec<&'static str> {
-        [LinkParameters::SECRETS, Settings::SECRETS].concat()
-    }
-
     fn explain(cause: &Cause) -> Option<Text> {
         explain::entry(cause)
     }
@@ -60,5 +56,9 @@ impl DeviceType for Encoder {
         let mut encoder = Self::begin(Session::of_nothing(id, suggested), None, services);
         encoder.load_draft(services);
         Some(encoder)
+    }
+
+    fn secrets() -> Vec<&'static str> {
+        [LinkParameters::SECRETS, Settings::SECRETS].concat()
     }
 }
