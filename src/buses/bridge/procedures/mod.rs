@@ -22,6 +22,7 @@ use crate::units::{Moment, SupplyVoltage};
 
 pub use flow::Portion;
 pub use power::SupplyAfter;
+pub(crate) use power::warn_of_supply;
 pub use tap::{Streaming, Tap, TapError, Wanted};
 
 /// Longer than the 18 µs that a BiSS encoder needs to notice the end of a frame (manual, table 3).
