@@ -1,6 +1,7 @@
 //! The description of an encoder: a file that anyone can write (RON, `assets/devices/biss/`), with the frame, the
 //! registers, the areas of plain data and the procedures of one kind of encoder. It is data: nothing is opened here.
 
+mod codes;
 mod file;
 mod flaw;
 mod german;

@@ -9,9 +9,10 @@ use serde::{Deserialize, Deserializer};
 
 use super::super::address::RegisterAddress;
 use super::super::crc::Crc;
-use super::super::procedure::{CodeTable, ProcedureKind};
+use super::super::procedure::ProcedureKind;
 use super::super::single_cycle::{Layout, LayoutError};
 use super::super::status::{Firmware, ProfileId};
+use super::codes::CodeTable;
 use super::flaw::{self, Claim, Flaw};
 use super::german::German;
 use super::name::Name;
